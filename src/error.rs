@@ -1,0 +1,66 @@
+//! The crate's one error type: each variant names the file, node, option, pass or resource.
+
+/// What went wrong, as one sentence that says what would be right.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A file that cannot be read or is not what it should be.
+    #[error("{path}: {problem}")]
+    File {
+        /// The file as it was named.
+        path: String,
+        /// What is wrong, and what would be right.
+        problem: String,
+    },
+    /// A light that no technique can work with.
+    #[error("the light cannot be used: {0}")]
+    Light(String),
+    /// A scene that parses but cannot be shadowed: names the node or mesh.
+    #[error("{0}")]
+    Scene(String),
+    /// A setting that is unknown or outside its range.
+    #[error("setting {key}: {problem}")]
+    Setting {
+        /// The setting's key, as in `--set key=value`.
+        key: String,
+        /// What is wrong, and the values that would be right.
+        problem: String,
+    },
+    /// A device that lacks something the node needs; lists every gap.
+    #[error("the device {device} cannot run antumbra: {}", gaps.join("; "))]
+    Device {
+        /// The device's name.
+        device: String,
+        /// Each missing thing, as a short phrase.
+        gaps: Vec<String>,
+    },
+    /// A Vulkan call that failed.
+    #[error("{doing} failed: {result:?}")]
+    Vulkan {
+        /// What was being done, with the pass or resource it was done for.
+        doing: String,
+        /// The driver's answer.
+        result: ash::vk::Result,
+    },
+    /// Memory that could not be had.
+    #[error("no memory for {resource} ({bytes} bytes): {problem}")]
+    Memory {
+        /// The resource that wanted it.
+        resource: String,
+        /// How much it wanted.
+        bytes: u64,
+        /// The allocator's answer.
+        problem: String,
+    },
+    /// A frame, plan or call that does not fit the node it was given to.
+    #[error("{0}")]
+    Frame(String),
+}
+
+impl Error {
+    /// Wraps a Vulkan result code; `doing` reads as in "creating the pipeline of {pass}".
+    pub(crate) fn vulkan(doing: impl Into<String>) -> impl FnOnce(ash::vk::Result) -> Self {
+        let doing = doing.into();
+        move |result| Self::Vulkan { doing, result }
+    }
+}

@@ -1,0 +1,130 @@
+//! The rectangle light, and the light space that every technique works in.
+
+use crate::Error;
+use glam::{DMat3, DMat4, DVec3};
+
+/// How far from perpendicular two half-axes may be (cosine of the angle between them).
+const MAX_SKEW: f64 = 1e-4;
+
+/// A rectangle that emits from one side.
+///
+/// Light space has its origin at the light's centre, +z along the emission, and x and y along the
+/// half-axes; it is right-handed and its unit is the metre. Positions and axes are world space in
+/// f64: all that reaches the GPU is relative to the light, so a light far from the world's origin
+/// is as exact as one near it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RectangleLight {
+    center: DVec3,
+    /// Columns: the light's x, y and z axes in world space, orthonormal.
+    axes: DMat3,
+    half_extents: [f64; 2],
+}
+
+impl RectangleLight {
+    /// A light from its centre, its two half-axes and the side it emits from, all in world space.
+    ///
+    /// `half_u` and `half_v` reach from the centre to the middle of two neighbouring edges, in
+    /// metres; they must be perpendicular. Light is emitted along `half_v × half_u`, which is local
+    /// −Z for a node whose X and Y axes they are, as in glTF.
+    ///
+    /// # Errors
+    /// [`Error::Light`] for values that are not finite, a side of no length (the soft shadow
+    /// techniques need an area), or half-axes that are not perpendicular.
+    pub fn new(center: DVec3, half_u: DVec3, half_v: DVec3) -> Result<Self, Error> {
+        let (width, height) = (half_u.length(), half_v.length());
+        if !(center.is_finite() && width.is_finite() && height.is_finite()) {
+            return Err(Error::Light("its position and axes must be finite numbers".into()));
+        }
+        if width <= 0.0 || height <= 0.0 {
+            return Err(Error::Light("its width and height must be above 0".into()));
+        }
+        let x = half_u / width;
+        let skew = x.dot(half_v / height);
+        if skew.abs() > MAX_SKEW {
+            return Err(Error::Light(format!(
+                "its two axes must be perpendicular (the cosine of their angle is {skew:.3e})"
+            )));
+        }
+        // Emission is −(u × v); +y completes the right-handed frame.
+        let z = -half_u.cross(half_v).normalize();
+        let axes = DMat3::from_cols(x, z.cross(x), z);
+        Ok(Self { center, axes, half_extents: [width, height] })
+    }
+
+    /// Half the light's width and height, in metres.
+    pub fn half_extents(&self) -> [f64; 2] {
+        self.half_extents
+    }
+
+    /// The centre in world space.
+    pub fn center(&self) -> DVec3 {
+        self.center
+    }
+
+    /// The direction of emission in world space, a unit vector.
+    pub fn emission(&self) -> DVec3 {
+        self.axes.z_axis
+    }
+
+    /// Light space to world space: a rotation and a translation.
+    pub fn world_from_light(&self) -> DMat4 {
+        DMat4::from_mat3(self.axes).with_translation(self.center)
+    }
+
+    /// World space to light space: the inverse of [`Self::world_from_light`].
+    pub fn light_from_world(&self) -> DMat4 {
+        let rotation = self.axes.transpose();
+        DMat4::from_mat3(rotation).with_translation(-(rotation * self.center))
+    }
+}
+
+/// `DMat4` with its translation column replaced.
+trait WithTranslation {
+    fn with_translation(self, t: DVec3) -> Self;
+}
+
+impl WithTranslation for DMat4 {
+    fn with_translation(mut self, t: DVec3) -> Self {
+        self.w_axis = t.extend(1.0);
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ceiling() -> RectangleLight {
+        RectangleLight::new(
+            DVec3::new(1.0, 3.0, -2.0),
+            DVec3::new(0.3, 0.0, 0.0),
+            DVec3::new(0.0, 0.0, -0.2),
+        )
+        .unwrap()
+    }
+
+    #[test]
+    fn emits_along_the_nodes_minus_z() {
+        let light = ceiling();
+        assert!((light.emission() - DVec3::NEG_Y).length() < 1e-15);
+        assert_eq!(light.half_extents(), [0.3, 0.2]);
+    }
+
+    #[test]
+    fn light_space_is_a_right_handed_rigid_frame() {
+        let light = ceiling();
+        let there_and_back = light.world_from_light() * light.light_from_world();
+        assert!(there_and_back.abs_diff_eq(DMat4::IDENTITY, 1e-14));
+        assert!((light.axes.determinant() - 1.0).abs() < 1e-14);
+        let below = light.light_from_world().transform_point3(DVec3::new(1.0, 1.0, -2.0));
+        assert!((below - DVec3::new(0.0, 0.0, 2.0)).length() < 1e-14);
+    }
+
+    #[test]
+    fn bad_lights_are_refused_with_a_sentence() {
+        let make = |u: DVec3, v: DVec3| RectangleLight::new(DVec3::ZERO, u, v).unwrap_err();
+        assert!(make(DVec3::ZERO, DVec3::Y).to_string().contains("above 0"));
+        assert!(make(DVec3::X, DVec3::X).to_string().contains("perpendicular"));
+        assert!(make(DVec3::NAN, DVec3::Y).to_string().contains("finite"));
+    }
+}

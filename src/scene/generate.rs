@@ -1,0 +1,1 @@
+//! Scenes made in code.

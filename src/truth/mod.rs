@@ -1,0 +1,1 @@
+//! The visible fraction on the CPU.
