@@ -26,6 +26,9 @@ pub enum Error {
         /// What is wrong, and the values that would be right.
         problem: String,
     },
+    /// No device to run on: the loader, a driver, a layer or the named device is missing.
+    #[error("no Vulkan device: {0}")]
+    NoDevice(String),
     /// A device that lacks something the node needs; lists every gap.
     #[error("the device {device} cannot run antumbra: {}", gaps.join("; "))]
     Device {

@@ -1,6 +1,7 @@
 //! Soft shadows from area lights, as one node of a Vulkan engine's render graph.
 
 pub mod error;
+pub mod gpu;
 pub mod light;
 pub mod scene;
 #[cfg(feature = "truth")]

@@ -1,0 +1,155 @@
+//! Buffers that the host and the device both see.
+
+use super::HeadlessDevice;
+use crate::Error;
+use ash::vk;
+use gpu_allocator::MemoryLocation;
+use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
+use std::sync::PoisonError;
+
+/// A buffer in host-visible, host-coherent, cached memory.
+///
+/// The host must not read or write it while the device uses it; after
+/// [`HeadlessDevice::submit_and_wait`] it may.
+#[derive(Debug)]
+pub struct HostBuffer {
+    device: HeadlessDevice,
+    name: String,
+    buffer: vk::Buffer,
+    bytes: u64,
+    /// `None` only until `new` is done and while it is dropped.
+    allocation: Option<Allocation>,
+}
+
+impl HostBuffer {
+    /// A buffer of `bytes` bytes, their contents undefined. `name` is for errors and debuggers.
+    ///
+    /// # Errors
+    /// [`Error::Memory`] if there is no memory for it or `bytes` is 0, [`Error::Vulkan`] if the
+    /// driver refuses.
+    pub fn new(
+        device: &HeadlessDevice,
+        name: &str,
+        bytes: u64,
+        usage: vk::BufferUsageFlags,
+    ) -> Result<Self, Error> {
+        if bytes == 0 {
+            let problem = "a buffer has at least one byte".into();
+            return Err(Error::Memory { resource: name.into(), bytes, problem });
+        }
+        let info = vk::BufferCreateInfo::default().size(bytes).usage(usage);
+        // SAFETY: the device lives; `info` names no extension structure.
+        let buffer = unsafe { device.device().create_buffer(&info, None) }
+            .map_err(Error::vulkan(format!("creating the buffer {name}")))?;
+        // From here on, dropping `new` cleans up.
+        let mut new =
+            Self { device: device.clone(), name: name.into(), buffer, bytes, allocation: None };
+        // SAFETY: the buffer was made above.
+        let requirements = unsafe { device.device().get_buffer_memory_requirements(buffer) };
+        let allocation = allocate(device, name, requirements, MemoryLocation::GpuToCpu, true)?;
+        // SAFETY: offset and type come from the allocator for these requirements; bound once.
+        let bound = unsafe {
+            device.device().bind_buffer_memory(buffer, allocation.memory(), allocation.offset())
+        };
+        new.allocation = Some(allocation);
+        bound.map_err(Error::vulkan(format!("binding memory to the buffer {name}")))?;
+        Ok(new)
+    }
+
+    /// A buffer that holds `data`.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_data<T: bytemuck::NoUninit>(
+        device: &HeadlessDevice,
+        name: &str,
+        data: &[T],
+        usage: vk::BufferUsageFlags,
+    ) -> Result<Self, Error> {
+        let mut buffer = Self::new(device, name, size_of_val(data) as u64, usage)?;
+        buffer.write(data)?;
+        Ok(buffer)
+    }
+
+    /// Copies `data` to the buffer's start.
+    ///
+    /// # Errors
+    /// [`Error::Frame`] if the buffer is smaller.
+    pub fn write<T: bytemuck::NoUninit>(&mut self, data: &[T]) -> Result<(), Error> {
+        let source: &[u8] = bytemuck::cast_slice(data);
+        let (name, bytes) = (&self.name, self.bytes);
+        let mapped = self.allocation.as_mut().and_then(Allocation::mapped_slice_mut);
+        match mapped.and_then(|mapped| mapped.get_mut(..source.len())) {
+            // The allocation may be larger than the buffer.
+            Some(mapped) if source.len() as u64 <= bytes => {
+                mapped.copy_from_slice(source);
+                Ok(())
+            }
+            _ => Err(Error::Frame(format!(
+                "buffer {name} holds {bytes} bytes, not the {} to be written",
+                source.len()
+            ))),
+        }
+    }
+
+    /// The whole contents. Bytes past the last whole `T` are left out.
+    pub fn read<T: bytemuck::AnyBitPattern>(&self) -> Vec<T> {
+        let mapped = self.allocation.as_ref().and_then(Allocation::mapped_slice);
+        let whole = usize::try_from(self.bytes).unwrap_or(usize::MAX);
+        let bytes = mapped.unwrap_or_default();
+        let bytes = &bytes[..whole.min(bytes.len())];
+        let size = size_of::<T>().max(1);
+        bytes.chunks_exact(size).map(bytemuck::pod_read_unaligned).collect()
+    }
+
+    /// The buffer.
+    pub fn raw(&self) -> vk::Buffer {
+        self.buffer
+    }
+
+    /// Its size in bytes.
+    pub fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+}
+
+impl Drop for HostBuffer {
+    fn drop(&mut self) {
+        // SAFETY: made from this device, destroyed once; the device is done with it by contract.
+        unsafe { self.device.device().destroy_buffer(self.buffer, None) };
+        free(&self.device, self.allocation.take());
+    }
+}
+
+/// Memory for one resource.
+pub(super) fn allocate(
+    device: &HeadlessDevice,
+    name: &str,
+    requirements: vk::MemoryRequirements,
+    location: MemoryLocation,
+    linear: bool,
+) -> Result<Allocation, Error> {
+    let mut allocator = device.allocator().lock().unwrap_or_else(PoisonError::into_inner);
+    let allocation_scheme = AllocationScheme::GpuAllocatorManaged;
+    let description =
+        AllocationCreateDesc { name, requirements, location, linear, allocation_scheme };
+    allocator.allocate(&description).map_err(|problem| Error::Memory {
+        resource: name.into(),
+        bytes: requirements.size,
+        problem: problem.to_string(),
+    })
+}
+
+/// Gives memory back.
+pub(super) fn free(device: &HeadlessDevice, allocation: Option<Allocation>) {
+    if let Some(allocation) = allocation {
+        let mut allocator = device.allocator().lock().unwrap_or_else(PoisonError::into_inner);
+        // It fails only for an allocation of another allocator, which this is not.
+        let _ = allocator.free(allocation);
+    }
+}

@@ -1,0 +1,327 @@
+//! The device, its one queue, its allocator, and a submit that waits.
+
+use super::choose::{Candidate, choose};
+use super::instance::Instance;
+use super::messages::MessageLog;
+use crate::Error;
+use ash::{ext, vk};
+use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
+use std::fmt;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// The environment variable that picks a device by a part of its name.
+const DRIVER_VARIABLE: &str = "ANTUMBRA_DRIVER";
+
+/// How to make a [`HeadlessDevice`].
+#[derive(Clone, Debug, Default)]
+pub struct HeadlessOptions {
+    /// Run under the Khronos validation layer with synchronization checks; off by default.
+    pub validation: bool,
+    /// A part of the wanted device's name, in any case. `None` leaves it to the environment
+    /// variable `ANTUMBRA_DRIVER`, and without that to the kind: discrete GPU, integrated GPU,
+    /// virtual GPU, processor.
+    pub driver: Option<String>,
+}
+
+/// A device of Vulkan 1.1 with one graphics and compute queue, no optional feature and no device
+/// extension.
+///
+/// A clone is another handle to the same device; the last one destroys it. Buffers and images made
+/// from it hold a handle each, so they may be dropped in any order. Objects made through
+/// [`Self::device`] must be destroyed before the last handle is dropped.
+#[derive(Clone)]
+pub struct HeadlessDevice(Arc<Shared>);
+
+/// Fields drop from the top: the allocator's memory, then the device, then the instance.
+struct Shared {
+    allocator: Mutex<Allocator>,
+    device: Device,
+    physical_device: vk::PhysicalDevice,
+    properties: vk::PhysicalDeviceProperties,
+    name: String,
+    queue: vk::Queue,
+    queue_family: u32,
+    /// Held while the queue is used, which Vulkan wants from one thread at a time.
+    queue_lock: Mutex<()>,
+    debug_utils: Option<ext::debug_utils::Device>,
+    instance: Instance,
+}
+
+impl Drop for Shared {
+    fn drop(&mut self) {
+        // SAFETY: the device lives. A lost device leaves nothing to wait for, so the answer is of
+        // no use.
+        let _ = unsafe { self.device.0.device_wait_idle() };
+    }
+}
+
+/// Destroys the device where its fields' order says so.
+struct Device(ash::Device);
+
+impl Drop for Device {
+    fn drop(&mut self) {
+        // SAFETY: idle (`Shared` waits first), and all that came from it is gone by contract.
+        unsafe { self.0.destroy_device(None) };
+    }
+}
+
+impl fmt::Debug for HeadlessDevice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("HeadlessDevice").field(&self.name()).finish()
+    }
+}
+
+impl HeadlessDevice {
+    /// Opens a device.
+    ///
+    /// # Errors
+    /// [`Error::NoDevice`] if the loader, every driver, the validation layer or a device of that
+    /// name is missing, with what to install or which devices there are; [`Error::Device`] if the
+    /// device lacks Vulkan 1.1 or the queue; [`Error::Vulkan`] and [`Error::Memory`] if the driver
+    /// refuses.
+    pub fn new(options: &HeadlessOptions) -> Result<Self, Error> {
+        let instance = Instance::new(options.validation)?;
+        // SAFETY: the instance lives.
+        let physical_devices = unsafe { instance.raw.enumerate_physical_devices() }
+            .map_err(Error::vulkan("listing the devices"))?;
+        let candidates: Vec<_> =
+            physical_devices.iter().map(|&device| describe(&instance.raw, device)).collect();
+        let wanted = options
+            .driver
+            .clone()
+            .or_else(|| std::env::var(DRIVER_VARIABLE).ok())
+            .filter(|name| !name.is_empty());
+        let (index, queue_family) = choose(&candidates, wanted.as_deref())?;
+        let physical_device = physical_devices[index];
+        let name = candidates[index].name.clone();
+
+        let queue_info = [vk::DeviceQueueCreateInfo::default()
+            .queue_family_index(queue_family)
+            .queue_priorities(&[1.0])];
+        let info = vk::DeviceCreateInfo::default().queue_create_infos(&queue_info);
+        // SAFETY: the family was reported by this device; `info` names no feature or extension.
+        let device = unsafe { instance.raw.create_device(physical_device, &info, None) }
+            .map_err(Error::vulkan(format!("creating the device {name}")))?;
+        let device = Device(device);
+        // SAFETY: one queue of this family was asked for above.
+        let queue = unsafe { device.0.get_device_queue(queue_family, 0) };
+        let debug_utils =
+            instance.debug_utils.then(|| ext::debug_utils::Device::new(&instance.raw, &device.0));
+        let allocator = Allocator::new(&AllocatorCreateDesc {
+            instance: instance.raw.clone(),
+            device: device.0.clone(),
+            physical_device,
+            debug_settings: gpu_allocator::AllocatorDebugSettings::default(),
+            buffer_device_address: false,
+            allocation_sizes: gpu_allocator::AllocationSizes::default(),
+        })
+        .map_err(|problem| Error::Memory {
+            resource: "the allocator".into(),
+            bytes: 0,
+            problem: problem.to_string(),
+        })?;
+        // SAFETY: reported by this instance.
+        let properties = unsafe { instance.raw.get_physical_device_properties(physical_device) };
+        Ok(Self(Arc::new(Shared {
+            allocator: Mutex::new(allocator),
+            device,
+            physical_device,
+            properties,
+            name,
+            queue,
+            queue_family,
+            queue_lock: Mutex::new(()),
+            debug_utils,
+            instance,
+        })))
+    }
+
+    /// The loader.
+    pub fn entry(&self) -> &ash::Entry {
+        &self.0.instance.entry
+    }
+
+    /// The instance.
+    pub fn instance(&self) -> &ash::Instance {
+        &self.0.instance.raw
+    }
+
+    /// The physical device.
+    pub fn physical_device(&self) -> vk::PhysicalDevice {
+        self.0.physical_device
+    }
+
+    /// The device. A clone of it must not be used once the last [`HeadlessDevice`] is dropped.
+    pub fn device(&self) -> &ash::Device {
+        &self.0.device.0
+    }
+
+    /// The one queue, for graphics and compute. [`Self::submit_and_wait`] submits to it under a
+    /// lock; whoever submits by other means must not do so from another thread at the same time.
+    pub fn queue(&self) -> vk::Queue {
+        self.0.queue
+    }
+
+    /// The queue's family.
+    pub fn queue_family(&self) -> u32 {
+        self.0.queue_family
+    }
+
+    /// Names and labels, where the instance has `VK_EXT_debug_utils`.
+    pub fn debug_utils(&self) -> Option<&ext::debug_utils::Device> {
+        self.0.debug_utils.as_ref()
+    }
+
+    /// The device's name as the driver gives it.
+    pub fn name(&self) -> &str {
+        &self.0.name
+    }
+
+    /// The device's properties.
+    pub fn properties(&self) -> &vk::PhysicalDeviceProperties {
+        &self.0.properties
+    }
+
+    /// The device's limits.
+    pub fn limits(&self) -> &vk::PhysicalDeviceLimits {
+        &self.0.properties.limits
+    }
+
+    /// The allocator that buffers and images here come from; others may borrow it.
+    pub fn allocator(&self) -> &Mutex<Allocator> {
+        &self.0.allocator
+    }
+
+    /// Warnings and errors so far, oldest first (see [`MessageLog`]); none without validation.
+    pub fn messages(&self) -> Vec<String> {
+        self.0.instance.log.messages()
+    }
+
+    /// As [`Self::messages`]; the log is empty afterwards.
+    pub fn take_messages(&self) -> Vec<String> {
+        self.0.instance.log.take()
+    }
+
+    /// The log itself, which outlives the device: what is said while the device is destroyed ends
+    /// up there too.
+    pub fn message_log(&self) -> MessageLog {
+        self.0.instance.log.clone()
+    }
+
+    /// Records a command buffer, submits it and waits until it is done. For set-up and read-back;
+    /// a frame loop wants command buffers of its own.
+    ///
+    /// All writes are visible to the host and to later submits afterwards.
+    ///
+    /// # Errors
+    /// What `record` returns, and then nothing is submitted; [`Error::Vulkan`] if the driver
+    /// refuses.
+    pub fn submit_and_wait<T>(
+        &self,
+        record: impl FnOnce(vk::CommandBuffer) -> Result<T, Error>,
+    ) -> Result<T, Error> {
+        let device = self.device();
+        let objects = OneShot::new(device, self.0.queue_family)?;
+        let begin = vk::CommandBufferBeginInfo::default()
+            .flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
+        // SAFETY: the command buffer is new, and no other thread knows its pool.
+        unsafe { device.begin_command_buffer(objects.cmd, &begin) }
+            .map_err(Error::vulkan("beginning a command buffer"))?;
+        let value = record(objects.cmd)?;
+        let to_host = [vk::MemoryBarrier::default()
+            .src_access_mask(vk::AccessFlags::MEMORY_WRITE)
+            .dst_access_mask(vk::AccessFlags::HOST_READ | vk::AccessFlags::HOST_WRITE)];
+        // SAFETY: the command buffer is recording, outside a render pass.
+        unsafe {
+            device.cmd_pipeline_barrier(
+                objects.cmd,
+                vk::PipelineStageFlags::ALL_COMMANDS,
+                vk::PipelineStageFlags::HOST,
+                vk::DependencyFlags::empty(),
+                &to_host,
+                &[],
+                &[],
+            );
+        }
+        // SAFETY: recording was begun above.
+        unsafe { device.end_command_buffer(objects.cmd) }
+            .map_err(Error::vulkan("ending a command buffer"))?;
+
+        let cmds = [objects.cmd];
+        let submit = [vk::SubmitInfo::default().command_buffers(&cmds)];
+        {
+            let _held = self.0.queue_lock.lock().unwrap_or_else(PoisonError::into_inner);
+            // SAFETY: the lock keeps other threads off the queue; the fence is new.
+            unsafe { device.queue_submit(self.0.queue, &submit, objects.fence) }
+                .map_err(Error::vulkan("submitting a command buffer"))?;
+        }
+        // SAFETY: the fence was submitted above.
+        unsafe { device.wait_for_fences(&[objects.fence], true, u64::MAX) }
+            .map_err(Error::vulkan("waiting for a command buffer"))?;
+        Ok(value)
+    }
+}
+
+/// A command pool with one command buffer, and a fence.
+struct OneShot<'d> {
+    device: &'d ash::Device,
+    pool: vk::CommandPool,
+    cmd: vk::CommandBuffer,
+    fence: vk::Fence,
+}
+
+impl<'d> OneShot<'d> {
+    fn new(device: &'d ash::Device, queue_family: u32) -> Result<Self, Error> {
+        let mut new = Self {
+            device,
+            pool: vk::CommandPool::null(),
+            cmd: vk::CommandBuffer::null(),
+            fence: vk::Fence::null(),
+        };
+        let info = vk::CommandPoolCreateInfo::default()
+            .flags(vk::CommandPoolCreateFlags::TRANSIENT)
+            .queue_family_index(queue_family);
+        // SAFETY: the family is one that the device was created with.
+        new.pool = unsafe { device.create_command_pool(&info, None) }
+            .map_err(Error::vulkan("creating a command pool"))?;
+        let info = vk::CommandBufferAllocateInfo::default()
+            .command_pool(new.pool)
+            .level(vk::CommandBufferLevel::PRIMARY)
+            .command_buffer_count(1);
+        // SAFETY: the pool is new, and no other thread knows it.
+        let cmds = unsafe { device.allocate_command_buffers(&info) }
+            .map_err(Error::vulkan("allocating a command buffer"))?;
+        new.cmd = cmds[0];
+        // SAFETY: the device lives.
+        new.fence = unsafe { device.create_fence(&vk::FenceCreateInfo::default(), None) }
+            .map_err(Error::vulkan("creating a fence"))?;
+        Ok(new)
+    }
+}
+
+impl Drop for OneShot<'_> {
+    fn drop(&mut self) {
+        // SAFETY: not submitted, or waited for, or the device is lost; null handles are allowed.
+        unsafe { self.device.destroy_fence(self.fence, None) };
+        // SAFETY: as above; the pool frees its command buffer.
+        unsafe { self.device.destroy_command_pool(self.pool, None) };
+    }
+}
+
+fn describe(instance: &ash::Instance, device: vk::PhysicalDevice) -> Candidate {
+    // SAFETY: the device was reported by this instance.
+    let properties = unsafe { instance.get_physical_device_properties(device) };
+    // SAFETY: as above.
+    let families = unsafe { instance.get_physical_device_queue_family_properties(device) };
+    let wanted = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;
+    let name = properties.device_name_as_c_str().unwrap_or(c"a device without a name");
+    Candidate {
+        name: name.to_string_lossy().into_owned(),
+        kind: properties.device_type,
+        api_version: properties.api_version,
+        queue_family: (0u32..)
+            .zip(&families)
+            .find(|(_, family)| family.queue_flags.contains(wanted))
+            .map(|(index, _)| index),
+    }
+}
