@@ -51,6 +51,11 @@ impl RectangleLight {
         Ok(Self { center, axes, half_extents: [width, height] })
     }
 
+    /// One metre square at the origin, emitting along +z.
+    pub(crate) fn unit() -> Self {
+        Self { center: DVec3::ZERO, axes: DMat3::IDENTITY, half_extents: [0.5; 2] }
+    }
+
     /// Half the light's width and height, in metres.
     pub fn half_extents(&self) -> [f64; 2] {
         self.half_extents

@@ -4,5 +4,19 @@
 // unsafe block inside has its own SAFETY line (the workspace's lints hold both).
 #![allow(unsafe_code)]
 
+mod descriptors;
+mod host;
+mod memory;
+mod node_objects;
+mod objects;
+mod pipeline;
+mod record;
+mod timing;
+
+pub use host::{Host, Requirements};
+pub use memory::{Allocator, MemoryBlock, MemoryRequest};
+pub(crate) use node_objects::NodeObjects;
+pub use node_objects::Retired;
+
 #[cfg(feature = "headless")]
 pub mod headless;

@@ -1,0 +1,14 @@
+#version 450
+
+// Positions to a light-space map's clip space; the depth that results is near / d.
+
+layout(location = 0) in vec3 position;
+
+layout(push_constant) uniform Push {
+    mat4 clip_from_mesh;
+} push;
+
+void main()
+{
+    gl_Position = push.clip_from_mesh * vec4(position, 1.0);
+}

@@ -1,0 +1,78 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "soft_shadow_map/node.glsl"
+
+// The occluder map as w, in blocks of 8x8 texels that lie together, with each block's moments.
+// One invocation a block; z is the side: 0 the front layer, 1 the back layer.
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, binding = 0) uniform texture2D front_depth;
+layout(set = 0, binding = 1) uniform texture2D back_depth;
+layout(set = 0, binding = 2, std430) writeonly buffer Texels { float texels[]; };
+layout(set = 0, binding = 3, std430) writeonly buffer Blocks { vec4 blocks[]; };
+
+layout(push_constant) uniform Push {
+    int map;        // the map's side in texels
+    int row;        // blocks a row, a multiple of a superblock's
+    float inv_near; // 1 over the near plane's distance, 1/m
+    int bottom;     // 1: front texels take the back layer's distance where it has one
+} push;
+
+// Cleared to 1 and kept where less: 1 is a texel without a back face.
+const float NO_BACK = 1.0;
+
+float w_at(ivec2 p, uint side)
+{
+    if (p.x >= push.map || p.y >= push.map) {
+        return 0.0;
+    }
+    float front = texelFetch(front_depth, p, 0).x;
+    float back = texelFetch(back_depth, p, 0).x;
+    if (side == 0u && (push.bottom == 0 || front == 0.0 || back == NO_BACK)) {
+        return front * push.inv_near;
+    }
+    return back == NO_BACK ? 0.0 : back * push.inv_near;
+}
+
+void main()
+{
+    ivec2 block = ivec2(gl_GlobalInvocationID.xy);
+    if (block.x >= push.row || block.y >= push.row) {
+        return;
+    }
+    uint side = gl_GlobalInvocationID.z;
+    int index = (int(side) * push.row + block.y) * push.row + block.x;
+
+    float count = 0.0;
+    float sum = 0.0;
+    float w_min = 3.0e38;
+    float w_max = 0.0;
+    float w[BLOCK_TEXELS];
+    for (int i = 0; i < BLOCK_TEXELS; ++i) {
+        w[i] = w_at(block * BLOCK + ivec2(i % BLOCK, i / BLOCK), side);
+        texels[index * BLOCK_TEXELS + i] = w[i];
+        if (w[i] > 0.0) {
+            count += 1.0;
+            sum += w[i];
+            w_min = min(w_min, w[i]);
+            w_max = max(w_max, w[i]);
+        }
+    }
+    if (count == 0.0) {
+        blocks[2 * index] = vec4(0.0);
+        blocks[2 * index + 1] = vec4(0.0);
+        return;
+    }
+    float mean = sum / count;
+    float s2 = 0.0;
+    float s3 = 0.0;
+    for (int i = 0; i < BLOCK_TEXELS; ++i) {
+        float d = w[i] > 0.0 ? w[i] - mean : 0.0;
+        s2 += d * d;
+        s3 += d * d * d;
+    }
+    blocks[2 * index] = vec4(count, mean, w_min, w_max);
+    blocks[2 * index + 1] = vec4(s2, s3, 0.0, 0.0);
+}

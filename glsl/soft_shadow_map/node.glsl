@@ -1,0 +1,65 @@
+// Nodes: square groups of occluder-map texels with the moments of w over the occupied ones.
+
+#ifndef SOFT_SHADOW_MAP_NODE_GLSL
+#define SOFT_SHADOW_MAP_NODE_GLSL
+
+const int BLOCK = 8;                   // a block's side in texels
+const int BLOCK_TEXELS = BLOCK * BLOCK;
+const int FAN = 4;                     // a superblock's side in blocks
+const int SUPERBLOCK = FAN * BLOCK;    // and in texels
+
+struct Node {
+    float count;  // occupied texels
+    float mean;   // mean w of them, 1/m
+    float w_min;  // furthest
+    float w_max;  // nearest
+    float s2;     // sum of (w - mean)^2
+    float s3;     // sum of (w - mean)^3
+};
+
+Node empty_node()
+{
+    return Node(0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+}
+
+// Two vec4 a node in buffers.
+Node unpack_node(vec4 a, vec4 b)
+{
+    return Node(a.x, a.y, a.z, a.w, b.x, b.y);
+}
+
+// The sum over a node's texels of k^2, all of them back-projected wholly inside the light, as its
+// Taylor series about the mean to the third order. Times scale.x * scale.y it is the occlusion.
+float node_sum(float count, float mean, float s2, float s3, float w_r)
+{
+    float r = 1.0 / (mean - w_r);
+    return r * r * (count + r * r * (3.0 * s2 - 4.0 * s3 * r));
+}
+
+const int OUTSIDE = 0; // hides nothing of the light from any of the receivers
+const int INSIDE = 1;  // node_sum serves all of the receivers
+const int MIXED = 2;   // look closer
+
+// How a node lies to receivers with t in [t_min, t_max] and w_r in [w_r.x, w_r.y]; `lo` is its first
+// texel, `side` its side in texels, `spread` the largest |w - mean| k that the series may have.
+int classify(Node node, vec2 lo, float side, vec2 t_min, vec2 t_max, vec2 w_r, vec2 scale,
+             float spread)
+{
+    if (node.count == 0.0 || node.w_max <= w_r.x) {
+        return OUTSIDE;
+    }
+    vec2 hi = lo + side;
+    // The least magnification gives the widest window of occluder texels that the light covers.
+    vec2 window = 0.5 * (node.w_max - w_r.x) / scale;
+    vec2 gap = max(lo - t_max, t_min - hi);
+    if (gap.x >= window.x || gap.y >= window.y) {
+        return OUTSIDE;
+    }
+    vec2 core = 0.5 * (node.w_min - w_r.y) / scale;
+    vec2 reach = max(hi - t_min, t_max - lo);
+    float deviation = max(node.w_max - node.mean, node.mean - node.w_min);
+    bool inside = reach.x <= core.x && reach.y <= core.y;
+    return inside && deviation <= spread * (node.mean - w_r.y) ? INSIDE : MIXED;
+}
+
+#endif

@@ -1,0 +1,92 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+
+// The soft shadow map projected onto the G-buffer's pixels (Atty 2006, section 3.1), bilinear over the
+// texels whose receiver lies on the pixel's own plane; the larger of both sides (section 3.5).
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, binding = 0) uniform texture2D gbuffer_depth;
+layout(set = 0, binding = 1) uniform texture2D gbuffer_mask;
+layout(set = 0, binding = 2) uniform texture2D receiver_depth;
+layout(set = 0, binding = 3) uniform texture2D front_map;
+layout(set = 0, binding = 4) uniform texture2D back_map;
+layout(set = 0, binding = 5, r32f) writeonly uniform image2D visibility;
+
+#include "common/gbuffer.glsl"
+
+layout(push_constant) uniform Push {
+    mat4 light_from_ndc;
+    vec2 texels_per_uv;      // receiver texels a unit of u and v
+    vec2 first;              // receiver-texel coordinates of u = v = 0
+    ivec2 extent;            // of the G-buffer
+    float background;
+    float receiver_inv_near; // 1/m
+    int receiver_map;        // the map's side in texels
+    int masked;
+} push;
+
+float occlusion_at(ivec2 texel)
+{
+    return max(texelFetch(front_map, texel, 0).x, texelFetch(back_map, texel, 0).x);
+}
+
+// The share of the plane's own slope over a texel by which a texel on it may be off: half a texel in
+// each axis, where its centre is, and as much again for the raster that sampled it.
+const float SLOPE = 1.0;
+// The map's depth holds 24 bits, the G-buffer's position about 22.
+const float ROUNDING = 1.0 / 1048576.0;
+
+float filtered(vec3 position, vec3 normal)
+{
+    vec2 uv = position.xy / position.z;
+    vec2 at = uv * push.texels_per_uv + push.first;
+    // Outside the map no penumbra reaches.
+    if (any(lessThan(at, vec2(0.0))) || any(greaterThan(at, vec2(push.receiver_map)))) {
+        return 0.0;
+    }
+    vec2 corner = floor(at - 0.5);
+    vec2 f = at - 0.5 - corner;
+    // On the plane n.(u, v, 1) = c w, so w is linear over the map.
+    float c = dot(normal, position);
+    vec2 slope = abs(c) > 0.0 ? normal.xy / (c * push.texels_per_uv) : vec2(0.0);
+    float w = 1.0 / position.z;
+
+    float sum = 0.0;
+    float weight = 0.0;
+    float plain = 0.0;
+    for (int i = 0; i < 4; ++i) {
+        vec2 o = vec2(i & 1, i >> 1);
+        ivec2 texel = clamp(ivec2(corner + o), ivec2(0), ivec2(push.receiver_map - 1));
+        float bilinear = (o.x > 0.0 ? f.x : 1.0 - f.x) * (o.y > 0.0 ? f.y : 1.0 - f.y);
+        float v = occlusion_at(texel);
+        plain += bilinear * v;
+        float w_texel = texelFetch(receiver_depth, texel, 0).x * push.receiver_inv_near;
+        float w_plane = w + dot(slope, vec2(texel) + 0.5 - at);
+        float allowed = SLOPE * (abs(slope.x) + abs(slope.y)) + ROUNDING * w;
+        if (abs(w_texel - w_plane) <= allowed) {
+            sum += bilinear * v;
+            weight += bilinear;
+        }
+    }
+    // Where no texel holds this surface, another receiver hides it from the light's centre; the map
+    // knows nothing better than its own texels.
+    return weight > 1.0e-3 ? sum / weight : plain;
+}
+
+void main()
+{
+    ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+    if (p.x >= push.extent.x || p.y >= push.extent.y) {
+        return;
+    }
+    GBuffer g = GBuffer(push.light_from_ndc, push.extent, push.background, push.masked != 0);
+    Receiver r = receiver_at(g, p);
+    float v = 1.0;
+    // Behind the light's plane there is nothing to hide.
+    if (r.receives && r.position.z > 0.0) {
+        v = 1.0 - min(filtered(r.position, r.normal), 1.0);
+    }
+    imageStore(visibility, p, vec4(v));
+}

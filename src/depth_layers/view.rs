@@ -1,0 +1,230 @@
+//! The window that a light-space map looks through, fitted to what it must show.
+
+use crate::RectangleLight;
+use glam::{DMat4, DVec3, DVec4};
+
+/// An axis-aligned box in mesh space: least and largest corner, metres before the transform.
+pub type Bounds = [[f32; 3]; 2];
+
+/// A map looks no further aside than this tangent (84°); occluders beyond it are not seen.
+const MAX_TANGENT: f64 = 10.0;
+
+/// The near plane is no nearer than this share of the furthest distance seen.
+const MIN_NEAR: f64 = 1e-4;
+
+/// The near plane stands this much before the nearest point, so that what is stored stays under 1.
+const NEAR_MARGIN: f64 = 1e-3;
+
+/// A map parallel to the light, seen from its centre.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapView {
+    /// Least u and v (tangents).
+    pub min: [f64; 2],
+    /// Largest u and v.
+    pub max: [f64; 2],
+    /// Distance of the near plane from the light, metres.
+    pub near: f64,
+    /// Distance of the furthest point of what is seen, metres.
+    pub far: f64,
+    /// The map's side in texels.
+    pub side: u32,
+}
+
+impl MapView {
+    /// Light space to clip space: reversed depth, infinite far plane.
+    pub fn clip_from_light(&self) -> DMat4 {
+        let [sx, sy] = [0, 1].map(|i| 2.0 / (self.max[i] - self.min[i]));
+        let [cx, cy] =
+            [0, 1].map(|i| -(self.max[i] + self.min[i]) / (self.max[i] - self.min[i]));
+        DMat4::from_cols(
+            DVec4::new(sx, 0.0, 0.0, 0.0),
+            DVec4::new(0.0, sy, 0.0, 0.0),
+            DVec4::new(cx, cy, 0.0, 1.0),
+            DVec4::new(0.0, 0.0, self.near, 0.0),
+        )
+    }
+
+    /// Texels a unit of u and of v.
+    pub fn texels_per_uv(&self) -> [f64; 2] {
+        [0, 1].map(|i| f64::from(self.side) / (self.max[i] - self.min[i]))
+    }
+
+    /// The texel coordinates of u = v = 0.
+    pub fn first(&self) -> [f64; 2] {
+        let per = self.texels_per_uv();
+        [0, 1].map(|i| -self.min[i] * per[i])
+    }
+
+    /// (Δu/Lx, Δv/Ly): the size of a texel over the light's, per metre.
+    pub fn scale(&self, light: &RectangleLight) -> [f64; 2] {
+        let per = self.texels_per_uv();
+        let half = light.half_extents();
+        [0, 1].map(|i| 1.0 / (per[i] * 2.0 * half[i]))
+    }
+}
+
+/// A box's corners in light space.
+fn corners(bounds: &Bounds, light_from_mesh: &DMat4) -> [DVec3; 8] {
+    std::array::from_fn(|i| {
+        let pick = |axis: usize| f64::from(bounds[(i >> axis) & 1][axis]);
+        light_from_mesh.transform_point3(DVec3::new(pick(0), pick(1), pick(2)))
+    })
+}
+
+/// Distances from the light's plane that boxes reach, as (least, largest); none where all lie behind.
+fn distances(boxes: &[[DVec3; 8]]) -> Option<(f64, f64)> {
+    let all = || boxes.iter().flatten().map(|p| p.z);
+    let largest = all().fold(f64::NEG_INFINITY, f64::max);
+    (largest > 0.0).then(|| (all().fold(f64::INFINITY, f64::min), largest))
+}
+
+/// The tangents under which the light's centre sees the part of the boxes beyond `near`.
+fn tangents(boxes: &[[DVec3; 8]], near: f64) -> Option<([f64; 2], [f64; 2])> {
+    let mut min = [f64::INFINITY; 2];
+    let mut max = [f64::NEG_INFINITY; 2];
+    let mut add = |p: DVec3| {
+        for (i, x) in [p.x, p.y].into_iter().enumerate() {
+            let tangent = (x / p.z).clamp(-MAX_TANGENT, MAX_TANGENT);
+            min[i] = min[i].min(tangent);
+            max[i] = max[i].max(tangent);
+        }
+    };
+    for corners in boxes {
+        for (i, &a) in corners.iter().enumerate() {
+            if a.z >= near {
+                add(a);
+            }
+            // The three edges to the neighbours above, where they cross the near plane.
+            for b in (0..3).filter(|axis| i >> axis & 1 == 0).map(|axis| corners[i | 1 << axis]) {
+                if (a.z < near) != (b.z < near) {
+                    let t = (near - a.z) / (b.z - a.z);
+                    add((a + (b - a) * t).with_z(near));
+                }
+            }
+        }
+    }
+    (min[0] <= max[0]).then_some((min, max))
+}
+
+/// Widens a window by one texel on each side, and a window of no width to one that has some.
+fn pad(min: &mut [f64; 2], max: &mut [f64; 2], side: u32) {
+    for i in 0..2 {
+        let middle = 0.5 * (min[i] + max[i]);
+        let least = 1e-6 * (1.0 + middle.abs());
+        let half = (0.5 * (max[i] - min[i])).max(least);
+        let half = half * f64::from(side) / (f64::from(side) - 2.0);
+        min[i] = middle - half;
+        max[i] = middle + half;
+    }
+}
+
+/// The view that just holds all occluders; none where there are none in front of the light.
+///
+/// `window` fixes the tangents (least and largest u, v) instead of fitting them, as a host does that
+/// wants texels to stay where they are while occluders move.
+pub fn fit_occluders(
+    light: &RectangleLight,
+    occluders: &[(Bounds, DMat4)],
+    window: Option<[[f64; 2]; 2]>,
+    side: u32,
+) -> Option<MapView> {
+    let light_from_world = light.light_from_world();
+    let boxes: Vec<_> = occluders.iter().map(|(b, m)| corners(b, &(light_from_world * *m))).collect();
+    let (least, far) = distances(&boxes)?;
+    let near = (least * (1.0 - NEAR_MARGIN)).max(far * MIN_NEAR);
+    let (min, max) = match window {
+        Some([min, max]) => (min, max),
+        None => {
+            let (mut min, mut max) = tangents(&boxes, near)?;
+            pad(&mut min, &mut max, side);
+            (min, max)
+        }
+    };
+    Some(MapView { min, max, near, far, side })
+}
+
+/// The view that holds what of the receivers the occluders can shadow; none where that is nothing.
+pub fn fit_receivers(
+    light: &RectangleLight,
+    receivers: &[(Bounds, DMat4)],
+    occluders: &MapView,
+    side: u32,
+) -> Option<MapView> {
+    let light_from_world = light.light_from_world();
+    let boxes: Vec<_> = receivers.iter().map(|(b, m)| corners(b, &(light_from_world * *m))).collect();
+    let (least, far) = distances(&boxes)?;
+    // A receiver nearer than every occluder is lit, and must not hide one that is not.
+    let near = least.max(occluders.near);
+    if far <= near {
+        return None;
+    }
+    let near = near * (1.0 - NEAR_MARGIN);
+    let (mut min, mut max) = tangents(&boxes, near)?;
+    // A penumbra reaches (L/2)(w_o − w_r) around its occluder in u (Atty 2006 section 3.3).
+    let spread = 1.0 / occluders.near - 1.0 / far;
+    for (i, half) in light.half_extents().into_iter().enumerate() {
+        min[i] = min[i].max(occluders.min[i] - half * spread);
+        max[i] = max[i].min(occluders.max[i] + half * spread);
+        if min[i] >= max[i] {
+            return None;
+        }
+    }
+    pad(&mut min, &mut max, side);
+    Some(MapView { min, max, near, far, side })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec4Swizzles as _;
+
+    fn ceiling() -> RectangleLight {
+        RectangleLight::new(DVec3::new(0.0, 4.0, 0.0), DVec3::X * 0.5, DVec3::NEG_Z * 0.5).unwrap()
+    }
+
+    const UNIT: Bounds = [[-0.5; 3], [0.5; 3]];
+
+    #[test]
+    fn the_window_holds_every_corner_and_little_more() {
+        let at = DMat4::from_translation(DVec3::new(0.3, 2.0, -0.1));
+        let view = fit_occluders(&ceiling(), &[(UNIT, at)], None, 64).unwrap();
+        assert!(view.near < 1.5 && view.near > 1.49);
+        let to_clip = view.clip_from_light() * ceiling().light_from_world() * at;
+        let mut widest: f64 = 0.0;
+        for i in 0..8 {
+            let corner = DVec3::from_array(std::array::from_fn(|a| (i >> a & 1) as f64 - 0.5));
+            let clip = to_clip * corner.extend(1.0);
+            let ndc = clip.xyz() / clip.w;
+            assert!(ndc.x.abs() < 1.0 && ndc.y.abs() < 1.0 && ndc.z > 0.0 && ndc.z < 1.0);
+            assert!((ndc.z - view.near / clip.w).abs() < 1e-12);
+            widest = widest.max(ndc.x.abs());
+        }
+        assert!((widest - 62.0 / 64.0).abs() < 1e-9, "one texel of margin, not {widest}");
+    }
+
+    #[test]
+    fn what_lies_behind_the_light_is_left_out() {
+        let above = DMat4::from_translation(DVec3::new(0.0, 6.0, 0.0));
+        assert_eq!(fit_occluders(&ceiling(), &[(UNIT, above)], None, 64), None);
+        // Through the light's plane: clipped, finite.
+        let across = DMat4::from_translation(DVec3::new(0.0, 4.0, 0.0));
+        let view = fit_occluders(&ceiling(), &[(UNIT, across)], None, 64).unwrap();
+        assert!(view.near > 0.0 && view.max[0].is_finite() && view.max[0] <= 11.0);
+    }
+
+    #[test]
+    fn receivers_are_cut_to_what_can_be_shadowed() {
+        let light = ceiling();
+        let card: Bounds = [[-0.5, 0.0, -0.5], [0.5, 0.0, 0.5]];
+        let card_at = DMat4::from_translation(DVec3::new(0.0, 2.0, 0.0));
+        let occluders = fit_occluders(&light, &[(card, card_at)], None, 64).unwrap();
+        let ground: Bounds = [[-50.0, 0.0, -50.0], [50.0, 0.0, 50.0]];
+        let view = fit_receivers(&light, &[(ground, DMat4::IDENTITY)], &occluders, 64).unwrap();
+        // The penumbra's outer edge: the light's far edge through the card's edge, at x = 1.5.
+        let edge = view.max[0] * 62.0 / 64.0 * 4.0;
+        assert!((edge - 1.5).abs() < 0.05, "{edge}");
+        // A shelf above the card receives nothing.
+        let shelf = DMat4::from_translation(DVec3::new(0.0, 3.0, 0.0));
+        assert_eq!(fit_receivers(&light, &[(card, shelf)], &occluders, 64), None);
+    }
+}

@@ -1,0 +1,148 @@
+//! Descriptor sets: one a row and frame slot, written when what they point at changes.
+
+use super::host::Host;
+use super::objects::Object;
+use super::pipeline::RowPipeline;
+use crate::Error;
+use crate::graph::{Graph, Pass};
+use ash::vk::{self, Handle};
+
+/// No row binds more than this.
+const MAX_BINDINGS: usize = 8;
+
+/// What a binding points at: a view or buffer handle, and an image's layout.
+type Written = [(u64, vk::ImageLayout); MAX_BINDINGS];
+
+struct Set {
+    set: vk::DescriptorSet,
+    written: Written,
+}
+
+/// The sets of all rows, slot by slot.
+pub(crate) struct Descriptors {
+    pool: vk::DescriptorPool,
+    sets: Vec<Set>,
+    rows: usize,
+}
+
+impl Descriptors {
+    /// Allocates every set that `rows` need in any of `slots` frames in flight.
+    pub fn new(
+        host: &Host,
+        graph: &Graph,
+        rows: &[RowPipeline],
+        slots: u32,
+    ) -> Result<Self, Error> {
+        if let Some(pass) =
+            graph.passes().iter().find(|p| bound(p).any(|b| b.0 as usize >= MAX_BINDINGS))
+        {
+            return Err(Error::Frame(format!(
+                "{}: a binding is beyond the {MAX_BINDINGS} that a row may have",
+                pass.name
+            )));
+        }
+        let kinds = [
+            vk::DescriptorType::SAMPLED_IMAGE,
+            vk::DescriptorType::STORAGE_IMAGE,
+            vk::DescriptorType::STORAGE_BUFFER,
+        ];
+        let sizes: Vec<_> = kinds
+            .iter()
+            .map(|&ty| {
+                let uses = graph.passes().iter().flat_map(|p| &p.uses);
+                let count = uses.filter(|u| u.access.descriptor() == Some(ty)).count() as u32;
+                vk::DescriptorPoolSize { ty, descriptor_count: (count * slots).max(1) }
+            })
+            .collect();
+        let create = vk::DescriptorPoolCreateInfo::default()
+            .max_sets(rows.len() as u32 * slots)
+            .pool_sizes(&sizes);
+        // SAFETY: the device is valid (Host::borrow).
+        let pool = unsafe { host.device.create_descriptor_pool(&create, None) }
+            .map_err(Error::vulkan("creating the descriptor pool"))?;
+        let mut made = Self { pool, sets: Vec::new(), rows: rows.len() };
+        let layouts: Vec<_> = (0..slots).flat_map(|_| rows.iter().map(|r| r.set_layout)).collect();
+        let allocate =
+            vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(&layouts);
+        // SAFETY: the pool was sized for exactly these sets, and the layouts are alive.
+        match unsafe { host.device.allocate_descriptor_sets(&allocate) } {
+            Ok(sets) => {
+                let empty = [(0, vk::ImageLayout::UNDEFINED); MAX_BINDINGS];
+                made.sets = sets.into_iter().map(|set| Set { set, written: empty }).collect();
+                Ok(made)
+            }
+            Err(e) => {
+                made.destroy(host);
+                Err(Error::vulkan("allocating the descriptor sets")(e))
+            }
+        }
+    }
+
+    /// The set of a row in a slot, pointing at what `object` and `layout` say; none for rows that
+    /// bind nothing.
+    pub fn set(
+        &mut self,
+        host: &Host,
+        pass: &Pass,
+        row: usize,
+        slot: u32,
+        look_up: impl Fn(&crate::graph::Use) -> (Object, vk::ImageLayout),
+    ) -> Option<vk::DescriptorSet> {
+        bound(pass).next()?;
+        let set = self.sets.get_mut(slot as usize * self.rows + row)?;
+        let mut images = [vk::DescriptorImageInfo::default(); MAX_BINDINGS];
+        let mut buffers = [vk::DescriptorBufferInfo::default(); MAX_BINDINGS];
+        let mut wanted = set.written;
+        for u in &pass.uses {
+            let Some(binding) = u.binding.map(|b| b as usize) else { continue };
+            let (object, layout) = look_up(u);
+            wanted[binding] = match object {
+                Object::Image { view, .. } => {
+                    images[binding] =
+                        vk::DescriptorImageInfo::default().image_view(view).image_layout(layout);
+                    (view.as_raw(), layout)
+                }
+                Object::Buffer(buffer) => {
+                    buffers[binding] = vk::DescriptorBufferInfo::default()
+                        .buffer(buffer)
+                        .range(vk::WHOLE_SIZE);
+                    (buffer.as_raw(), vk::ImageLayout::UNDEFINED)
+                }
+                Object::None => (0, vk::ImageLayout::UNDEFINED),
+            };
+        }
+        if wanted != set.written {
+            let mut writes = [vk::WriteDescriptorSet::default(); MAX_BINDINGS];
+            let mut count = 0;
+            for (binding, kind) in bound(pass) {
+                let at = binding as usize;
+                let write = vk::WriteDescriptorSet::default()
+                    .dst_set(set.set)
+                    .dst_binding(binding)
+                    .descriptor_type(kind);
+                writes[count] = if kind == vk::DescriptorType::STORAGE_BUFFER {
+                    write.buffer_info(std::slice::from_ref(&buffers[at]))
+                } else {
+                    write.image_info(std::slice::from_ref(&images[at]))
+                };
+                count += 1;
+            }
+            // SAFETY: Host::borrow's promise: the slot's earlier commands are done, so no command
+            // uses this set; views and buffers are alive.
+            unsafe { host.device.update_descriptor_sets(&writes[..count], &[]) };
+            set.written = wanted;
+        }
+        Some(set.set)
+    }
+
+    /// Destroys the sets; no command may use them any more.
+    pub fn destroy(self, host: &Host) {
+        // SAFETY: made by this device; Host::borrow's promise: no command uses its sets any more.
+        unsafe { host.device.destroy_descriptor_pool(self.pool, None) };
+    }
+}
+
+/// Binding and kind of everything a row binds.
+fn bound(pass: &Pass) -> impl Iterator<Item = (u32, vk::DescriptorType)> + '_ {
+    pass.uses.iter().filter_map(|u| Some((u.binding?, u.access.descriptor()?)))
+}

@@ -1,0 +1,152 @@
+//! What the host lends, and whether it is enough.
+
+use crate::graph::PUSH_BYTES;
+use crate::{Error, depth_layers, visibility};
+use ash::{ext, vk};
+use std::ffi::CStr;
+
+/// What the host lends: a device, a queue family, and what it has beyond.
+#[derive(Clone)]
+pub struct Host {
+    pub(crate) instance: ash::Instance,
+    pub(crate) physical_device: vk::PhysicalDevice,
+    pub(crate) device: ash::Device,
+    pub(crate) queue_family: u32,
+    pub(crate) pipeline_cache: vk::PipelineCache,
+    pub(crate) debug_utils: Option<ext::debug_utils::Device>,
+}
+
+impl Host {
+    /// Borrows a device. Nothing is created, and nothing is destroyed when this goes away.
+    ///
+    /// `queue_family` is the one that the host's command buffers for the node belong to.
+    ///
+    /// # Safety
+    /// This is the one promise that every later call on the node stands on:
+    /// * the handles belong together, and outlive the node and everything it has retired;
+    /// * every handle given later (command buffers, images, views, buffers) is valid for this
+    ///   device, was created with the usage that the docs name, and stays alive until the commands
+    ///   that use it are done;
+    /// * command buffers given to `record` are in the recording state, outside a render pass, and
+    ///   not used by another thread meanwhile;
+    /// * a frame slot is recorded again, and retired objects are destroyed, only when the commands
+    ///   recorded with them are done.
+    pub unsafe fn borrow(
+        instance: ash::Instance,
+        physical_device: vk::PhysicalDevice,
+        device: ash::Device,
+        queue_family: u32,
+    ) -> Self {
+        Self {
+            instance,
+            physical_device,
+            device,
+            queue_family,
+            pipeline_cache: vk::PipelineCache::null(),
+            debug_utils: None,
+        }
+    }
+
+    /// Makes pipelines through the host's cache.
+    #[must_use]
+    pub fn with_pipeline_cache(mut self, cache: vk::PipelineCache) -> Self {
+        self.pipeline_cache = cache;
+        self
+    }
+
+    /// Names objects and labels passes, `antumbra.<room>.<pass>`.
+    #[must_use]
+    pub fn with_debug_utils(mut self, debug_utils: ext::debug_utils::Device) -> Self {
+        self.debug_utils = Some(debug_utils);
+        self
+    }
+}
+
+/// What the node needs of a device, and what it may use.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Requirements {
+    /// The device's name.
+    pub device: String,
+    /// Everything that is missing, as short phrases; empty where the node runs.
+    pub gaps: Vec<String>,
+    /// Whether R32_SFLOAT can be blended: `accumulate=blend` needs it.
+    pub blends_f32: bool,
+    /// Sub-pixel bits of the rasters.
+    pub sub_pixel_bits: u32,
+    /// Whether passes can be timed on the host's queue family.
+    pub timestamps: bool,
+}
+
+impl Requirements {
+    /// Looks at a device and lists **every** gap at once.
+    pub fn check(host: &Host) -> Self {
+        let (instance, physical) = (&host.instance, host.physical_device);
+        // SAFETY: Host::borrow's promise: the handles are valid and belong together.
+        let properties = unsafe { instance.get_physical_device_properties(physical) };
+        // SAFETY: as above.
+        let families = unsafe { instance.get_physical_device_queue_family_properties(physical) };
+        let features = |format| {
+            // SAFETY: as above.
+            unsafe { instance.get_physical_device_format_properties(physical, format) }
+                .optimal_tiling_features
+        };
+        let mut gaps = Vec::new();
+        if properties.api_version < vk::API_VERSION_1_1 {
+            let (major, minor) = (
+                vk::api_version_major(properties.api_version),
+                vk::api_version_minor(properties.api_version),
+            );
+            gaps.push(format!("Vulkan {major}.{minor}, where 1.1 is needed"));
+        }
+        let limits = &properties.limits;
+        if limits.max_push_constants_size < PUSH_BYTES as u32 {
+            gaps.push(format!(
+                "{} bytes of push constants, where {PUSH_BYTES} are needed",
+                limits.max_push_constants_size
+            ));
+        }
+        if limits.max_compute_work_group_invocations < 64 {
+            gaps.push("compute workgroups of fewer than 64 invocations".into());
+        }
+        let family = families.get(host.queue_family as usize);
+        let wanted = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;
+        if !family.is_some_and(|f| f.queue_flags.contains(wanted)) {
+            gaps.push(format!(
+                "queue family {} is not one for both graphics and compute",
+                host.queue_family
+            ));
+        }
+        use vk::FormatFeatureFlags as F;
+        let layer = F::DEPTH_STENCIL_ATTACHMENT | F::SAMPLED_IMAGE;
+        if !features(depth_layers::FORMAT).contains(layer) {
+            gaps.push("D32_SFLOAT cannot be both drawn to and sampled".into());
+        }
+        let single = features(visibility::FORMAT);
+        if !single.contains(F::STORAGE_IMAGE | F::SAMPLED_IMAGE) {
+            gaps.push("R32_SFLOAT cannot be both written by compute shaders and sampled".into());
+        }
+        Self {
+            device: name_of(&properties),
+            gaps,
+            blends_f32: single.contains(F::COLOR_ATTACHMENT_BLEND),
+            sub_pixel_bits: limits.sub_pixel_precision_bits,
+            timestamps: limits.timestamp_period > 0.0
+                && family.is_some_and(|f| f.timestamp_valid_bits > 0),
+        }
+    }
+
+    /// # Errors
+    /// [`Error::Device`] with every gap, where there is one.
+    pub fn met(&self) -> Result<(), Error> {
+        if self.gaps.is_empty() {
+            return Ok(());
+        }
+        Err(Error::Device { device: self.device.clone(), gaps: self.gaps.clone() })
+    }
+}
+
+fn name_of(properties: &vk::PhysicalDeviceProperties) -> String {
+    properties
+        .device_name_as_c_str()
+        .map_or_else(|_| "(unnamed)".into(), |n: &CStr| n.to_string_lossy().into_owned())
+}

@@ -1,0 +1,360 @@
+//! A pipeline, its layouts and, for rasters, its render pass, from a row.
+
+use super::host::Host;
+use super::objects::{Object, Objects, name};
+use crate::Error;
+use crate::depth_layers::DepthPush;
+use crate::frame::Faces;
+use crate::graph::{Draw, Graph, Pass, ResourceId, Shape, Target, Work};
+use crate::shaders::Module;
+use ash::vk;
+
+/// What a row needs to be recorded.
+#[derive(Default)]
+pub(crate) struct RowPipeline {
+    pub set_layout: vk::DescriptorSetLayout,
+    pub layout: vk::PipelineLayout,
+    pub push_stages: vk::ShaderStageFlags,
+    /// One for compute and indirect draws; for meshes one a stride and kind of [`Faces`].
+    pub pipelines: Vec<vk::Pipeline>,
+    pub render_pass: vk::RenderPass,
+    pub framebuffer: vk::Framebuffer,
+    pub extent: vk::Extent2D,
+}
+
+/// Which of a mesh row's pipelines draws a mesh.
+pub(crate) fn variant(stride: usize, faces: Faces) -> usize {
+    stride * 3 + faces as usize
+}
+
+impl RowPipeline {
+    /// Makes everything for a row; nothing is left behind where that fails.
+    pub fn new(
+        host: &Host,
+        graph: &Graph,
+        pass: &Pass,
+        objects: &Objects,
+        strides: &[u32],
+    ) -> Result<Self, Error> {
+        let mut row = Self::default();
+        match row.make(host, graph, pass, objects, strides) {
+            Ok(()) => Ok(row),
+            Err(e) => {
+                row.destroy(host);
+                Err(e)
+            }
+        }
+    }
+
+    fn make(
+        &mut self,
+        host: &Host,
+        graph: &Graph,
+        pass: &Pass,
+        objects: &Objects,
+        strides: &[u32],
+    ) -> Result<(), Error> {
+        let doing = |what: &str| format!("creating the {what} of {}", pass.name);
+        let bindings: Vec<_> = pass
+            .uses
+            .iter()
+            .filter_map(|u| {
+                Some(
+                    vk::DescriptorSetLayoutBinding::default()
+                        .binding(u.binding?)
+                        .descriptor_type(u.access.descriptor()?)
+                        .descriptor_count(1)
+                        .stage_flags(u.access.shader_stage()),
+                )
+            })
+            .collect();
+        let create = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
+        // SAFETY: the device is valid (Host::borrow); a test holds every row's bindings against its
+        // shader.
+        self.set_layout = unsafe { host.device.create_descriptor_set_layout(&create, None) }
+            .map_err(Error::vulkan(doing("descriptor set layout")))?;
+
+        let (stages, push_bytes) = match pass.work {
+            Work::Dispatch { .. } => {
+                (vk::ShaderStageFlags::COMPUTE, pass.push.bytes().len())
+            }
+            Work::Raster { draw: Draw::Meshes(_), .. } => {
+                (vk::ShaderStageFlags::VERTEX, size_of::<DepthPush>())
+            }
+            Work::Raster { .. } => (
+                vk::ShaderStageFlags::VERTEX | vk::ShaderStageFlags::FRAGMENT,
+                pass.push.bytes().len(),
+            ),
+        };
+        self.push_stages = stages;
+        let ranges =
+            [vk::PushConstantRange { stage_flags: stages, offset: 0, size: push_bytes as u32 }];
+        let set_layouts = [self.set_layout];
+        let mut create = vk::PipelineLayoutCreateInfo::default().set_layouts(&set_layouts);
+        if push_bytes > 0 {
+            create = create.push_constant_ranges(&ranges);
+        }
+        // SAFETY: the set layout was just made; the range is within the guaranteed 128 bytes.
+        self.layout = unsafe { host.device.create_pipeline_layout(&create, None) }
+            .map_err(Error::vulkan(doing("pipeline layout")))?;
+
+        match pass.work {
+            Work::Dispatch { shader, .. } => {
+                let pipeline = self.compute(host, pass, shader)?;
+                self.pipelines.push(pipeline);
+            }
+            Work::Raster { target, .. } => {
+                self.attachments(host, graph, pass, objects, target)?;
+                self.rasters(host, pass, strides)?;
+            }
+        }
+        for &pipeline in &self.pipelines {
+            name(host, pipeline, pass.name);
+        }
+        Ok(())
+    }
+
+    fn compute(&self, host: &Host, pass: &Pass, shader: Module) -> Result<vk::Pipeline, Error> {
+        with_modules(host, &[(shader, vk::ShaderStageFlags::COMPUTE)], |stages| {
+            let create = [vk::ComputePipelineCreateInfo::default()
+                .stage(stages[0])
+                .layout(self.layout)];
+            // SAFETY: the stage's module and the layout are alive for this call.
+            unsafe { host.device.create_compute_pipelines(host.pipeline_cache, &create, None) }
+                .map(|p| p[0])
+                .map_err(|(_, e)| Error::vulkan(format!("creating {}", pass.name))(e))
+        })
+    }
+
+    fn attachments(
+        &mut self,
+        host: &Host,
+        graph: &Graph,
+        pass: &Pass,
+        objects: &Objects,
+        target: Target,
+    ) -> Result<(), Error> {
+        let doing = |what: &str| format!("creating the {what} of {}", pass.name);
+        let (image, view, format) = attachment_of(graph, pass, objects)?;
+        let Shape::Image { width, height, .. } = graph.resource(image).shape else {
+            return Err(Error::Frame(format!("{} draws into a buffer", pass.name)));
+        };
+        self.extent = vk::Extent2D { width, height };
+        let layout = match target {
+            Target::Depth { .. } => vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
+            Target::Add => vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
+        };
+        // The barriers in front of the row put the image into this layout and order it against
+        // everything else, so the render pass itself changes and orders nothing.
+        let attachments = [vk::AttachmentDescription::default()
+            .format(format)
+            .samples(vk::SampleCountFlags::TYPE_1)
+            .load_op(vk::AttachmentLoadOp::CLEAR)
+            .store_op(vk::AttachmentStoreOp::STORE)
+            .stencil_load_op(vk::AttachmentLoadOp::DONT_CARE)
+            .stencil_store_op(vk::AttachmentStoreOp::DONT_CARE)
+            .initial_layout(layout)
+            .final_layout(layout)];
+        let reference = [vk::AttachmentReference { attachment: 0, layout }];
+        let subpass = vk::SubpassDescription::default()
+            .pipeline_bind_point(vk::PipelineBindPoint::GRAPHICS);
+        let subpasses = [match target {
+            Target::Depth { .. } => subpass.depth_stencil_attachment(&reference[0]),
+            Target::Add => subpass.color_attachments(&reference),
+        }];
+        let create =
+            vk::RenderPassCreateInfo::default().attachments(&attachments).subpasses(&subpasses);
+        // SAFETY: one attachment, one subpass that uses it.
+        self.render_pass = unsafe { host.device.create_render_pass(&create, None) }
+            .map_err(Error::vulkan(doing("render pass")))?;
+        let views = [view];
+        let create = vk::FramebufferCreateInfo::default()
+            .render_pass(self.render_pass)
+            .attachments(&views)
+            .width(width)
+            .height(height)
+            .layers(1);
+        // SAFETY: the view has the render pass's format and this size.
+        self.framebuffer = unsafe { host.device.create_framebuffer(&create, None) }
+            .map_err(Error::vulkan(doing("framebuffer")))?;
+        Ok(())
+    }
+
+    fn rasters(&mut self, host: &Host, pass: &Pass, strides: &[u32]) -> Result<(), Error> {
+        let Work::Raster { vertex, fragment, cull, draw, .. } = pass.work else { return Ok(()) };
+        let mut modules = vec![(vertex, vk::ShaderStageFlags::VERTEX)];
+        modules.extend(fragment.map(|f| (f, vk::ShaderStageFlags::FRAGMENT)));
+        let variants: Vec<(Option<u32>, vk::CullModeFlags, vk::FrontFace)> = match draw {
+            Draw::Indirect { .. } => vec![(None, cull, vk::FrontFace::COUNTER_CLOCKWISE)],
+            // In the order of `variant`.
+            Draw::Meshes(_) => strides
+                .iter()
+                .flat_map(|&s| {
+                    [
+                        (Some(s), cull, vk::FrontFace::COUNTER_CLOCKWISE),
+                        (Some(s), cull, vk::FrontFace::CLOCKWISE),
+                        (Some(s), vk::CullModeFlags::NONE, vk::FrontFace::COUNTER_CLOCKWISE),
+                    ]
+                })
+                .collect(),
+        };
+        with_modules(host, &modules, |stages| {
+            for (stride, cull, front) in variants {
+                let pipeline = self.raster(host, pass, stages, stride, cull, front)?;
+                self.pipelines.push(pipeline);
+            }
+            Ok(())
+        })
+    }
+
+    fn raster(
+        &self,
+        host: &Host,
+        pass: &Pass,
+        stages: &[vk::PipelineShaderStageCreateInfo],
+        stride: Option<u32>,
+        cull: vk::CullModeFlags,
+        front: vk::FrontFace,
+    ) -> Result<vk::Pipeline, Error> {
+        let bindings = stride.map(|stride| {
+            vk::VertexInputBindingDescription::default()
+                .stride(stride)
+                .input_rate(vk::VertexInputRate::VERTEX)
+        });
+        let attributes = stride.map(|_| {
+            vk::VertexInputAttributeDescription::default().format(vk::Format::R32G32B32_SFLOAT)
+        });
+        let input = vk::PipelineVertexInputStateCreateInfo::default()
+            .vertex_binding_descriptions(bindings.as_slice())
+            .vertex_attribute_descriptions(attributes.as_slice());
+        let assembly = vk::PipelineInputAssemblyStateCreateInfo::default()
+            .topology(vk::PrimitiveTopology::TRIANGLE_LIST);
+        let viewports = [vk::Viewport {
+            width: self.extent.width as f32,
+            height: self.extent.height as f32,
+            max_depth: 1.0,
+            ..Default::default()
+        }];
+        let scissors = [vk::Rect2D { extent: self.extent, ..Default::default() }];
+        let viewport = vk::PipelineViewportStateCreateInfo::default()
+            .viewports(&viewports)
+            .scissors(&scissors);
+        let raster = vk::PipelineRasterizationStateCreateInfo::default()
+            .polygon_mode(vk::PolygonMode::FILL)
+            .cull_mode(cull)
+            .front_face(front)
+            .line_width(1.0);
+        let samples = vk::PipelineMultisampleStateCreateInfo::default()
+            .rasterization_samples(vk::SampleCountFlags::TYPE_1);
+        let add = [vk::PipelineColorBlendAttachmentState::default()
+            .blend_enable(true)
+            .src_color_blend_factor(vk::BlendFactor::ONE)
+            .dst_color_blend_factor(vk::BlendFactor::ONE)
+            .color_blend_op(vk::BlendOp::ADD)
+            .src_alpha_blend_factor(vk::BlendFactor::ONE)
+            .dst_alpha_blend_factor(vk::BlendFactor::ONE)
+            .alpha_blend_op(vk::BlendOp::ADD)
+            .color_write_mask(vk::ColorComponentFlags::R)];
+        let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&add);
+        let mut depth = vk::PipelineDepthStencilStateCreateInfo::default();
+        let mut create = vk::GraphicsPipelineCreateInfo::default()
+            .stages(stages)
+            .vertex_input_state(&input)
+            .input_assembly_state(&assembly)
+            .viewport_state(&viewport)
+            .rasterization_state(&raster)
+            .multisample_state(&samples)
+            .layout(self.layout)
+            .render_pass(self.render_pass);
+        if let Work::Raster { target: Target::Depth { compare, .. }, .. } = pass.work {
+            depth =
+                depth.depth_test_enable(true).depth_write_enable(true).depth_compare_op(compare);
+            create = create.depth_stencil_state(&depth);
+        } else {
+            create = create.color_blend_state(&blend);
+        }
+        // SAFETY: every state that the create info points to lives until the end of this call.
+        unsafe { host.device.create_graphics_pipelines(host.pipeline_cache, &[create], None) }
+            .map(|p| p[0])
+            .map_err(|(_, e)| Error::vulkan(format!("creating {}", pass.name))(e))
+    }
+
+    /// Destroys everything; no command may use it any more.
+    pub fn destroy(self, host: &Host) {
+        let device = &host.device;
+        for pipeline in self.pipelines {
+            // SAFETY: made by this device; Host::borrow's promise: no command uses it any more.
+            unsafe { device.destroy_pipeline(pipeline, None) };
+        }
+        // SAFETY: as above; null handles are legal to destroy.
+        unsafe { device.destroy_framebuffer(self.framebuffer, None) };
+        // SAFETY: as above.
+        unsafe { device.destroy_render_pass(self.render_pass, None) };
+        // SAFETY: as above.
+        unsafe { device.destroy_pipeline_layout(self.layout, None) };
+        // SAFETY: as above.
+        unsafe { device.destroy_descriptor_set_layout(self.set_layout, None) };
+    }
+}
+
+/// The one image that a raster row draws into.
+fn attachment_of(
+    graph: &Graph,
+    pass: &Pass,
+    objects: &Objects,
+) -> Result<(ResourceId, vk::ImageView, vk::Format), Error> {
+    let target = pass.writes().next();
+    match target.map(|id| (id, objects.get(id), graph.resource(id).shape)) {
+        Some((id, Object::Image { view, .. }, Shape::Image { format, .. })) => {
+            Ok((id, view, format))
+        }
+        _ => Err(Error::Frame(format!("{} has no image to draw into", pass.name))),
+    }
+}
+
+/// Runs `make` with stages whose modules live just as long.
+fn with_modules<T>(
+    host: &Host,
+    shaders: &[(Module, vk::ShaderStageFlags)],
+    make: impl FnOnce(&[vk::PipelineShaderStageCreateInfo]) -> Result<T, Error>,
+) -> Result<T, Error> {
+    let mut modules = Vec::with_capacity(shaders.len());
+    let mut failed = None;
+    for (shader, _) in shaders {
+        let words: Vec<u32> = shader
+            .spirv
+            .chunks_exact(4)
+            .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
+            .collect();
+        let create = vk::ShaderModuleCreateInfo::default().code(&words);
+        // SAFETY: the words are a module that tests validate.
+        match unsafe { host.device.create_shader_module(&create, None) } {
+            Ok(module) => modules.push(module),
+            Err(e) => {
+                failed = Some(Error::vulkan(format!("loading {}", shader.path))(e));
+                break;
+            }
+        }
+    }
+    let result = match failed {
+        Some(e) => Err(e),
+        None => {
+            let stages: Vec<_> = shaders
+                .iter()
+                .zip(&modules)
+                .map(|((_, stage), &module)| {
+                    vk::PipelineShaderStageCreateInfo::default()
+                        .stage(*stage)
+                        .module(module)
+                        .name(c"main")
+                })
+                .collect();
+            make(&stages)
+        }
+    };
+    for module in modules {
+        // SAFETY: pipelines do not need their modules once they are made.
+        unsafe { host.device.destroy_shader_module(module, None) };
+    }
+    result
+}

@@ -1,0 +1,225 @@
+//! A plan into a command buffer: the only file that calls `vkCmd*` for the node's passes.
+//!
+//! Nothing here allocates, creates, submits or waits.
+
+use super::descriptors::Descriptors;
+use super::host::Host;
+use super::objects::{Object, Objects, whole};
+use super::pipeline::{RowPipeline, variant};
+use super::timing::Timing;
+use crate::frame::{FramePlan, MeshDraw};
+use crate::graph::{self, Draw, Pass, ResourceBarrier, ResourceId, Target, Use, Work};
+use ash::vk;
+use std::ffi::CString;
+
+/// Barriers recorded by one call; longer lists take several.
+const BATCH: usize = 16;
+
+/// What recording needs of a node.
+pub(crate) struct Recorder<'a> {
+    pub host: &'a Host,
+    pub objects: &'a Objects,
+    pub rows: &'a [RowPipeline],
+    pub labels: &'a [CString],
+    pub descriptors: &'a mut Descriptors,
+    pub timing: Option<&'a mut Timing>,
+    pub cmd: vk::CommandBuffer,
+}
+
+impl Recorder<'_> {
+    /// Records every step of a plan and hands the host's resources back.
+    pub fn record(&mut self, frame: &FramePlan) {
+        let plan = &frame.plan;
+        if let Some(timing) = &mut self.timing {
+            timing.begin(self.host, self.cmd, frame.slot);
+        }
+        for step in &plan.steps {
+            let pass = &plan.graph.passes()[step.pass];
+            self.label(step.pass);
+            self.barriers(frame, &step.barriers);
+            self.pass(frame, step.pass, pass);
+            self.unlabel();
+            if let Some(timing) = &mut self.timing {
+                timing.end_row(self.host, self.cmd, frame.slot, step.pass);
+            }
+        }
+        self.barriers(frame, &plan.handover);
+    }
+
+    fn pass(&mut self, frame: &FramePlan, index: usize, pass: &Pass) {
+        let (host, cmd, row) = (self.host, self.cmd, &self.rows[index]);
+        let device = &host.device;
+        let objects = self.objects;
+        let set = self.descriptors.set(host, pass, index, frame.slot, |u| look_up(objects, frame, u));
+        let point = match pass.work {
+            Work::Dispatch { .. } => vk::PipelineBindPoint::COMPUTE,
+            Work::Raster { .. } => vk::PipelineBindPoint::GRAPHICS,
+        };
+        if let Some(set) = set {
+            // SAFETY: Host::borrow's promise: cmd is recording. The set was made for this layout.
+            unsafe { device.cmd_bind_descriptor_sets(cmd, point, row.layout, 0, &[set], &[]) };
+        }
+        let pushed = pass.push.bytes();
+        if !pushed.is_empty() {
+            // SAFETY: as above; the layout's range holds exactly these bytes.
+            unsafe { device.cmd_push_constants(cmd, row.layout, row.push_stages, 0, pushed) };
+        }
+        match pass.work {
+            Work::Dispatch { groups: [x, y, z], .. } => {
+                // SAFETY: as above; outside a render pass.
+                unsafe { device.cmd_bind_pipeline(cmd, point, row.pipelines[0]) };
+                // SAFETY: a compute pipeline, its set and push constants are bound; the barriers
+                // that its accesses need were recorded before it.
+                unsafe { device.cmd_dispatch(cmd, x, y, z) };
+            }
+            Work::Raster { target, draw, .. } => {
+                self.begin_render_pass(row, target);
+                match draw {
+                    Draw::Meshes(list) => {
+                        frame.meshes(list).iter().for_each(|draw| self.mesh(row, draw));
+                    }
+                    Draw::Indirect { arguments } => self.indirect(row, arguments),
+                }
+                // SAFETY: the render pass was begun above.
+                unsafe { device.cmd_end_render_pass(cmd) };
+            }
+        }
+    }
+
+    fn begin_render_pass(&self, row: &RowPipeline, target: Target) {
+        let clear = [match target {
+            Target::Depth { clear, .. } => vk::ClearValue {
+                depth_stencil: vk::ClearDepthStencilValue { depth: clear, stencil: 0 },
+            },
+            Target::Add => vk::ClearValue { color: vk::ClearColorValue { float32: [0.0; 4] } },
+        }];
+        let begin = vk::RenderPassBeginInfo::default()
+            .render_pass(row.render_pass)
+            .framebuffer(row.framebuffer)
+            .render_area(vk::Rect2D { extent: row.extent, ..Default::default() })
+            .clear_values(&clear);
+        // SAFETY: Host::borrow's promise: cmd is recording outside a render pass; the barriers
+        // before put the attachment into the render pass's layout.
+        unsafe {
+            self.host.device.cmd_begin_render_pass(self.cmd, &begin, vk::SubpassContents::INLINE);
+        }
+    }
+
+    fn mesh(&self, row: &RowPipeline, draw: &MeshDraw) {
+        let (device, cmd, mesh) = (&self.host.device, self.cmd, &draw.mesh);
+        let matrix: &[u8] = bytemuck::cast_slice(&draw.clip_from_mesh);
+        let pipeline = row.pipelines[variant(draw.stride, draw.faces)];
+        // SAFETY: inside the row's render pass, with a pipeline made for it.
+        unsafe { device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::GRAPHICS, pipeline) };
+        // SAFETY: the layout's range is one 4×4 matrix for the vertex stage.
+        unsafe { device.cmd_push_constants(cmd, row.layout, row.push_stages, 0, matrix) };
+        // SAFETY: Host::borrow's promise: the mesh's buffers are valid and hold what the frame
+        // says of them.
+        unsafe {
+            device.cmd_bind_vertex_buffers(cmd, 0, &[mesh.positions], &[mesh.positions_offset]);
+        }
+        match mesh.indices {
+            Some((buffer, offset, kind)) => {
+                // SAFETY: as above.
+                unsafe { device.cmd_bind_index_buffer(cmd, buffer, offset, kind) };
+                // SAFETY: as above.
+                unsafe { device.cmd_draw_indexed(cmd, mesh.count, 1, 0, 0, 0) };
+            }
+            // SAFETY: as above.
+            None => unsafe { device.cmd_draw(cmd, mesh.count, 1, 0, 0) },
+        }
+    }
+
+    fn indirect(&self, row: &RowPipeline, arguments: ResourceId) {
+        let Object::Buffer(buffer) = self.objects.get(arguments) else { return };
+        let (device, cmd) = (&self.host.device, self.cmd);
+        let point = vk::PipelineBindPoint::GRAPHICS;
+        // SAFETY: inside the row's render pass, with a pipeline made for it.
+        unsafe { device.cmd_bind_pipeline(cmd, point, row.pipelines[0]) };
+        // SAFETY: the buffer holds one VkDrawIndirectCommand, which an earlier row wrote.
+        unsafe { device.cmd_draw_indirect(cmd, buffer, 0, 1, 0) };
+    }
+
+    fn barriers(&self, frame: &FramePlan, barriers: &[ResourceBarrier]) {
+        for batch in barriers.chunks(BATCH) {
+            let mut images = [vk::ImageMemoryBarrier::default(); BATCH];
+            let mut buffers = [vk::BufferMemoryBarrier::default(); BATCH];
+            let (mut image_count, mut buffer_count) = (0, 0);
+            let mut src = vk::PipelineStageFlags::empty();
+            let mut dst = vk::PipelineStageFlags::empty();
+            for ResourceBarrier { resource, barrier } in batch {
+                src |= barrier.src_stage;
+                dst |= barrier.dst_stage;
+                match object_of(self.objects, frame, *resource) {
+                    Object::Image { image, .. } => {
+                        let info = frame.plan.graph.resource(*resource);
+                        images[image_count] = vk::ImageMemoryBarrier::default()
+                            .src_access_mask(barrier.src_access)
+                            .dst_access_mask(barrier.dst_access)
+                            .old_layout(barrier.old_layout)
+                            .new_layout(barrier.new_layout)
+                            .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+                            .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+                            .image(image)
+                            .subresource_range(whole(graph::aspects(info.shape)));
+                        image_count += 1;
+                    }
+                    Object::Buffer(buffer) => {
+                        buffers[buffer_count] = vk::BufferMemoryBarrier::default()
+                            .src_access_mask(barrier.src_access)
+                            .dst_access_mask(barrier.dst_access)
+                            .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+                            .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+                            .buffer(buffer)
+                            .size(vk::WHOLE_SIZE);
+                        buffer_count += 1;
+                    }
+                    Object::None => {}
+                }
+            }
+            // SAFETY: Host::borrow's promise: cmd is recording outside a render pass, and the
+            // images are in the layouts that the host said.
+            unsafe {
+                self.host.device.cmd_pipeline_barrier(
+                    self.cmd,
+                    src,
+                    dst,
+                    vk::DependencyFlags::empty(),
+                    &[],
+                    &buffers[..buffer_count],
+                    &images[..image_count],
+                );
+            }
+        }
+    }
+
+    fn label(&self, row: usize) {
+        if let (Some(debug_utils), Some(label)) = (&self.host.debug_utils, self.labels.get(row)) {
+            let info = vk::DebugUtilsLabelEXT::default().label_name(label);
+            // SAFETY: Host::borrow's promise: cmd is recording; `unlabel` follows.
+            unsafe { debug_utils.cmd_begin_debug_utils_label(self.cmd, &info) };
+        }
+    }
+
+    fn unlabel(&self) {
+        if let Some(debug_utils) = &self.host.debug_utils {
+            // SAFETY: `label` came before.
+            unsafe { debug_utils.cmd_end_debug_utils_label(self.cmd) };
+        }
+    }
+}
+
+/// The object of a resource: the node's own, or the host's for this frame.
+fn object_of(objects: &Objects, frame: &FramePlan, id: ResourceId) -> Object {
+    frame.imports.iter().find(|(r, _)| *r == id).map_or_else(
+        || objects.get(id),
+        |(_, host)| Object::Image { image: host.image, view: host.view },
+    )
+}
+
+/// The object of a use and the layout its shader finds it in.
+fn look_up(objects: &Objects, frame: &FramePlan, u: &Use) -> (Object, vk::ImageLayout) {
+    let border = frame.plan.boundary.iter().find(|b| b.resource == u.resource);
+    let layout = border.map_or(u.access.scope().layout, |b| b.entry.layout);
+    (object_of(objects, frame, u.resource), layout)
+}

@@ -1,0 +1,132 @@
+//! How a pass touches a resource, and what that means to Vulkan.
+
+use ash::vk;
+
+/// One way of touching a resource.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Access {
+    /// An image fetched by a compute shader, without a sampler.
+    SampledCompute,
+    /// An image fetched by a fragment shader, without a sampler.
+    SampledFragment,
+    /// A storage image that a compute shader writes, every texel once.
+    ImageWrite,
+    /// A storage buffer that a compute shader reads.
+    BufferReadCompute,
+    /// A storage buffer that a compute shader writes.
+    BufferWriteCompute,
+    /// A storage buffer that a vertex shader reads.
+    BufferReadVertex,
+    /// A buffer that holds the arguments of an indirect draw or dispatch.
+    Indirect,
+    /// A depth attachment, cleared and then tested and written.
+    DepthTarget,
+    /// A color attachment, cleared and then written or blended.
+    ColorTarget,
+}
+
+/// Stages and access bits of one use, and the layout an image must be in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Scope {
+    /// The pipeline stages that touch it.
+    pub stage: vk::PipelineStageFlags,
+    /// How they touch it.
+    pub access: vk::AccessFlags,
+    /// The layout for images; `UNDEFINED` for buffers.
+    pub layout: vk::ImageLayout,
+}
+
+impl Access {
+    /// Every access, for tests by table.
+    pub const ALL: [Self; 9] = [
+        Self::SampledCompute,
+        Self::SampledFragment,
+        Self::ImageWrite,
+        Self::BufferReadCompute,
+        Self::BufferWriteCompute,
+        Self::BufferReadVertex,
+        Self::Indirect,
+        Self::DepthTarget,
+        Self::ColorTarget,
+    ];
+
+    /// Whether it writes.
+    pub fn writes(self) -> bool {
+        matches!(
+            self,
+            Self::ImageWrite | Self::BufferWriteCompute | Self::DepthTarget | Self::ColorTarget
+        )
+    }
+
+    /// The stages, access bits and layout of it.
+    pub fn scope(self) -> Scope {
+        use vk::{AccessFlags as A, ImageLayout as L, PipelineStageFlags as S};
+        let (stage, access, layout) = match self {
+            Self::SampledCompute => {
+                (S::COMPUTE_SHADER, A::SHADER_READ, L::SHADER_READ_ONLY_OPTIMAL)
+            }
+            Self::SampledFragment => {
+                (S::FRAGMENT_SHADER, A::SHADER_READ, L::SHADER_READ_ONLY_OPTIMAL)
+            }
+            Self::ImageWrite => (S::COMPUTE_SHADER, A::SHADER_WRITE, L::GENERAL),
+            Self::BufferReadCompute => (S::COMPUTE_SHADER, A::SHADER_READ, L::UNDEFINED),
+            Self::BufferWriteCompute => (S::COMPUTE_SHADER, A::SHADER_WRITE, L::UNDEFINED),
+            Self::BufferReadVertex => (S::VERTEX_SHADER, A::SHADER_READ, L::UNDEFINED),
+            Self::Indirect => (S::DRAW_INDIRECT, A::INDIRECT_COMMAND_READ, L::UNDEFINED),
+            Self::DepthTarget => (
+                S::EARLY_FRAGMENT_TESTS | S::LATE_FRAGMENT_TESTS,
+                A::DEPTH_STENCIL_ATTACHMENT_READ | A::DEPTH_STENCIL_ATTACHMENT_WRITE,
+                L::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
+            ),
+            Self::ColorTarget => (
+                S::COLOR_ATTACHMENT_OUTPUT,
+                A::COLOR_ATTACHMENT_READ | A::COLOR_ATTACHMENT_WRITE,
+                L::COLOR_ATTACHMENT_OPTIMAL,
+            ),
+        };
+        Scope { stage, access, layout }
+    }
+
+    /// What an image must have been created for.
+    pub fn image_usage(self) -> vk::ImageUsageFlags {
+        match self {
+            Self::SampledCompute | Self::SampledFragment => vk::ImageUsageFlags::SAMPLED,
+            Self::ImageWrite => vk::ImageUsageFlags::STORAGE,
+            Self::DepthTarget => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
+            Self::ColorTarget => vk::ImageUsageFlags::COLOR_ATTACHMENT,
+            _ => vk::ImageUsageFlags::empty(),
+        }
+    }
+
+    /// What a buffer must have been created for.
+    pub fn buffer_usage(self) -> vk::BufferUsageFlags {
+        match self {
+            Self::BufferReadCompute | Self::BufferWriteCompute | Self::BufferReadVertex => {
+                vk::BufferUsageFlags::STORAGE_BUFFER
+            }
+            Self::Indirect => vk::BufferUsageFlags::INDIRECT_BUFFER,
+            _ => vk::BufferUsageFlags::empty(),
+        }
+    }
+
+    /// The descriptor a shader sees it through; none for attachments and indirect arguments.
+    pub fn descriptor(self) -> Option<vk::DescriptorType> {
+        match self {
+            Self::SampledCompute | Self::SampledFragment => Some(vk::DescriptorType::SAMPLED_IMAGE),
+            Self::ImageWrite => Some(vk::DescriptorType::STORAGE_IMAGE),
+            Self::BufferReadCompute | Self::BufferWriteCompute | Self::BufferReadVertex => {
+                Some(vk::DescriptorType::STORAGE_BUFFER)
+            }
+            Self::Indirect | Self::DepthTarget | Self::ColorTarget => None,
+        }
+    }
+
+    /// The shader stage that a descriptor of it is visible to.
+    pub fn shader_stage(self) -> vk::ShaderStageFlags {
+        match self {
+            Self::SampledFragment => vk::ShaderStageFlags::FRAGMENT,
+            Self::BufferReadVertex => vk::ShaderStageFlags::VERTEX,
+            _ => vk::ShaderStageFlags::COMPUTE,
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! The render graph as pure data: no Vulkan calls, tested without a device.
+//!
+//! ```text
+//!  Graph   resources + rows (passes), every row a technique could run, in order
+//!    │ compile: drop rows that the frame does not need or whose output nobody reads
+//!    ▼
+//!  Plan    steps = barriers + row; the host's accesses on entry and exit; what was skipped, and why
+//!    │ gpu::record
+//!    ▼
+//!  vkCmd*
+//! ```
+
+mod access;
+mod barrier;
+mod pass;
+mod plan;
+mod resource;
+mod show;
+
+pub use access::{Access, Scope};
+pub use barrier::{Barrier, State};
+pub use pass::{Draw, MeshList, Need, PUSH_BYTES, Pass, Push, Target, Use, Work};
+pub use plan::{Border, BoundaryUse, Plan, ResourceBarrier, Skipped, Step, compile};
+pub(crate) use resource::aspects;
+pub use resource::{Owner, Resource, ResourceId, Shape, is_depth_format};
+
+use ash::vk;
+
+/// Resources and rows, in the order in which they may run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Graph {
+    resources: Vec<Resource>,
+    passes: Vec<Pass>,
+}
+
+impl Graph {
+    /// An empty graph.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Declares a 2D image.
+    pub fn image(
+        &mut self,
+        name: &'static str,
+        format: vk::Format,
+        [width, height]: [u32; 2],
+        owner: Owner,
+    ) -> ResourceId {
+        self.add(Resource { name, shape: Shape::Image { format, width, height }, owner })
+    }
+
+    /// Declares a transient buffer.
+    pub fn buffer(&mut self, name: &'static str, bytes: u64) -> ResourceId {
+        self.add(Resource { name, shape: Shape::Buffer { bytes }, owner: Owner::Transient })
+    }
+
+    fn add(&mut self, resource: Resource) -> ResourceId {
+        // A graph has tens of resources; the id would wrap at 65536.
+        let id = ResourceId(self.resources.len() as u16);
+        self.resources.push(resource);
+        id
+    }
+
+    /// Appends a row.
+    pub fn push(&mut self, pass: Pass) {
+        self.passes.push(pass);
+    }
+
+    /// All resources; [`ResourceId::index`] is the place.
+    pub fn resources(&self) -> &[Resource] {
+        &self.resources
+    }
+
+    /// One resource.
+    pub fn resource(&self, id: ResourceId) -> &Resource {
+        &self.resources[id.index()]
+    }
+
+    /// The id of the resource at a place in [`Self::resources`].
+    pub fn id(&self, index: usize) -> ResourceId {
+        ResourceId(index as u16)
+    }
+
+    /// All rows, dropped ones included; a row's place is the same in every frame.
+    pub fn passes(&self) -> &[Pass] {
+        &self.passes
+    }
+
+    /// Every way in which any row, needed or not, touches a resource.
+    pub fn uses_of(&self, id: ResourceId) -> impl Iterator<Item = Access> + '_ {
+        self.passes
+            .iter()
+            .flat_map(|p| &p.uses)
+            .filter(move |u| u.resource == id)
+            .map(|u| u.access)
+    }
+}

@@ -1,0 +1,153 @@
+//! A pass is a row of data: its name, what it touches and how, its push constants, its work.
+
+use super::{Access, ResourceId};
+use crate::shaders::Module;
+use ash::vk;
+use std::borrow::Cow;
+
+/// The most that Vulkan guarantees for push constants.
+pub const PUSH_BYTES: usize = 128;
+
+/// The push constants of a pass, as bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Push {
+    bytes: [u8; PUSH_BYTES],
+    len: usize,
+}
+
+impl Push {
+    /// No push constants.
+    pub const NONE: Self = Self { bytes: [0; PUSH_BYTES], len: 0 };
+
+    /// The bytes of a push struct.
+    pub fn new<T: bytemuck::Pod>(value: &T) -> Self {
+        const { assert!(size_of::<T>() <= PUSH_BYTES && size_of::<T>().is_multiple_of(4)) };
+        let mut push = Self { bytes: [0; PUSH_BYTES], len: size_of::<T>() };
+        push.bytes[..push.len].copy_from_slice(bytemuck::bytes_of(value));
+        push
+    }
+
+    /// The bytes to push.
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes[..self.len]
+    }
+}
+
+/// One resource that a pass touches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Use {
+    /// The resource.
+    pub resource: ResourceId,
+    /// How it is touched.
+    pub access: Access,
+    /// The shader's binding (set 0); none for attachments and indirect arguments.
+    pub binding: Option<u32>,
+}
+
+impl Use {
+    /// A resource that the shader sees at a binding.
+    pub fn bound(binding: u32, resource: ResourceId, access: Access) -> Self {
+        Self { resource, access, binding: Some(binding) }
+    }
+
+    /// An attachment, or the arguments of an indirect draw.
+    pub fn fixed(resource: ResourceId, access: Access) -> Self {
+        Self { resource, access, binding: None }
+    }
+}
+
+/// How fragments meet what the target holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Target {
+    /// One depth attachment: cleared to `clear`, kept where `compare` holds.
+    Depth {
+        /// The cleared value.
+        clear: f32,
+        /// New `compare` old keeps the new value.
+        compare: vk::CompareOp,
+    },
+    /// One color attachment, cleared to 0, each fragment added to it.
+    Add,
+}
+
+/// What is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Draw {
+    /// The frame's meshes that this list holds, positions at location 0, one matrix pushed each.
+    Meshes(MeshList),
+    /// Vertices without a vertex buffer, their count read from a `VkDrawIndirectCommand`.
+    Indirect {
+        /// The buffer that holds the command, at offset 0.
+        arguments: ResourceId,
+    },
+}
+
+/// Which of the frame's meshes a draw takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum MeshList {
+    /// Those that block light.
+    Occluders,
+    /// Those that show shadows.
+    Receivers,
+}
+
+/// What a pass makes the device do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Work {
+    /// A compute grid.
+    Dispatch {
+        /// The compute shader.
+        shader: Module,
+        /// Workgroups in x, y and z.
+        groups: [u32; 3],
+    },
+    /// A draw into one attachment.
+    Raster {
+        /// The vertex shader.
+        vertex: Module,
+        /// The fragment shader; none where only depth is written.
+        fragment: Option<Module>,
+        /// Faces left out.
+        cull: vk::CullModeFlags,
+        /// The attachment's rules.
+        target: Target,
+        /// What is drawn.
+        draw: Draw,
+    },
+}
+
+/// Whether the frame needs a pass, and why or why not.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Need {
+    /// It runs unless nobody reads what it writes.
+    Yes(Cow<'static, str>),
+    /// It does not run.
+    No(Cow<'static, str>),
+}
+
+/// One row of the graph.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pass {
+    /// `room.pass`; the debug label is this behind `antumbra.`.
+    pub name: &'static str,
+    /// What it touches.
+    pub uses: Vec<Use>,
+    /// Its push constants; a mesh draw pushes its matrices itself.
+    pub push: Push,
+    /// What it does.
+    pub work: Work,
+    /// Whether this frame needs it.
+    pub need: Need,
+}
+
+impl Pass {
+    /// The resources it writes.
+    pub fn writes(&self) -> impl Iterator<Item = ResourceId> + '_ {
+        self.uses.iter().filter(|u| u.access.writes()).map(|u| u.resource)
+    }
+
+    /// The resources it reads.
+    pub fn reads(&self) -> impl Iterator<Item = ResourceId> + '_ {
+        self.uses.iter().filter(|u| !u.access.writes()).map(|u| u.resource)
+    }
+}

@@ -1,0 +1,260 @@
+//! From a graph to what one frame records.
+
+use super::{Access, Barrier, Graph, Need, Owner, ResourceId, Scope, State};
+use crate::Error;
+use ash::vk;
+
+/// How the host left an imported or exported resource, and how it wants it back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Border {
+    /// The resource.
+    pub resource: ResourceId,
+    /// The host's last use before the node.
+    pub before: Scope,
+    /// The host's first use after the node.
+    pub after: Scope,
+}
+
+/// How the node touches one of the host's resources, for hosts that place barriers themselves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BoundaryUse {
+    /// The resource.
+    pub resource: ResourceId,
+    /// Its name in the graph.
+    pub name: &'static str,
+    /// Stages and accesses of the node's first use, and the layout it must be in by then.
+    pub entry: Scope,
+    /// Stages and accesses of the node's last uses, and the layout it is left in.
+    pub exit: Scope,
+    /// Whether the node writes it.
+    pub writes: bool,
+}
+
+/// A barrier and the resource it is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ResourceBarrier {
+    /// The resource.
+    pub resource: ResourceId,
+    /// The dependency.
+    pub barrier: Barrier,
+}
+
+/// A row that runs, behind the barriers it needs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Step {
+    /// The row's place in [`Graph::passes`].
+    pub pass: usize,
+    /// What must happen first.
+    pub barriers: Vec<ResourceBarrier>,
+}
+
+/// A row that does not run, and why.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Skipped {
+    /// The row's place in [`Graph::passes`].
+    pub pass: usize,
+    /// Why it was left out.
+    pub why: String,
+}
+
+/// What one frame does: the rows that run, in order, with their barriers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// The graph with this frame's push constants and grids.
+    pub graph: Graph,
+    /// The rows that run.
+    pub steps: Vec<Step>,
+    /// Barriers behind the last row, which hand the host's resources back.
+    pub handover: Vec<ResourceBarrier>,
+    /// The rows that do not run.
+    pub skipped: Vec<Skipped>,
+    /// How the host's resources are touched.
+    pub boundary: Vec<BoundaryUse>,
+}
+
+/// Drops rows that are not needed or whose output nobody reads, and derives the barriers.
+///
+/// `borders` says how the host leaves and takes back its resources; with `place_borders` the plan
+/// holds the barriers at the border too, without it the host places them from [`Plan::boundary`].
+///
+/// # Errors
+/// [`Error::Frame`] where a row reads what none has written, touches one resource twice, or a
+/// resource of the host's has no border.
+pub fn compile(graph: Graph, borders: &[Border], place_borders: bool) -> Result<Plan, Error> {
+    let (kept, skipped) = select(&graph)?;
+    let mut states = Vec::with_capacity(graph.resources().len());
+    for (index, resource) in graph.resources().iter().enumerate() {
+        let id = ResourceId(index as u16);
+        let touched = kept.iter().any(|&p| graph.passes()[p].uses.iter().any(|u| u.resource == id));
+        states.push(match resource.owner {
+            Owner::Transient => State::forgotten(everything(&graph, id)),
+            Owner::Imported | Owner::Exported => {
+                let border = borders.iter().find(|b| b.resource == id);
+                match border {
+                    Some(border) => State::left_in(border.before),
+                    None if !touched => State::forgotten(everything(&graph, id)),
+                    None => {
+                        return Err(Error::Frame(format!(
+                            "{}: the host must say how it leaves and takes back this resource",
+                            resource.name
+                        )));
+                    }
+                }
+            }
+        });
+    }
+
+    let mut boundary: Vec<BoundaryUse> = Vec::new();
+    let mut steps = Vec::with_capacity(kept.len());
+    for &index in &kept {
+        let mut barriers = Vec::new();
+        for u in &graph.passes()[index].uses {
+            let resource = graph.resource(u.resource);
+            let border = borders.iter().find(|b| b.resource == u.resource);
+            let scope = scope_at(u.access, border.filter(|_| resource.owner == Owner::Imported));
+            let host_owned = resource.owner != Owner::Transient;
+            let first = host_owned && !boundary.iter().any(|b| b.resource == u.resource);
+            if first {
+                let (entry, name) = (scope, resource.name);
+                boundary.push(BoundaryUse {
+                    resource: u.resource,
+                    name,
+                    entry,
+                    exit: entry,
+                    writes: false,
+                });
+                if !place_borders {
+                    // The host's own barrier has made it ready for exactly this use.
+                    states[u.resource.index()] = State::left_in(scope);
+                } else if resource.owner == Owner::Exported {
+                    // Written whole: what it held may be forgotten, in whatever layout.
+                    let before = border.map_or(scope, |b| b.before);
+                    states[u.resource.index()] = State::forgotten(before);
+                }
+            }
+            let state = &mut states[u.resource.index()];
+            if (!first || place_borders)
+                && let Some(barrier) = state.touch(scope, u.access.writes())
+            {
+                barriers.push(ResourceBarrier { resource: u.resource, barrier });
+            }
+            if let Some(b) = boundary.iter_mut().find(|b| b.resource == u.resource) {
+                b.writes |= u.access.writes();
+            }
+        }
+        steps.push(Step { pass: index, barriers });
+    }
+
+    let mut handover = Vec::new();
+    for b in &mut boundary {
+        let state = &mut states[b.resource.index()];
+        b.exit = state.scope();
+        if let (true, Some(border)) =
+            (place_borders, borders.iter().find(|x| x.resource == b.resource))
+        {
+            let barrier = state.touch(border.after, writes(border.after.access));
+            handover.extend(barrier.map(|barrier| ResourceBarrier { resource: b.resource, barrier }));
+        }
+    }
+    Ok(Plan { graph, steps, handover, skipped, boundary })
+}
+
+/// The rows that run, and those that do not; checks that nothing is read before it is written.
+fn select(graph: &Graph) -> Result<(Vec<usize>, Vec<Skipped>), Error> {
+    let mut written: Vec<bool> =
+        graph.resources().iter().map(|r| r.owner == Owner::Imported).collect();
+    let mut wanted: Vec<bool> =
+        graph.resources().iter().map(|r| r.owner == Owner::Exported).collect();
+    let mut skipped = Vec::new();
+    let mut candidates = Vec::new();
+    for (index, pass) in graph.passes().iter().enumerate() {
+        match &pass.need {
+            Need::No(why) => skipped.push(Skipped { pass: index, why: why.to_string() }),
+            Need::Yes(_) => candidates.push(index),
+        }
+    }
+    for &index in &candidates {
+        let pass = &graph.passes()[index];
+        for (n, u) in pass.uses.iter().enumerate() {
+            let name = graph.resource(u.resource).name;
+            let again = pass.uses[..n]
+                .iter()
+                .any(|o| o.resource == u.resource && (o.access.writes() || u.access.writes()));
+            if again {
+                return Err(Error::Frame(format!(
+                    "{}: touches {name} twice, once to write it; a pass may not read what it writes",
+                    pass.name
+                )));
+            }
+            if !u.access.writes() && !written[u.resource.index()] {
+                return Err(Error::Frame(format!(
+                    "{}: reads {name}, which no earlier pass of this frame writes",
+                    pass.name
+                )));
+            }
+        }
+        pass.writes().for_each(|r| written[r.index()] = true);
+    }
+    let mut kept = Vec::new();
+    for &index in candidates.iter().rev() {
+        let pass = &graph.passes()[index];
+        if pass.writes().any(|r| wanted[r.index()]) {
+            pass.reads().for_each(|r| wanted[r.index()] = true);
+            kept.push(index);
+        } else {
+            let outputs: Vec<_> = pass.writes().map(|r| graph.resource(r).name).collect();
+            skipped.push(Skipped {
+                pass: index,
+                why: format!("nothing reads {} in this frame", outputs.join(" or ")),
+            });
+        }
+    }
+    kept.reverse();
+    skipped.sort_by_key(|s| s.pass);
+    Ok((kept, skipped))
+}
+
+/// Every stage and access that any frame may have left a transient with.
+fn everything(graph: &Graph, id: ResourceId) -> Scope {
+    let none = Scope {
+        stage: vk::PipelineStageFlags::empty(),
+        access: vk::AccessFlags::empty(),
+        layout: vk::ImageLayout::UNDEFINED,
+    };
+    graph.uses_of(id).map(Access::scope).fold(none, |all, one| Scope {
+        stage: all.stage | one.stage,
+        access: all.access | one.access,
+        ..none
+    })
+}
+
+/// The scope of a use; an imported image is fetched in the layout the host keeps it in, where that
+/// is one that can be fetched from.
+fn scope_at(access: Access, border: Option<&Border>) -> Scope {
+    let scope = access.scope();
+    match border {
+        Some(b) if is_fetchable(b.before.layout) => Scope { layout: b.before.layout, ..scope },
+        _ => scope,
+    }
+}
+
+fn is_fetchable(layout: vk::ImageLayout) -> bool {
+    matches!(
+        layout,
+        vk::ImageLayout::GENERAL
+            | vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL
+            | vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL
+            | vk::ImageLayout::DEPTH_READ_ONLY_STENCIL_ATTACHMENT_OPTIMAL
+            | vk::ImageLayout::DEPTH_ATTACHMENT_STENCIL_READ_ONLY_OPTIMAL
+    )
+}
+
+fn writes(access: vk::AccessFlags) -> bool {
+    access.intersects(
+        vk::AccessFlags::SHADER_WRITE
+            | vk::AccessFlags::COLOR_ATTACHMENT_WRITE
+            | vk::AccessFlags::DEPTH_STENCIL_ATTACHMENT_WRITE
+            | vk::AccessFlags::TRANSFER_WRITE
+            | vk::AccessFlags::MEMORY_WRITE,
+    )
+}

@@ -1,0 +1,155 @@
+//! The node: the host's whole view of the crate.
+
+use crate::Error;
+use crate::frame::{self, Description, Frame, FrameGraph, FramePlan, Limits};
+use crate::gpu::{Allocator, Host, NodeObjects, Requirements, Retired};
+use crate::soft_shadow_map::Accumulate;
+use ash::vk;
+
+/// Soft shadows as one node of the host's render graph.
+///
+/// Borrows the host's device and memory; records into the host's command buffers; never submits,
+/// waits, allocates or panics while recording. Give it back with [`ShadowNode::destroy`] once the
+/// device is done with its last frame: dropping it alone leaks its Vulkan objects, because only the
+/// host knows when they are idle and whose allocator they came from.
+pub struct ShadowNode {
+    host: Host,
+    description: Description,
+    limits: Limits,
+    objects: NodeObjects,
+    visibility: crate::graph::ResourceId,
+    /// The rows and resources that the objects were made for.
+    rows: Vec<&'static str>,
+}
+
+/// The image that holds the result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct VisibilityImage {
+    /// R32_SFLOAT, usage STORAGE | SAMPLED | TRANSFER_SRC.
+    pub image: vk::Image,
+    /// A 2D view of it.
+    pub view: vk::ImageView,
+    /// Width and height, those of the G-buffer.
+    pub extent: [u32; 2],
+}
+
+impl ShadowNode {
+    /// Makes every pipeline, image and buffer that frames of this description need.
+    ///
+    /// # Errors
+    /// [`Error::Device`] with every gap of the device; [`Error::Setting`] or [`Error::Frame`] for a
+    /// description that cannot work; [`Error::Vulkan`] or [`Error::Memory`] where the driver or the
+    /// allocator refuses. Nothing is left behind.
+    pub fn new(
+        host: Host,
+        allocator: &mut dyn Allocator,
+        description: Description,
+    ) -> Result<Self, Error> {
+        let requirements = Requirements::check(&host);
+        requirements.met()?;
+        description.check()?;
+        let settings = &description.settings.soft_shadow_map;
+        if settings.accumulate == Accumulate::Blend && !requirements.blends_f32 {
+            return Err(Error::Setting {
+                key: "accumulate".into(),
+                problem: format!(
+                    "{} cannot blend R32_SFLOAT; set accumulate=gather",
+                    requirements.device
+                ),
+            });
+        }
+        let limits = Limits { snap: 0.5f32.powi(requirements.sub_pixel_bits.min(16) as i32) };
+        let FrameGraph { graph, visibility, .. } = frame::nominal(&description, limits);
+        let objects = NodeObjects::new(&host, allocator, &graph, &description)?;
+        let rows = graph.passes().iter().map(|p| p.name).collect();
+        Ok(Self { host, description, limits, objects, visibility, rows })
+    }
+
+    /// What the node was made for.
+    pub fn description(&self) -> &Description {
+        &self.description
+    }
+
+    /// Plans one frame; pure, microseconds, no Vulkan calls.
+    ///
+    /// # Errors
+    /// See [`frame::plan`].
+    pub fn plan(&self, frame: &Frame) -> Result<FramePlan, Error> {
+        frame::plan(&self.description, self.limits, frame)
+    }
+
+    /// Records a plan into a command buffer of the host's: no submit, no wait, no allocation.
+    ///
+    /// What must hold of the command buffer and the plan's slot was promised at [`Host::borrow`].
+    ///
+    /// # Errors
+    /// [`Error::Frame`] where the plan was made for another node or before a resize; nothing is
+    /// recorded then.
+    pub fn record(&mut self, cmd: vk::CommandBuffer, plan: &FramePlan) -> Result<(), Error> {
+        let same_rows = plan.plan.graph.passes().iter().map(|p| p.name).eq(self.rows.iter().copied());
+        let same_size = plan.plan.graph.resource(plan.visibility).shape
+            == self.objects.shape(self.visibility);
+        if !same_rows || !same_size || plan.slot >= self.description.frames_in_flight {
+            return Err(Error::Frame(
+                "this plan was made for another node, or before a resize; plan the frame again"
+                    .into(),
+            ));
+        }
+        self.objects.record(&self.host, cmd, plan);
+        Ok(())
+    }
+
+    /// The image that holds the result; another one after each resize.
+    pub fn visibility(&self) -> VisibilityImage {
+        let (image, view) = self.objects.image(self.visibility);
+        VisibilityImage { image, view, extent: self.description.extent }
+    }
+
+    /// Makes everything anew for a G-buffer of another size and gives back what to retire.
+    ///
+    /// # Errors
+    /// As [`Self::new`]; the node then goes on at its old size.
+    pub fn resize(
+        &mut self,
+        allocator: &mut dyn Allocator,
+        extent: [u32; 2],
+    ) -> Result<Retired, Error> {
+        self.reconfigure(allocator, Description { extent, ..self.description.clone() })
+    }
+
+    /// Makes everything anew for another description and gives back what to retire.
+    ///
+    /// # Errors
+    /// As [`Self::new`]; the node then goes on as it was.
+    pub fn reconfigure(
+        &mut self,
+        allocator: &mut dyn Allocator,
+        description: Description,
+    ) -> Result<Retired, Error> {
+        let next = Self::new(self.host.clone(), allocator, description)?;
+        let old = std::mem::replace(self, next);
+        Ok(Retired::new(old.objects))
+    }
+
+    /// Name and milliseconds of each pass that `slot` recorded last; none until the host knows that
+    /// its commands are done, or where the queue family has no timestamps. Never waits.
+    pub fn timings(&self, slot: u32) -> Option<Vec<(&'static str, f64)>> {
+        let rows = self.objects.timings(&self.host, slot)?;
+        Some(rows.into_iter().map(|(row, ms)| (self.rows[row], ms)).collect())
+    }
+
+    /// Name and bytes of everything the node holds in device memory.
+    pub fn memory(&self) -> Vec<(&'static str, u64)> {
+        self.objects.memory()
+    }
+
+    /// How many Vulkan objects the node holds.
+    pub fn object_count(&self) -> usize {
+        self.objects.count()
+    }
+
+    /// Destroys everything. The device must be done with every frame that was recorded.
+    pub fn destroy(self, allocator: &mut dyn Allocator) {
+        self.objects.destroy(&self.host, allocator);
+    }
+}

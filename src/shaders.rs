@@ -1,0 +1,75 @@
+//! The shaders, embedded: one line per module.
+//!
+//! The words come from `spirv/`, which is compiled from `glsl/` and committed; a test recompiles
+//! every module and compares the bytes.
+
+/// One SPIR-V module with the entry point `main`.
+#[derive(Clone, Copy)]
+pub struct Module {
+    /// The source's path under `glsl/`.
+    pub path: &'static str,
+    /// SPIR-V 1.0, little-endian words.
+    pub spirv: &'static [u8],
+}
+
+impl PartialEq for Module {
+    fn eq(&self, other: &Self) -> bool {
+        self.path == other.path
+    }
+}
+
+impl std::fmt::Debug for Module {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.path)
+    }
+}
+
+macro_rules! module {
+    ($path:literal) => {
+        Module {
+            path: $path,
+            spirv: include_bytes!(concat!("../spirv/", $path, ".spv")),
+        }
+    };
+}
+
+/// Positions to clip space, for depth alone.
+pub const DEPTH_VERT: Module = module!("depth_layers/depth.vert");
+/// Occluder map to blocks of texels with their moments.
+pub const BLOCKS: Module = module!("soft_shadow_map/blocks.comp");
+/// Blocks to superblocks.
+pub const SUPERBLOCKS: Module = module!("soft_shadow_map/superblocks.comp");
+/// The hierarchical gather at the receiver map's texels.
+pub const GATHER_MAP: Module = module!("soft_shadow_map/gather_map.comp");
+/// The hierarchical gather at the G-buffer's pixels.
+pub const GATHER_PIXELS: Module = module!("soft_shadow_map/gather_pixels.comp");
+/// Occupied texels of each group of blocks.
+pub const PATCH_COUNT: Module = module!("soft_shadow_map/patch_count.comp");
+/// Group counts to offsets, and the draw's arguments.
+pub const PATCH_SCAN: Module = module!("soft_shadow_map/patch_scan.comp");
+/// Blocks to a buffer of micro-patches.
+pub const PATCH_EMIT: Module = module!("soft_shadow_map/patch_emit.comp");
+/// A micro-patch to its penumbra rectangle.
+pub const PATCH_VERT: Module = module!("soft_shadow_map/patch.vert");
+/// A micro-patch's occlusion at a receiver texel.
+pub const PATCH_FRAG: Module = module!("soft_shadow_map/patch.frag");
+/// The soft shadow map projected onto the G-buffer.
+pub const RESOLVE: Module = module!("visibility/resolve.comp");
+/// Everything lit.
+pub const LIT: Module = module!("visibility/lit.comp");
+
+/// Every module of the node's passes.
+pub const ALL: &[Module] = &[
+    DEPTH_VERT,
+    BLOCKS,
+    SUPERBLOCKS,
+    GATHER_MAP,
+    GATHER_PIXELS,
+    PATCH_COUNT,
+    PATCH_SCAN,
+    PATCH_EMIT,
+    PATCH_VERT,
+    PATCH_FRAG,
+    RESOLVE,
+    LIT,
+];

@@ -1,0 +1,123 @@
+//! The result: one image that holds the visible fraction of the light for each pixel.
+//!
+//! `visibility` is R32_SFLOAT, as large as the G-buffer: 1 is lit, 0 is umbra; 1 where nothing
+//! receives. Techniques that work at the pixels write it themselves; those that work in the light's
+//! space are resolved onto the pixels here.
+
+use crate::depth_layers::MapView;
+use crate::graph::{Access, Graph, Need, Owner, Pass, Push, ResourceId, Use, Work};
+use crate::shaders;
+use ash::vk;
+use bytemuck::{Pod, Zeroable};
+
+/// The visibility image's format.
+pub const FORMAT: vk::Format = vk::Format::R32_SFLOAT;
+
+/// The host's pixels, as resources of the graph.
+#[derive(Clone, Copy, Debug)]
+pub struct GBuffer {
+    /// Depth, as the host's camera sees it.
+    pub depth: ResourceId,
+    /// Roles: red 1 blocks and receives, ½ receives only, 0 receives nothing. All are 1 without it.
+    pub mask: Option<ResourceId>,
+    /// Width and height in pixels.
+    pub extent: [u32; 2],
+    /// Normalized device coordinates to light space, by column.
+    pub light_from_ndc: [f32; 16],
+    /// The depth of a pixel that shows no surface.
+    pub background: f32,
+}
+
+/// `lit.comp`
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct LitPush {
+    /// Width and height.
+    pub extent: [i32; 2],
+}
+
+/// `resolve.comp`
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct ResolvePush {
+    /// Normalized device coordinates to light space.
+    pub light_from_ndc: [f32; 16],
+    /// Receiver texels a unit of u and v.
+    pub texels_per_uv: [f32; 2],
+    /// Receiver-texel coordinates of u = v = 0.
+    pub first: [f32; 2],
+    /// The G-buffer's width and height.
+    pub extent: [i32; 2],
+    /// The depth of a pixel that shows no surface.
+    pub background: f32,
+    /// 1 over the receiver map's near plane, 1/m.
+    pub receiver_inv_near: f32,
+    /// The map's side in texels.
+    pub receiver_map: i32,
+    /// 1 where the mask is there.
+    pub masked: i32,
+}
+
+/// What is resolved.
+#[derive(Clone, Copy, Debug)]
+pub struct Resolve<'a> {
+    /// The receiver map.
+    pub receiver_depth: ResourceId,
+    /// How it looks at the scene.
+    pub view: &'a MapView,
+    /// Occlusion of both sides; the same twice where there is one.
+    pub maps: [ResourceId; 2],
+}
+
+/// Declares the exported visibility image.
+pub fn declare(graph: &mut Graph, extent: [u32; 2]) -> ResourceId {
+    graph.image("visibility", FORMAT, extent, Owner::Exported)
+}
+
+fn grid(extent: [u32; 2]) -> [u32; 3] {
+    [extent[0].div_ceil(8), extent[1].div_ceil(8), 1]
+}
+
+/// Adds the row that makes every pixel lit.
+pub fn lit(graph: &mut Graph, visibility: ResourceId, extent: [u32; 2], need: Need) {
+    graph.push(Pass {
+        name: "visibility.lit",
+        uses: vec![Use::bound(0, visibility, Access::ImageWrite)],
+        push: Push::new(&LitPush { extent: extent.map(|e| e as i32) }),
+        work: Work::Dispatch { shader: shaders::LIT, groups: grid(extent) },
+        need,
+    });
+}
+
+/// Adds the row that projects a soft shadow map onto the pixels.
+pub fn resolve(
+    graph: &mut Graph,
+    visibility: ResourceId,
+    what: &Resolve,
+    gbuffer: &GBuffer,
+    need: &Need,
+) {
+    graph.push(Pass {
+        name: "visibility.resolve",
+        uses: vec![
+            Use::bound(0, gbuffer.depth, Access::SampledCompute),
+            Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
+            Use::bound(2, what.receiver_depth, Access::SampledCompute),
+            Use::bound(3, what.maps[0], Access::SampledCompute),
+            Use::bound(4, what.maps[1], Access::SampledCompute),
+            Use::bound(5, visibility, Access::ImageWrite),
+        ],
+        push: Push::new(&ResolvePush {
+            light_from_ndc: gbuffer.light_from_ndc,
+            texels_per_uv: what.view.texels_per_uv().map(|x| x as f32),
+            first: what.view.first().map(|x| x as f32),
+            extent: gbuffer.extent.map(|e| e as i32),
+            background: gbuffer.background,
+            receiver_inv_near: (1.0 / what.view.near) as f32,
+            receiver_map: what.view.side as i32,
+            masked: i32::from(gbuffer.mask.is_some()),
+        }),
+        work: Work::Dispatch { shader: shaders::RESOLVE, groups: grid(gbuffer.extent) },
+        need: need.clone(),
+    });
+}
