@@ -249,12 +249,8 @@ fn build(
     views: &Views,
 ) -> FrameGraph {
     let mut graph = Graph::new();
-    let depth = graph.image(
-        "gbuffer.depth",
-        description.depth_format,
-        description.extent,
-        Owner::Imported,
-    );
+    let depth =
+        graph.image("gbuffer.depth", description.depth_format, description.extent, Owner::Imported);
     let mask = description
         .mask_format
         .map(|format| graph.image("gbuffer.mask", format, description.extent, Owner::Imported));
@@ -269,11 +265,8 @@ fn build(
     match description.settings.technique {
         Technique::SoftShadowMap => {
             let settings = &description.settings.soft_shadow_map;
-            let layers = depth_layers::declare(
-                &mut graph,
-                soft_shadow_map::wanted(settings),
-                &views.need,
-            );
+            let layers =
+                depth_layers::declare(&mut graph, soft_shadow_map::wanted(settings), &views.need);
             let inputs = soft_shadow_map::Inputs {
                 light,
                 occluders: &views.occluders,
@@ -298,11 +291,7 @@ fn build(
 /// # Errors
 /// [`Error::Frame`] for numbers that are not finite, a mask or stride that the description does not
 /// have, or a frame slot beyond the frames in flight.
-pub fn plan(
-    description: &Description,
-    limits: Limits,
-    frame: &Frame,
-) -> Result<FramePlan, Error> {
+pub fn plan(description: &Description, limits: Limits, frame: &Frame) -> Result<FramePlan, Error> {
     check(description, frame)?;
     let light = &frame.light;
     let list = |keep: fn(Role) -> bool| {
@@ -377,13 +366,14 @@ fn draw_of(
     clip_from_world: &DMat4,
 ) -> Result<MeshDraw, Error> {
     let wanted = mesh.positions_stride;
-    let stride = description.position_strides.iter().position(|&s| s == wanted).ok_or_else(|| {
-        Error::Frame(format!(
-            "a mesh has a position stride of {wanted} bytes, which the description's \
+    let stride =
+        description.position_strides.iter().position(|&s| s == wanted).ok_or_else(|| {
+            Error::Frame(format!(
+                "a mesh has a position stride of {wanted} bytes, which the description's \
              position_strides {:?} do not hold",
-            description.position_strides
-        ))
-    })?;
+                description.position_strides
+            ))
+        })?;
     let faces = if mesh.double_sided {
         Faces::Both
     } else if mesh.world_from_mesh.determinant() < 0.0 {

@@ -86,9 +86,10 @@ impl ShadowNode {
     /// [`Error::Frame`] where the plan was made for another node or before a resize; nothing is
     /// recorded then.
     pub fn record(&mut self, cmd: vk::CommandBuffer, plan: &FramePlan) -> Result<(), Error> {
-        let same_rows = plan.plan.graph.passes().iter().map(|p| p.name).eq(self.rows.iter().copied());
-        let same_size = plan.plan.graph.resource(plan.visibility).shape
-            == self.objects.shape(self.visibility);
+        let same_rows =
+            plan.plan.graph.passes().iter().map(|p| p.name).eq(self.rows.iter().copied());
+        let same_size =
+            plan.plan.graph.resource(plan.visibility).shape == self.objects.shape(self.visibility);
         if !same_rows || !same_size || plan.slot >= self.description.frames_in_flight {
             return Err(Error::Frame(
                 "this plan was made for another node, or before a resize; plan the frame again"

@@ -182,9 +182,8 @@ mod tests {
 
     #[test]
     fn wrong_values_are_refused_with_what_would_be_right() {
-        let refuse = |key: &str, value: &str| {
-            Settings::default().set(key, value).unwrap_err().to_string()
-        };
+        let refuse =
+            |key: &str, value: &str| Settings::default().set(key, value).unwrap_err().to_string();
         assert!(refuse("map", "15").contains("16 to 4096"));
         assert!(refuse("map", "4097").contains("16 to 4096"));
         assert!(refuse("map", "-1").contains("16 to 4096"));

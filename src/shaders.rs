@@ -12,6 +12,14 @@ pub struct Module {
     pub spirv: &'static [u8],
 }
 
+impl Module {
+    /// The module's words.
+    pub fn words(&self) -> Vec<u32> {
+        let word = |b: &[u8]| u32::from_le_bytes([b[0], b[1], b[2], b[3]]);
+        self.spirv.chunks_exact(4).map(word).collect()
+    }
+}
+
 impl PartialEq for Module {
     fn eq(&self, other: &Self) -> bool {
         self.path == other.path
@@ -26,10 +34,7 @@ impl std::fmt::Debug for Module {
 
 macro_rules! module {
     ($path:literal) => {
-        Module {
-            path: $path,
-            spirv: include_bytes!(concat!("../spirv/", $path, ".spv")),
-        }
+        Module { path: $path, spirv: include_bytes!(concat!("../spirv/", $path, ".spv")) }
     };
 }
 
@@ -57,6 +62,13 @@ pub const PATCH_FRAG: Module = module!("soft_shadow_map/patch.frag");
 pub const RESOLVE: Module = module!("visibility/resolve.comp");
 /// Everything lit.
 pub const LIT: Module = module!("visibility/lit.comp");
+
+/// Positions and normals of the headless G-buffer.
+#[cfg(feature = "headless")]
+pub const GBUFFER_VERT: Module = module!("headless/gbuffer.vert");
+/// Position, normal and role of a pixel.
+#[cfg(feature = "headless")]
+pub const GBUFFER_FRAG: Module = module!("headless/gbuffer.frag");
 
 /// Every module of the node's passes.
 pub const ALL: &[Module] = &[

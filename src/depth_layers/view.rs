@@ -34,8 +34,7 @@ impl MapView {
     /// Light space to clip space: reversed depth, infinite far plane.
     pub fn clip_from_light(&self) -> DMat4 {
         let [sx, sy] = [0, 1].map(|i| 2.0 / (self.max[i] - self.min[i]));
-        let [cx, cy] =
-            [0, 1].map(|i| -(self.max[i] + self.min[i]) / (self.max[i] - self.min[i]));
+        let [cx, cy] = [0, 1].map(|i| -(self.max[i] + self.min[i]) / (self.max[i] - self.min[i]));
         DMat4::from_cols(
             DVec4::new(sx, 0.0, 0.0, 0.0),
             DVec4::new(0.0, sy, 0.0, 0.0),
@@ -129,7 +128,8 @@ pub fn fit_occluders(
     side: u32,
 ) -> Option<MapView> {
     let light_from_world = light.light_from_world();
-    let boxes: Vec<_> = occluders.iter().map(|(b, m)| corners(b, &(light_from_world * *m))).collect();
+    let boxes: Vec<_> =
+        occluders.iter().map(|(b, m)| corners(b, &(light_from_world * *m))).collect();
     let (least, far) = distances(&boxes)?;
     let near = (least * (1.0 - NEAR_MARGIN)).max(far * MIN_NEAR);
     let (min, max) = match window {
@@ -151,7 +151,8 @@ pub fn fit_receivers(
     side: u32,
 ) -> Option<MapView> {
     let light_from_world = light.light_from_world();
-    let boxes: Vec<_> = receivers.iter().map(|(b, m)| corners(b, &(light_from_world * *m))).collect();
+    let boxes: Vec<_> =
+        receivers.iter().map(|(b, m)| corners(b, &(light_from_world * *m))).collect();
     let (least, far) = distances(&boxes)?;
     // A receiver nearer than every occluder is lit, and must not hide one that is not.
     let near = least.max(occluders.near);

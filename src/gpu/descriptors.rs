@@ -103,9 +103,8 @@ impl Descriptors {
                     (view.as_raw(), layout)
                 }
                 Object::Buffer(buffer) => {
-                    buffers[binding] = vk::DescriptorBufferInfo::default()
-                        .buffer(buffer)
-                        .range(vk::WHOLE_SIZE);
+                    buffers[binding] =
+                        vk::DescriptorBufferInfo::default().buffer(buffer).range(vk::WHOLE_SIZE);
                     (buffer.as_raw(), vk::ImageLayout::UNDEFINED)
                 }
                 Object::None => (0, vk::ImageLayout::UNDEFINED),

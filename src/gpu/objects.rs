@@ -55,8 +55,7 @@ impl Objects {
         let id = graph.id(index);
         let resource = graph.resource(id);
         let touched = graph.uses_of(id).next().is_some();
-        let mut owned =
-            Owned { object: Object::None, block: None, name: resource.name, bytes: 0 };
+        let mut owned = Owned { object: Object::None, block: None, name: resource.name, bytes: 0 };
         if resource.owner == Owner::Imported || !touched {
             return Ok(owned);
         }
@@ -133,8 +132,8 @@ impl Owned {
         let doing = || format!("creating {}", resource.name);
         // SAFETY: the device is valid (Host::borrow); the size and usage are within what
         // Description::check and Requirements::check allow.
-        let image = unsafe { host.device.create_image(&create, None) }
-            .map_err(Error::vulkan(doing()))?;
+        let image =
+            unsafe { host.device.create_image(&create, None) }.map_err(Error::vulkan(doing()))?;
         self.object = Object::Image { image, view: vk::ImageView::null() };
         // SAFETY: the image was just made by this device.
         let requirements = unsafe { host.device.get_image_memory_requirements(image) };
@@ -178,8 +177,8 @@ impl Owned {
         let create = vk::BufferCreateInfo::default().size(bytes).usage(usage);
         let doing = || format!("creating {}", resource.name);
         // SAFETY: the device is valid (Host::borrow), and no row asks for a buffer of no bytes.
-        let buffer = unsafe { host.device.create_buffer(&create, None) }
-            .map_err(Error::vulkan(doing()))?;
+        let buffer =
+            unsafe { host.device.create_buffer(&create, None) }.map_err(Error::vulkan(doing()))?;
         self.object = Object::Buffer(buffer);
         // SAFETY: the buffer was just made by this device.
         let requirements = unsafe { host.device.get_buffer_memory_requirements(buffer) };
@@ -221,8 +220,7 @@ pub(crate) fn whole(aspect: vk::ImageAspectFlags) -> vk::ImageSubresourceRange {
 pub(crate) fn name<T: Handle>(host: &Host, object: T, name: &str) {
     let Some(debug_utils) = &host.debug_utils else { return };
     let Ok(text) = CString::new(format!("antumbra.{name}")) else { return };
-    let info =
-        vk::DebugUtilsObjectNameInfoEXT::default().object_handle(object).object_name(&text);
+    let info = vk::DebugUtilsObjectNameInfoEXT::default().object_handle(object).object_name(&text);
     // SAFETY: the object was made by this device and is not used by another thread yet. A name that
     // cannot be set is no loss.
     let _ = unsafe { debug_utils.set_debug_utils_object_name(&info) };

@@ -75,9 +75,7 @@ impl RowPipeline {
             .map_err(Error::vulkan(doing("descriptor set layout")))?;
 
         let (stages, push_bytes) = match pass.work {
-            Work::Dispatch { .. } => {
-                (vk::ShaderStageFlags::COMPUTE, pass.push.bytes().len())
-            }
+            Work::Dispatch { .. } => (vk::ShaderStageFlags::COMPUTE, pass.push.bytes().len()),
             Work::Raster { draw: Draw::Meshes(_), .. } => {
                 (vk::ShaderStageFlags::VERTEX, size_of::<DepthPush>())
             }
@@ -116,9 +114,8 @@ impl RowPipeline {
 
     fn compute(&self, host: &Host, pass: &Pass, shader: Module) -> Result<vk::Pipeline, Error> {
         with_modules(host, &[(shader, vk::ShaderStageFlags::COMPUTE)], |stages| {
-            let create = [vk::ComputePipelineCreateInfo::default()
-                .stage(stages[0])
-                .layout(self.layout)];
+            let create =
+                [vk::ComputePipelineCreateInfo::default().stage(stages[0]).layout(self.layout)];
             // SAFETY: the stage's module and the layout are alive for this call.
             unsafe { host.device.create_compute_pipelines(host.pipeline_cache, &create, None) }
                 .map(|p| p[0])
@@ -156,8 +153,8 @@ impl RowPipeline {
             .initial_layout(layout)
             .final_layout(layout)];
         let reference = [vk::AttachmentReference { attachment: 0, layout }];
-        let subpass = vk::SubpassDescription::default()
-            .pipeline_bind_point(vk::PipelineBindPoint::GRAPHICS);
+        let subpass =
+            vk::SubpassDescription::default().pipeline_bind_point(vk::PipelineBindPoint::GRAPHICS);
         let subpasses = [match target {
             Target::Depth { .. } => subpass.depth_stencil_attachment(&reference[0]),
             Target::Add => subpass.color_attachments(&reference),
@@ -321,11 +318,7 @@ fn with_modules<T>(
     let mut modules = Vec::with_capacity(shaders.len());
     let mut failed = None;
     for (shader, _) in shaders {
-        let words: Vec<u32> = shader
-            .spirv
-            .chunks_exact(4)
-            .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
-            .collect();
+        let words = shader.words();
         let create = vk::ShaderModuleCreateInfo::default().code(&words);
         // SAFETY: the words are a module that tests validate.
         match unsafe { host.device.create_shader_module(&create, None) } {

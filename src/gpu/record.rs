@@ -50,7 +50,8 @@ impl Recorder<'_> {
         let (host, cmd, row) = (self.host, self.cmd, &self.rows[index]);
         let device = &host.device;
         let objects = self.objects;
-        let set = self.descriptors.set(host, pass, index, frame.slot, |u| look_up(objects, frame, u));
+        let set =
+            self.descriptors.set(host, pass, index, frame.slot, |u| look_up(objects, frame, u));
         let point = match pass.work {
             Work::Dispatch { .. } => vk::PipelineBindPoint::COMPUTE,
             Work::Raster { .. } => vk::PipelineBindPoint::GRAPHICS,

@@ -96,9 +96,8 @@ impl Timing {
             )
         }
         .ok()?;
-        let ms = |pair: &[u64]| {
-            (pair[1].wrapping_sub(pair[0]) & self.mask) as f64 * self.period * 1e-6
-        };
+        let ms =
+            |pair: &[u64]| (pair[1].wrapping_sub(pair[0]) & self.mask) as f64 * self.period * 1e-6;
         Some(rows.iter().copied().zip(ticks.windows(2).map(ms)).collect())
     }
 

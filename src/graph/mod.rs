@@ -89,10 +89,6 @@ impl Graph {
 
     /// Every way in which any row, needed or not, touches a resource.
     pub fn uses_of(&self, id: ResourceId) -> impl Iterator<Item = Access> + '_ {
-        self.passes
-            .iter()
-            .flat_map(|p| &p.uses)
-            .filter(move |u| u.resource == id)
-            .map(|u| u.access)
+        self.passes.iter().flat_map(|p| &p.uses).filter(move |u| u.resource == id).map(|u| u.access)
     }
 }

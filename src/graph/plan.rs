@@ -153,7 +153,8 @@ pub fn compile(graph: Graph, borders: &[Border], place_borders: bool) -> Result<
             (place_borders, borders.iter().find(|x| x.resource == b.resource))
         {
             let barrier = state.touch(border.after, writes(border.after.access));
-            handover.extend(barrier.map(|barrier| ResourceBarrier { resource: b.resource, barrier }));
+            handover
+                .extend(barrier.map(|barrier| ResourceBarrier { resource: b.resource, barrier }));
         }
     }
     Ok(Plan { graph, steps, handover, skipped, boundary })

@@ -29,7 +29,8 @@ impl Plan {
 
     /// The rows that run and the resources between them, for `dot -Tsvg`.
     pub fn graphviz(&self) -> String {
-        let mut text = String::from("digraph plan {\n  rankdir=LR; node [fontname=\"sans-serif\"];\n");
+        let mut text =
+            String::from("digraph plan {\n  rankdir=LR; node [fontname=\"sans-serif\"];\n");
         let mut touched = vec![false; self.graph.resources().len()];
         for step in &self.steps {
             let pass = &self.graph.passes()[step.pass];
@@ -44,7 +45,8 @@ impl Plan {
                 };
             }
         }
-        for (r, resource) in self.graph.resources().iter().enumerate().filter(|(r, _)| touched[*r]) {
+        for (r, resource) in self.graph.resources().iter().enumerate().filter(|(r, _)| touched[*r])
+        {
             let size = match resource.shape {
                 Shape::Image { format, width, height } => format!("{width}×{height} {format:?}"),
                 Shape::Buffer { bytes } => format!("{bytes} B"),

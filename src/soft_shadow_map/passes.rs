@@ -3,9 +3,7 @@
 use super::{Accumulate, Receivers, Settings, Sides, push, spread_of};
 use crate::RectangleLight;
 use crate::depth_layers::{DepthLayers, MapView, Wanted};
-use crate::graph::{
-    Access, Draw, Graph, Need, Owner, Pass, Push, ResourceId, Target, Use, Work,
-};
+use crate::graph::{Access, Draw, Graph, Need, Owner, Pass, Push, ResourceId, Target, Use, Work};
 use crate::shaders::{self, Module};
 use crate::visibility::{self, GBuffer};
 use ash::vk;

@@ -8,6 +8,7 @@ use ash::{ext, vk};
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 /// The environment variable that picks a device by a part of its name.
 const DRIVER_VARIABLE: &str = "ANTUMBRA_DRIVER";
@@ -220,6 +221,17 @@ impl HeadlessDevice {
         &self,
         record: impl FnOnce(vk::CommandBuffer) -> Result<T, Error>,
     ) -> Result<T, Error> {
+        self.submit_timed(record).map(|(value, _)| value)
+    }
+
+    /// As [`Self::submit_and_wait`], with the time from the submit to the fence.
+    ///
+    /// # Errors
+    /// As [`Self::submit_and_wait`].
+    pub fn submit_timed<T>(
+        &self,
+        record: impl FnOnce(vk::CommandBuffer) -> Result<T, Error>,
+    ) -> Result<(T, Duration), Error> {
         let device = self.device();
         let objects = OneShot::new(device, self.0.queue_family)?;
         let begin = vk::CommandBufferBeginInfo::default()
@@ -247,6 +259,7 @@ impl HeadlessDevice {
         unsafe { device.end_command_buffer(objects.cmd) }
             .map_err(Error::vulkan("ending a command buffer"))?;
 
+        let started = Instant::now();
         let cmds = [objects.cmd];
         let submit = [vk::SubmitInfo::default().command_buffers(&cmds)];
         {
@@ -258,7 +271,7 @@ impl HeadlessDevice {
         // SAFETY: the fence was submitted above.
         unsafe { device.wait_for_fences(&[objects.fence], true, u64::MAX) }
             .map_err(Error::vulkan("waiting for a command buffer"))?;
-        Ok(value)
+        Ok((value, started.elapsed()))
     }
 }
 

@@ -10,12 +10,18 @@ mod buffer;
 mod choose;
 mod compute;
 mod device;
+mod gbuffer;
 mod image;
 mod instance;
 mod messages;
+mod scene;
+mod stage;
 
 pub use buffer::HostBuffer;
 pub use compute::run_compute;
 pub use device::{HeadlessDevice, HeadlessOptions};
+pub use gbuffer::{GBuffer, GBufferPainter, View};
 pub use image::{ImageSource, OwnedImage, bytes_per_texel, read_image};
 pub use messages::MessageLog;
+pub use scene::SceneBuffers;
+pub use stage::{FrameTimes, Stage};

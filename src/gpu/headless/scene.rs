@@ -1,0 +1,84 @@
+//! A scene's meshes in buffers.
+
+use super::{HeadlessDevice, HostBuffer};
+use crate::scene::Scene;
+use crate::{Error, MeshInstance};
+use ash::vk;
+
+/// The buffers of one mesh.
+struct MeshBuffers {
+    positions: HostBuffer,
+    normals: HostBuffer,
+    indices: HostBuffer,
+    count: u32,
+    bounds: [[f32; 3]; 2],
+}
+
+/// A scene as the device sees it.
+pub struct SceneBuffers {
+    meshes: Vec<Option<MeshBuffers>>,
+}
+
+impl SceneBuffers {
+    /// Uploads every mesh; those without triangles take no buffers.
+    ///
+    /// # Errors
+    /// [`Error::Memory`] or [`Error::Vulkan`] where the device refuses.
+    pub fn new(device: &HeadlessDevice, scene: &Scene) -> Result<Self, Error> {
+        use vk::BufferUsageFlags as Usage;
+        let upload = |mesh: &crate::scene::Mesh| {
+            if mesh.indices.len() < 3 {
+                return Ok(None);
+            }
+            let mut bounds = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
+            for p in &mesh.positions {
+                for axis in 0..3 {
+                    bounds[0][axis] = bounds[0][axis].min(p[axis]);
+                    bounds[1][axis] = bounds[1][axis].max(p[axis]);
+                }
+            }
+            let vertices = |name, data| {
+                HostBuffer::with_data::<[f32; 3]>(device, name, data, Usage::VERTEX_BUFFER)
+            };
+            Ok(Some(MeshBuffers {
+                positions: vertices("positions", &mesh.positions)?,
+                normals: vertices("normals", &mesh.normals)?,
+                indices: HostBuffer::with_data(
+                    device,
+                    "indices",
+                    &mesh.indices,
+                    Usage::INDEX_BUFFER,
+                )?,
+                count: mesh.indices.len() as u32,
+                bounds,
+            }))
+        };
+        let meshes = scene.meshes.iter().map(upload).collect::<Result<_, Error>>()?;
+        Ok(Self { meshes })
+    }
+
+    /// The scene's instances as the node takes them.
+    pub fn instances(&self, scene: &Scene) -> Vec<MeshInstance> {
+        let instance = |i: &crate::scene::Instance| {
+            let mesh = self.meshes.get(i.mesh)?.as_ref()?;
+            Some(MeshInstance {
+                positions: mesh.positions.raw(),
+                positions_offset: 0,
+                positions_stride: 12,
+                indices: Some((mesh.indices.raw(), 0, vk::IndexType::UINT32)),
+                count: mesh.count,
+                world_from_mesh: i.world_from_mesh,
+                bounds: mesh.bounds,
+                role: i.role,
+                double_sided: scene.meshes[i.mesh].double_sided,
+            })
+        };
+        scene.instances.iter().filter_map(instance).collect()
+    }
+
+    /// Positions, normals, indices and their count.
+    pub(super) fn draw(&self, mesh: usize) -> Option<(vk::Buffer, vk::Buffer, vk::Buffer, u32)> {
+        let mesh = self.meshes.get(mesh)?.as_ref()?;
+        Some((mesh.positions.raw(), mesh.normals.raw(), mesh.indices.raw(), mesh.count))
+    }
+}

@@ -1,0 +1,186 @@
+//! A scene, a G-buffer and a node on one device: what tests, benches and the render example run.
+
+use super::gbuffer::MASK;
+use super::{GBuffer, GBufferPainter, HeadlessDevice, ImageSource, SceneBuffers, View, read_image};
+use crate::graph::Scope;
+use crate::scene::{Instance, Scene};
+use crate::{
+    BorderBarriers, Description, Error, Frame, FramePlan, Host, MeshInstance, RectangleLight,
+    Settings, ShadowNode, visibility,
+};
+use ash::vk;
+use std::sync::PoisonError;
+use std::time::{Duration, Instant};
+
+/// What one frame of the node took.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrameTimes {
+    /// From the submit to the fence.
+    pub frame: Duration,
+    /// Recording on the CPU.
+    pub record: Duration,
+    /// Name and milliseconds of each pass, by timestamps; empty where there are none.
+    pub passes: Vec<(&'static str, f64)>,
+}
+
+/// A node and all that it is lent.
+pub struct Stage {
+    device: HeadlessDevice,
+    /// `None` only while it is replaced or dropped.
+    node: Option<ShadowNode>,
+    host: Host,
+    gbuffer: GBuffer,
+    view: View,
+    instances: Vec<MeshInstance>,
+    /// Keeps the buffers that `instances` name alive.
+    _buffers: SceneBuffers,
+}
+
+/// The layout that the visibility image is handed back in.
+const RESULT: Scope = Scope {
+    stage: vk::PipelineStageFlags::TRANSFER,
+    access: vk::AccessFlags::TRANSFER_READ,
+    layout: vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
+};
+
+impl Stage {
+    /// Uploads the scene, paints the G-buffer with the instances that `keep` accepts, and makes the
+    /// node.
+    ///
+    /// # Errors
+    /// Whatever [`ShadowNode::new`] and the device refuse.
+    pub fn new(
+        device: &HeadlessDevice,
+        scene: &Scene,
+        view: &View,
+        extent: [u32; 2],
+        settings: Settings,
+        keep: impl Fn(&Instance) -> bool,
+    ) -> Result<Self, Error> {
+        let buffers = SceneBuffers::new(device, scene)?;
+        let gbuffer = GBuffer::new(device, extent)?;
+        GBufferPainter::new(device)?.paint(&gbuffer, scene, &buffers, view, keep)?;
+        // SAFETY: the handles come from one device, which the stage keeps; everything given to the
+        // node is the stage's own, and each frame is waited for before the next.
+        let mut host = unsafe {
+            Host::borrow(
+                device.instance().clone(),
+                device.physical_device(),
+                device.device().clone(),
+                device.queue_family(),
+            )
+        };
+        if let Some(debug_utils) = device.debug_utils() {
+            host = host.with_debug_utils(debug_utils.clone());
+        }
+        let mut stage = Self {
+            device: device.clone(),
+            node: None,
+            host,
+            gbuffer,
+            view: *view,
+            instances: buffers.instances(scene),
+            _buffers: buffers,
+        };
+        stage.configure(settings)?;
+        Ok(stage)
+    }
+
+    /// Makes the node anew with other settings.
+    ///
+    /// # Errors
+    /// As [`ShadowNode::new`]; the stage then has no node until settings that work are given.
+    pub fn configure(&mut self, settings: Settings) -> Result<(), Error> {
+        self.drop_node();
+        let description = Description {
+            settings,
+            frames_in_flight: 1,
+            mask_format: Some(MASK),
+            ..Description::new(self.gbuffer.depth.extent())
+        };
+        let mut allocator = self.device.allocator().lock().unwrap_or_else(PoisonError::into_inner);
+        self.node = Some(ShadowNode::new(self.host.clone(), &mut *allocator, description)?);
+        Ok(())
+    }
+
+    /// The G-buffer.
+    pub fn gbuffer(&self) -> &GBuffer {
+        &self.gbuffer
+    }
+
+    /// The node.
+    ///
+    /// # Errors
+    /// [`Error::Frame`] where the last [`Self::configure`] failed.
+    pub fn node(&mut self) -> Result<&mut ShadowNode, Error> {
+        self.node.as_mut().ok_or_else(|| Error::Frame("the stage has no node".into()))
+    }
+
+    /// Plans a frame; `window` fixes the occluder map's tangents.
+    ///
+    /// # Errors
+    /// As [`ShadowNode::plan`].
+    pub fn plan(
+        &mut self,
+        light: &RectangleLight,
+        window: Option<[[f64; 2]; 2]>,
+    ) -> Result<FramePlan, Error> {
+        let frame = Frame {
+            light: *light,
+            world_from_ndc: self.view.clip_from_world.inverse(),
+            background: 0.0,
+            meshes: &self.instances,
+            depth: self.gbuffer.depth_for_node(),
+            mask: Some(self.gbuffer.mask_for_node()),
+            visibility_before: RESULT,
+            visibility_after: RESULT,
+            window,
+            slot: 0,
+            border_barriers: BorderBarriers::Node,
+        };
+        let node =
+            self.node.as_ref().ok_or_else(|| Error::Frame("the stage has no node".into()))?;
+        node.plan(&frame)
+    }
+
+    /// Records a plan, submits it and waits.
+    ///
+    /// # Errors
+    /// As [`ShadowNode::record`] and [`HeadlessDevice::submit_and_wait`].
+    pub fn run(&mut self, plan: &FramePlan) -> Result<FrameTimes, Error> {
+        let device = self.device.clone();
+        let node = self.node()?;
+        let (record, frame) = device.submit_timed(|cmd| {
+            let started = Instant::now();
+            node.record(cmd, plan)?;
+            Ok(started.elapsed())
+        })?;
+        let passes = node.timings(plan.slot).unwrap_or_default();
+        Ok(FrameTimes { frame, record, passes })
+    }
+
+    /// Reads the visible fraction of every pixel, row by row.
+    ///
+    /// # Errors
+    /// As [`read_image`].
+    pub fn visibility(&mut self) -> Result<Vec<f32>, Error> {
+        let result = self.node()?.visibility();
+        let source =
+            ImageSource { image: result.image, format: visibility::FORMAT, extent: result.extent };
+        read_image(&self.device, &source, RESULT.layout)
+    }
+
+    fn drop_node(&mut self) {
+        if let Some(node) = self.node.take() {
+            let mut allocator =
+                self.device.allocator().lock().unwrap_or_else(PoisonError::into_inner);
+            node.destroy(&mut *allocator);
+        }
+    }
+}
+
+impl Drop for Stage {
+    fn drop(&mut self) {
+        self.drop_node();
+    }
+}
