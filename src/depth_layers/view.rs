@@ -155,11 +155,10 @@ pub fn fit_receivers(
         receivers.iter().map(|(b, m)| corners(b, &(light_from_world * *m))).collect();
     let (least, far) = distances(&boxes)?;
     // A receiver nearer than every occluder is lit, and must not hide one that is not.
-    let near = least.max(occluders.near);
-    if far <= near {
+    if far <= occluders.near {
         return None;
     }
-    let near = near * (1.0 - NEAR_MARGIN);
+    let near = least.max(occluders.near) * (1.0 - NEAR_MARGIN);
     let (mut min, mut max) = tangents(&boxes, near)?;
     // A penumbra reaches (L/2)(w_o − w_r) around its occluder in u (Atty 2006 section 3.3).
     let spread = 1.0 / occluders.near - 1.0 / far;

@@ -231,7 +231,7 @@ impl GBufferPainter {
             .depth_stencil_attachment(&depth)];
         // Whoever touched the images before is done before they are drawn, and whoever comes next
         // waits by a barrier of its own.
-        let any = vk::PipelineStageFlags::ALL_COMMANDS;
+        let any = vk::PipelineStageFlags::ALL_GRAPHICS;
         let dependencies = [vk::SubpassDependency {
             src_subpass: vk::SUBPASS_EXTERNAL,
             dst_subpass: 0,
