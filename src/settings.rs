@@ -131,6 +131,20 @@ impl Settings {
         s.check_range(key)
     }
 
+    /// The value of one knob, as [`Self::set`] takes it; none for an unknown key.
+    pub fn get(&self, key: &str) -> Option<String> {
+        let s = &self.soft_shadow_map;
+        Some(match key {
+            "map" => s.map.to_string(),
+            "receiver_map" => s.receiver_map.to_string(),
+            "receivers" => name_of(Receivers::ALL, s.receivers),
+            "sides" => name_of(Sides::ALL, s.sides),
+            "accumulate" => name_of(Accumulate::ALL, s.accumulate),
+            "tolerance" => s.tolerance.to_string(),
+            _ => return None,
+        })
+    }
+
     /// Checks every knob, and those that must agree with each other.
     ///
     /// # Errors
@@ -139,6 +153,11 @@ impl Settings {
         KNOBS.iter().try_for_each(|k| self.soft_shadow_map.check_range(k.key))?;
         self.soft_shadow_map.check_agreement()
     }
+}
+
+/// The name of a choice.
+fn name_of<T: PartialEq>(all: &[(&str, T)], choice: T) -> String {
+    all.iter().find(|(_, t)| *t == choice).map_or_else(String::new, |(name, _)| (*name).into())
 }
 
 /// A whole or real number from text.
@@ -176,6 +195,7 @@ mod tests {
             let mut settings = Settings::default();
             settings.set(knob.key, knob.default).unwrap();
             assert_eq!(settings, Settings::default(), "{}", knob.key);
+            assert_eq!(settings.get(knob.key).as_deref(), Some(knob.default));
         }
         Settings::default().check().unwrap();
     }

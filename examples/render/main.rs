@@ -1,0 +1,99 @@
+//! glTF in; visibility, G-buffer, pictures and a report out.
+//!
+//! `cargo run --release --example render -- scenes/bunny.glb --out out/bunny`
+
+mod options;
+mod output;
+mod report;
+mod shade;
+
+use antumbra::gpu::headless::{FrameTimes, HeadlessDevice, HeadlessOptions, Stage, View};
+use antumbra::scene::{Camera, Scene, from_gltf};
+use image::ExtendedColorType;
+use options::{Options, Stop};
+use output::Files;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let done = options::parse(std::env::args_os()).and_then(|options| render(&options));
+    match done {
+        Ok(summary) => {
+            println!("{summary}");
+            ExitCode::SUCCESS
+        }
+        Err(Stop::Help(text)) => {
+            print!("{text}");
+            ExitCode::SUCCESS
+        }
+        Err(Stop::Wrong(line)) => {
+            eprintln!("{}", line.replace('\n', " "));
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// The scene with the overrides of the command line.
+fn load(options: &Options) -> Result<Scene, Stop> {
+    let mut scene = from_gltf(&options.scene)?;
+    for (node, role) in &options.roles {
+        scene.set_role(node, *role)?;
+    }
+    if scene.triangles() == 0 {
+        let path = options.scene.display();
+        return Err(Stop::Wrong(format!(
+            "{path}: the scene has no triangles; at least one mesh node must be drawn"
+        )));
+    }
+    Ok(scene)
+}
+
+fn render(options: &Options) -> Result<String, Stop> {
+    let scene = load(options)?;
+    let light = scene.light(options.light.as_deref()).map_err(|e| {
+        Stop::Wrong(format!("{}: {e}", options.scene.display()))
+    })?;
+    let [width, height] = options.size;
+    let aspect = f64::from(width) / f64::from(height);
+    let camera = scene.camera.unwrap_or_else(|| Camera::framing(&scene, aspect));
+    let view = View::perspective(&camera, options.size);
+
+    let device =
+        HeadlessDevice::new(&HeadlessOptions { validation: options.validate, driver: None })?;
+    let mut stage = Stage::new(&device, &scene, &view, options.size, options.settings, |_| true)?;
+    let plan = stage.plan(&light.light, None)?;
+    // The first frame warms the driver up and is not timed, unless it is the only one.
+    if options.repeat > 1 {
+        stage.run(&plan)?;
+    }
+    let frames: Vec<FrameTimes> =
+        (0..options.repeat).map(|_| stage.run(&plan)).collect::<Result<_, _>>()?;
+
+    let visibility = stage.visibility()?;
+    let positions = stage.gbuffer().positions()?;
+    let normals = stage.gbuffer().normals()?;
+    let memory = stage.node()?.memory();
+    let report = report::Report { device: &device, options, scene: &scene, plan: &plan, frames, memory };
+
+    let mut files = Files::default();
+    files.exr_y("visibility.exr", options.size, &visibility)?;
+    files.exr_rgb("position.exr", options.size, &positions)?;
+    files.exr_rgb("normal.exr", options.size, &normals)?;
+    let gray: Vec<u8> = visibility.iter().map(|v| (v * 255.0).round() as u8).collect();
+    files.png("visibility.png", options.size, ExtendedColorType::L8, &gray)?;
+    let shaded = shade::shade(light, &visibility, &positions, &normals);
+    files.png("shaded.png", options.size, ExtendedColorType::Rgb8, &shaded)?;
+    files.text("report.json", report.json());
+    let summary = report.summary();
+
+    // The device's last words count too.
+    drop(stage);
+    let messages = device.messages();
+    if let (true, Some(first)) = (options.validate, messages.first()) {
+        return Err(Stop::Wrong(format!(
+            "--validate: {} validation messages, the first: {first}",
+            messages.len()
+        )));
+    }
+    files.write(&options.out)?;
+    Ok(summary)
+}

@@ -1,0 +1,164 @@
+//! The command line.
+
+use antumbra::scene::Role;
+use antumbra::settings::KNOBS;
+use antumbra::{Error, Settings, Technique};
+use clap::{CommandFactory, FromArgMatches, Parser};
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+/// Renders a glTF scene's soft shadows into EXR, PNG and JSON files.
+#[derive(Parser, Debug)]
+#[command(name = "render")]
+struct Arguments {
+    /// The scene: glTF 2.0, .glb or .gltf
+    scene: PathBuf,
+    /// The folder for the results; made where it does not exist
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// How the visible fraction is computed: soft-shadow-map
+    #[arg(long, value_name = "T", default_value = "soft-shadow-map")]
+    technique: String,
+    /// A setting of the technique, repeatable; see below
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    settings: Vec<String>,
+    /// Image size
+    #[arg(long, value_name = "WxH", default_value = "640x480")]
+    size: String,
+    /// The light's node; the first light without it
+    #[arg(long, value_name = "NODE")]
+    light: Option<String>,
+    /// Overrides a node's role (occluder, receiver, both), repeatable
+    #[arg(long = "role", value_name = "NODE=ROLE")]
+    roles: Vec<String>,
+    /// Frames to time
+    #[arg(long, value_name = "K", default_value_t = 1)]
+    repeat: u32,
+    /// Run under the validation layer with synchronization checks; any message fails the run
+    #[arg(long)]
+    validate: bool,
+    /// Error budget for --technique auto
+    #[arg(long, value_name = "E", hide = true)]
+    max_error: Option<f64>,
+    /// Time budget for --technique auto
+    #[arg(long, value_name = "T", hide = true)]
+    max_ms: Option<f64>,
+}
+
+/// What to render, checked.
+#[derive(Debug)]
+pub struct Options {
+    pub scene: PathBuf,
+    pub out: PathBuf,
+    pub settings: Settings,
+    pub size: [u32; 2],
+    pub light: Option<String>,
+    pub roles: Vec<(String, Role)>,
+    pub repeat: u32,
+    pub validate: bool,
+}
+
+/// Help text, or what is wrong as one line.
+#[derive(Debug)]
+pub enum Stop {
+    Help(String),
+    Wrong(String),
+}
+
+impl From<Error> for Stop {
+    fn from(error: Error) -> Self {
+        Self::Wrong(error.to_string())
+    }
+}
+
+fn wrong(option: &str, problem: impl AsRef<str>) -> Stop {
+    Stop::Wrong(format!("{option}: {}", problem.as_ref()))
+}
+
+/// The settings as the end of the help text.
+fn knobs() -> String {
+    let mut text = String::from("Settings (--set KEY=VALUE):\n");
+    for k in KNOBS {
+        text.push_str(&format!(
+            "  {:<14} {} [{}; default {}]\n",
+            k.key,
+            k.about,
+            if k.unit == "choice" { k.range.into() } else { format!("{}, {}", k.range, k.unit) },
+            k.default
+        ));
+    }
+    text
+}
+
+/// Reads and checks a command line.
+///
+/// # Errors
+/// The help text where it was asked for; one line for anything wrong.
+pub fn parse(arguments: impl Iterator<Item = OsString>) -> Result<Options, Stop> {
+    let command = Arguments::command().after_help(knobs());
+    let matches = command.try_get_matches_from(arguments).map_err(|e| {
+        if e.use_stderr() {
+            // The first paragraph names the argument; usage and tips follow it.
+            let text = e.to_string();
+            let first: Vec<_> =
+                text.lines().map(str::trim).take_while(|line| !line.is_empty()).collect();
+            let line = first.join(" ");
+            Stop::Wrong(line.strip_prefix("error: ").unwrap_or(&line).to_string())
+        } else {
+            Stop::Help(e.to_string())
+        }
+    })?;
+    let a = Arguments::from_arg_matches(&matches).map_err(|e| Stop::Wrong(e.to_string()))?;
+    for (option, given) in
+        [("--max-error", a.max_error.is_some()), ("--max-ms", a.max_ms.is_some())]
+    {
+        if given {
+            return Err(wrong(
+                option,
+                "is a budget for --technique auto, which this version does not have; choose a \
+                 technique and its settings",
+            ));
+        }
+    }
+    let technique: Technique = a.technique.parse()?;
+    let mut settings = Settings { technique, ..Settings::default() };
+    for assignment in &a.settings {
+        let (key, value) = assignment
+            .split_once('=')
+            .ok_or_else(|| wrong("--set", format!("\"{assignment}\" is not KEY=VALUE")))?;
+        settings.set(key.trim(), value.trim())?;
+    }
+    settings.check()?;
+    let roles = a
+        .roles
+        .iter()
+        .map(|assignment| {
+            let (node, role) = assignment
+                .rsplit_once('=')
+                .ok_or_else(|| wrong("--role", format!("\"{assignment}\" is not NODE=ROLE")))?;
+            Ok((node.to_string(), role.parse::<Role>()?))
+        })
+        .collect::<Result<_, Stop>>()?;
+    if a.repeat == 0 {
+        return Err(wrong("--repeat", "0 frames cannot be timed; give 1 or more"));
+    }
+    Ok(Options {
+        scene: a.scene,
+        out: a.out,
+        settings,
+        size: size(&a.size)?,
+        light: a.light,
+        roles,
+        repeat: a.repeat,
+        validate: a.validate,
+    })
+}
+
+fn size(text: &str) -> Result<[u32; 2], Stop> {
+    let sides = text.split_once(['x', 'X', '×']);
+    let parsed = sides.and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
+    match parsed {
+        Some([w, h]) if (1..=16384).contains(&w) && (1..=16384).contains(&h) => Ok([w, h]),
+        _ => Err(wrong("--size", format!("\"{text}\" is not WxH with sides of 1 to 16384"))),
+    }
+}

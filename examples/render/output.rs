@@ -1,0 +1,103 @@
+//! The files: encoded whole in memory, then written all or none.
+
+use antumbra::Error;
+use exr::prelude::{Image as ExrImage, SpecificChannels, Vec2, WritableImage};
+use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
+use std::fs;
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+
+/// Files to be, by name.
+#[derive(Default)]
+pub struct Files(Vec<(&'static str, Vec<u8>)>);
+
+fn failed(path: impl AsRef<Path>, problem: impl ToString) -> Error {
+    Error::File { path: path.as_ref().display().to_string(), problem: problem.to_string() }
+}
+
+impl Files {
+    /// One 32-bit float channel.
+    pub fn exr_y(
+        &mut self,
+        name: &'static str,
+        [width, height]: [u32; 2],
+        values: &[f32],
+    ) -> Result<(), Error> {
+        let at = |p: Vec2<usize>| (values[p.y() * width as usize + p.x()],);
+        let channels = SpecificChannels::build().with_channel("Y").with_pixel_fn(at);
+        let image = ExrImage::from_channels((width as usize, height as usize), channels);
+        let mut bytes = Cursor::new(Vec::new());
+        image.write().to_buffered(&mut bytes).map_err(|e| failed(name, e))?;
+        self.0.push((name, bytes.into_inner()));
+        Ok(())
+    }
+
+    /// Three 32-bit float channels, R, G and B.
+    pub fn exr_rgb(
+        &mut self,
+        name: &'static str,
+        [width, height]: [u32; 2],
+        values: &[[f32; 4]],
+    ) -> Result<(), Error> {
+        let at = |p: Vec2<usize>| {
+            let [r, g, b, _] = values[p.y() * width as usize + p.x()];
+            (r, g, b)
+        };
+        let image = ExrImage::from_channels(
+            (width as usize, height as usize),
+            SpecificChannels::rgb(at),
+        );
+        let mut bytes = Cursor::new(Vec::new());
+        image.write().to_buffered(&mut bytes).map_err(|e| failed(name, e))?;
+        self.0.push((name, bytes.into_inner()));
+        Ok(())
+    }
+
+    /// 8-bit pixels.
+    pub fn png(
+        &mut self,
+        name: &'static str,
+        [width, height]: [u32; 2],
+        color: ExtendedColorType,
+        pixels: &[u8],
+    ) -> Result<(), Error> {
+        let mut bytes = Vec::new();
+        PngEncoder::new(&mut bytes)
+            .write_image(pixels, width, height, color)
+            .map_err(|e| failed(name, e))?;
+        self.0.push((name, bytes));
+        Ok(())
+    }
+
+    /// Text as it is.
+    pub fn text(&mut self, name: &'static str, text: String) {
+        self.0.push((name, text.into_bytes()));
+    }
+
+    /// Writes every file under another name, then gives them theirs; takes back what it wrote where
+    /// that fails.
+    pub fn write(&self, folder: &Path) -> Result<(), Error> {
+        fs::create_dir_all(folder).map_err(|e| failed(folder, e))?;
+        let temporary = |name: &str| -> PathBuf { folder.join(format!(".{name}.part")) };
+        let written = self.0.iter().try_for_each(|(name, bytes)| {
+            fs::write(temporary(name), bytes).map_err(|e| failed(folder.join(name), e))
+        });
+        let placed = written.and_then(|()| {
+            // A folder in a file's place is the one thing that can still stop a rename.
+            if let Some((name, _)) = self.0.iter().find(|(name, _)| folder.join(name).is_dir()) {
+                return Err(failed(folder.join(name), "a folder is in the file's place"));
+            }
+            self.0.iter().try_for_each(|(name, _)| {
+                let target = folder.join(name);
+                fs::rename(temporary(name), &target).map_err(|e| failed(target, e))
+            })
+        });
+        if placed.is_err() {
+            for (name, _) in &self.0 {
+                // What is not there needs no removing.
+                let _ = fs::remove_file(temporary(name));
+            }
+        }
+        placed
+    }
+}

@@ -1,0 +1,113 @@
+//! What ran, what did not, why, and what it cost.
+
+use crate::options::Options;
+use antumbra::gpu::headless::{FrameTimes, HeadlessDevice};
+use antumbra::graph::Need;
+use antumbra::scene::Scene;
+use antumbra::settings::KNOBS;
+use antumbra::{FramePlan, Settings};
+use serde_json::{Map, Value, json};
+use std::time::Duration;
+
+/// Everything the report is made of.
+pub struct Report<'a> {
+    pub device: &'a HeadlessDevice,
+    pub options: &'a Options,
+    pub scene: &'a Scene,
+    pub plan: &'a FramePlan,
+    pub frames: Vec<FrameTimes>,
+    pub memory: Vec<(&'static str, u64)>,
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    match values.len() {
+        0 => 0.0,
+        n if n % 2 == 1 => values[n / 2],
+        n => 0.5 * (values[n / 2 - 1] + values[n / 2]),
+    }
+}
+
+fn settings_of(settings: &Settings) -> Map<String, Value> {
+    KNOBS
+        .iter()
+        .filter_map(|k| {
+            let value = settings.get(k.key)?;
+            let value = value.parse::<f64>().map_or_else(|_| json!(value), |n| json!(n));
+            Some((k.key.to_string(), value))
+        })
+        .collect()
+}
+
+impl Report<'_> {
+    fn median_ms(&self, of: impl Fn(&FrameTimes) -> Duration) -> f64 {
+        median(self.frames.iter().map(|f| of(f).as_secs_f64() * 1e3).collect())
+    }
+
+    fn pass_ms(&self, name: &str) -> Option<f64> {
+        let times: Vec<f64> = self
+            .frames
+            .iter()
+            .flat_map(|f| f.passes.iter().filter(|p| p.0 == name).map(|p| p.1))
+            .collect();
+        (!times.is_empty()).then(|| median(times))
+    }
+
+    fn gpu_bytes(&self) -> u64 {
+        self.memory.iter().map(|(_, bytes)| bytes).sum()
+    }
+
+    /// The text of report.json.
+    pub fn json(&self) -> String {
+        let graph = &self.plan.plan.graph;
+        let passes: Vec<_> = self
+            .plan
+            .plan
+            .steps
+            .iter()
+            .map(|step| {
+                let pass = &graph.passes()[step.pass];
+                let (Need::Yes(why) | Need::No(why)) = &pass.need;
+                json!({ "name": pass.name, "ms": self.pass_ms(pass.name), "why": why })
+            })
+            .collect();
+        let skipped: Vec<_> = self
+            .plan
+            .plan
+            .skipped
+            .iter()
+            .map(|s| json!({ "name": graph.passes()[s.pass].name, "why": s.why }))
+            .collect();
+        let memory: Map<String, Value> =
+            self.memory.iter().map(|(name, bytes)| ((*name).into(), json!(bytes))).collect();
+        let report = json!({
+            "driver": self.device.name(),
+            "technique": self.options.settings.technique.name(),
+            "settings": settings_of(&self.options.settings),
+            "size": self.options.size,
+            "passes": passes,
+            "skipped": skipped,
+            "frame_ms": self.median_ms(|f| f.frame),
+            "record_us": self.median_ms(|f| f.record) * 1e3,
+            "gpu_bytes": self.gpu_bytes(),
+            "memory": memory,
+            "triangles": self.scene.triangles(),
+            "lights": self.scene.lights.len(),
+        });
+        format!("{report:#}\n")
+    }
+
+    /// Where to look and what it cost, for a person.
+    pub fn summary(&self) -> String {
+        let [width, height] = self.options.size;
+        format!(
+            "{}: {} triangles, {width}×{height} pixels, {}, {:.1} ms a frame on {}, {:.1} MB",
+            self.options.out.join("shaded.png").display(),
+            self.scene.triangles(),
+            self.options.settings.technique.name(),
+            self.median_ms(|f| f.frame),
+            self.device.name(),
+            self.gpu_bytes() as f64 / 1e6,
+        )
+    }
+}
