@@ -182,7 +182,9 @@ void main()
         r.n_y[i] = n.y;
         r.n_0[i] = p.normal.z - dot(n, push.first);
         r.c[i] = c;
-        r.bias[i] = push.snap * (abs(n.x) + abs(n.y)) +
+        // A patch stands for the surface within half a texel of its centre; nearer to the plane than
+        // that it may be the pixel's own.
+        r.bias[i] = 0.5 * length(1.0 / push.texels_per_uv) + push.snap * (abs(n.x) + abs(n.y)) +
                     ROUNDING * (dot(abs(n), abs(t)) + abs(r.n_0[i]) + abs(c) * w);
         below[i] = there && p.blocks ? 1.0 - fraction_above(p.normal.xy * half_light, c) : 0.0;
     }
