@@ -13,7 +13,7 @@
 //!
 //! - [`closed_form`]: one convex polygon before a rectangle light, exact to rounding.
 //! - [`trace`]: whole scenes by stratified rays, with an estimate of its own noise.
-//! - `metrics`: the error of an image as Atty 2006 section 5.2.1 counts it, and what that hides.
+//! - [`metrics`]: the error of an image as Atty 2006 section 5.2.1 counts it, and what that hides.
 //!
 //! Three conventions hold for both methods, so that they agree with each other and with what a
 //! rasterizing technique can reproduce:
@@ -25,9 +25,11 @@
 //! - Blockers are two-sided, whatever their winding.
 
 pub mod closed_form;
+pub mod metrics;
 pub mod trace;
 
 pub use closed_form::{visible_fraction_of_polygon, visible_fraction_of_quad};
+pub use metrics::ErrorSummary;
 pub use trace::{Estimate, Receiver, Sampling, Traced, Tracer};
 
 #[cfg(test)]
