@@ -4,9 +4,12 @@
 //! (feature `gltf`, `from_gltf`) or from the generators in [`generate`]; a host with its own
 //! scene needs none of this.
 
-use crate::RectangleLight;
-use glam::{DMat4, DVec3};
+use crate::{Error, RectangleLight};
+use glam::{DMat3, DMat4, DVec3};
+use std::fmt;
+use std::str::FromStr;
 
+mod framing;
 pub mod generate;
 #[cfg(feature = "gltf")]
 mod gltf;
@@ -37,6 +40,36 @@ impl Role {
     }
 }
 
+impl fmt::Display for Role {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Occluder => "occluder",
+            Self::Receiver => "receiver",
+            Self::Both => "both",
+        })
+    }
+}
+
+impl FromStr for Role {
+    type Err = Error;
+
+    /// Reads `occluder`, `receiver` or `both`, as in a file's `shadow_role`.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for any other word.
+    fn from_str(word: &str) -> Result<Self, Error> {
+        match word {
+            "occluder" => Ok(Self::Occluder),
+            "receiver" => Ok(Self::Receiver),
+            "both" => Ok(Self::Both),
+            _ => Err(Error::Scene(format!(
+                "the role {} is not known; write occluder, receiver or both",
+                quoted(word)
+            ))),
+        }
+    }
+}
+
 /// Triangles in mesh space, metres once its instance's transform is applied.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
@@ -57,10 +90,33 @@ pub struct Instance {
     pub name: String,
     /// Index into [`Scene::meshes`].
     pub mesh: usize,
-    /// Mesh space to world space; any affine transform, mirrored ones included.
+    /// Mesh space to world space; any affine transform, mirrored and flattening ones included, so
+    /// it may have no inverse.
     pub world_from_mesh: DMat4,
     /// Occluder, receiver or both.
     pub role: Role,
+}
+
+impl Instance {
+    /// Whether the transform mirrors: a triangle that is counter-clockwise in the mesh is then
+    /// clockwise in the world, and that side is still its front, as glTF 2.0 §3.7.4 has it.
+    pub fn mirrored(&self) -> bool {
+        self.world_from_mesh.determinant() < 0.0
+    }
+
+    /// Takes normals from mesh space to world space; the results still have to be normalized.
+    ///
+    /// These are the cofactors of the transform, which equal its inverse transpose but for a
+    /// positive factor, and exist where the inverse does not.
+    pub fn world_from_normal(&self) -> DMat3 {
+        let m = DMat3::from_mat4(self.world_from_mesh);
+        let cofactors = DMat3::from_cols(
+            m.y_axis.cross(m.z_axis),
+            m.z_axis.cross(m.x_axis),
+            m.x_axis.cross(m.y_axis),
+        );
+        if self.mirrored() { -cofactors } else { cofactors }
+    }
 }
 
 /// A rectangle light placed in the world.
@@ -100,6 +156,39 @@ pub struct Scene {
     pub camera: Option<Camera>,
 }
 
+/// An axis-aligned box in world space, in metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// The least coordinates.
+    pub min: DVec3,
+    /// The greatest coordinates.
+    pub max: DVec3,
+}
+
+impl Bounds {
+    /// The middle of the box.
+    pub fn center(&self) -> DVec3 {
+        self.min.midpoint(self.max)
+    }
+
+    /// The lengths of its edges.
+    pub fn size(&self) -> DVec3 {
+        self.max - self.min
+    }
+
+    /// The eight corners.
+    pub fn corners(&self) -> [DVec3; 8] {
+        std::array::from_fn(|i| {
+            let pick = |bit: usize, low: f64, high: f64| if i >> bit & 1 == 0 { low } else { high };
+            DVec3::new(
+                pick(0, self.min.x, self.max.x),
+                pick(1, self.min.y, self.max.y),
+                pick(2, self.min.z, self.max.z),
+            )
+        })
+    }
+}
+
 impl Scene {
     /// How many triangles all instances draw together.
     pub fn triangles(&self) -> usize {
@@ -118,4 +207,95 @@ impl Scene {
                 .map(|p| i.world_from_mesh.transform_point3(DVec3::from_array(p.map(f64::from))))
         })
     }
+
+    /// The box around the instances that `keep` accepts; `None` where they hold no vertex.
+    pub fn bounds(&self, keep: impl Fn(&Instance) -> bool) -> Option<Bounds> {
+        self.world_positions(keep).fold(None, |bounds, p| {
+            let b = bounds.unwrap_or(Bounds { min: p, max: p });
+            Some(Bounds { min: b.min.min(p), max: b.max.max(p) })
+        })
+    }
+
+    /// Adds a mesh, placed once.
+    pub fn add(&mut self, name: &str, mesh: Mesh, world_from_mesh: DMat4, role: Role) {
+        let instance =
+            Instance { name: name.into(), mesh: self.meshes.len(), world_from_mesh, role };
+        self.meshes.push(mesh);
+        self.instances.push(instance);
+    }
+
+    /// The light of that name, or the first one.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] where there is no such light; the sentence names those there are.
+    pub fn light(&self, name: Option<&str>) -> Result<&AreaLight, Error> {
+        let Some(first) = self.lights.first() else {
+            return Err(Error::Scene(
+                "the scene has no area light; give a node the extras \"area_light\": \"rectangle\", \
+                 \"width\" and \"height\""
+                    .into(),
+            ));
+        };
+        let Some(name) = name else { return Ok(first) };
+        self.lights.iter().find(|l| l.name == name).ok_or_else(|| {
+            Error::Scene(format!(
+                "no light is named {}; the lights are {}",
+                quoted(name),
+                listed(self.lights.iter().map(|l| l.name.as_str()))
+            ))
+        })
+    }
+
+    /// Gives every instance of the node of that name another role.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] where no node with a mesh has that name; the sentence names those there are.
+    pub fn set_role(&mut self, node: &str, role: Role) -> Result<(), Error> {
+        let mut found = false;
+        for instance in self.instances.iter_mut().filter(|i| i.name == node) {
+            instance.role = role;
+            found = true;
+        }
+        if found {
+            return Ok(());
+        }
+        Err(Error::Scene(format!(
+            "no node with a mesh is named {}; the nodes are {}",
+            quoted(node),
+            listed(self.instances.iter().map(|i| i.name.as_str()))
+        )))
+    }
 }
+
+/// How many names a sentence lists before it says how many more there are.
+const NAMES_LISTED: usize = 6;
+
+/// How many characters of a name a sentence shows.
+const NAME_SHOWN: usize = 60;
+
+/// A name from a file or a command line as a sentence shows it: in quotes, on one line, not endless.
+pub(crate) fn quoted(name: &str) -> String {
+    let shown: String = name.chars().take(NAME_SHOWN).collect();
+    let rest = if shown.len() < name.len() { "…" } else { "" };
+    format!("{shown:?}{rest}")
+}
+
+/// The first of some names, each once, and how many more there are.
+fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    let mut seen: Vec<&str> = Vec::new();
+    for name in names {
+        // An instance shares its node's name with the others of that node, which are its neighbours.
+        if seen.last() != Some(&name) {
+            seen.push(name);
+        }
+    }
+    if seen.is_empty() {
+        return "none".into();
+    }
+    let shown: Vec<String> = seen.iter().take(NAMES_LISTED).map(|n| quoted(n)).collect();
+    let more = seen.len().saturating_sub(NAMES_LISTED);
+    if more > 0 { format!("{} and {more} more", shown.join(", ")) } else { shown.join(", ") }
+}
+
+#[cfg(test)]
+mod tests;
