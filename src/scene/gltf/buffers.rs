@@ -1,0 +1,199 @@
+//! Bytes: the .glb container, data URIs, and files beside the scene's own.
+
+use super::json::{Root, at};
+use super::{Problem, quoted};
+use base64::Engine as _;
+use base64::alphabet::STANDARD;
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
+use percent_encoding::percent_decode_str;
+use std::cell::{Cell, OnceCell};
+use std::io::Read as _;
+use std::path::{Component, Path, PathBuf};
+
+/// The most that all buffers of a scene may hold together, so that a small file which names a large
+/// one many times cannot fill the memory.
+const MAX_BYTES: u64 = 4 << 30;
+
+/// Padded or not: exporters differ.
+const BASE64: GeneralPurpose = GeneralPurpose::new(
+    &STANDARD,
+    GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
+);
+
+/// Splits a file into its JSON and, for a .glb, its binary chunk. Told apart by content, not name.
+pub(super) fn split(file: &[u8]) -> Result<(&[u8], Option<&[u8]>), Problem> {
+    let Some(rest) = file.strip_prefix(b"glTF") else { return Ok((file, None)) };
+    let (version, rest) = word(rest).ok_or("its .glb header is cut off")?;
+    if version != 2 {
+        return Err(format!("it is a .glb of version {version}; only version 2 is read"));
+    }
+    let (length, _) = word(rest).ok_or("its .glb header is cut off")?;
+    let whole = file.get(..length as usize).ok_or_else(|| {
+        format!("its .glb header claims {length} bytes, and the file has {}", file.len())
+    })?;
+    let mut rest = whole.get(12..).ok_or("its .glb header claims less than a header's 12 bytes")?;
+    let mut json = None;
+    while !rest.is_empty() {
+        let (kind, chunk, after) = chunk(rest)?;
+        match (json, &kind) {
+            (None, b"JSON") => json = Some(chunk),
+            (None, _) => return Err("its first .glb chunk is not JSON".into()),
+            (Some(json), b"BIN\0") => return Ok((json, Some(chunk))),
+            // Other chunks belong to extensions; glTF 2.0 §4.4.3.1 has clients ignore them.
+            (Some(_), _) => {}
+        }
+        rest = after;
+    }
+    Ok((json.ok_or("its .glb container is empty")?, None))
+}
+
+fn word(bytes: &[u8]) -> Option<(u32, &[u8])> {
+    let (word, rest) = bytes.split_first_chunk()?;
+    Some((u32::from_le_bytes(*word), rest))
+}
+
+type Chunk<'a> = ([u8; 4], &'a [u8], &'a [u8]);
+
+fn chunk(bytes: &[u8]) -> Result<Chunk<'_>, Problem> {
+    let (length, rest) = word(bytes).ok_or("a .glb chunk's header is cut off")?;
+    let (kind, rest) = rest.split_first_chunk().ok_or("a .glb chunk's header is cut off")?;
+    let length = length as usize;
+    if length > rest.len() {
+        return Err(format!(
+            "a .glb chunk claims {length} bytes, and {} are left in the file",
+            rest.len()
+        ));
+    }
+    let (chunk, after) = rest.split_at(length);
+    Ok((*kind, chunk, after))
+}
+
+/// The file's buffers, each read when first asked for: what only an animation needs is not opened.
+pub(super) struct Buffers<'a> {
+    root: &'a Root,
+    /// The .glb's binary chunk.
+    chunk: Option<&'a [u8]>,
+    folder: &'a Path,
+    read: Vec<OnceCell<Vec<u8>>>,
+    total: Cell<u64>,
+}
+
+impl<'a> Buffers<'a> {
+    pub fn new(root: &'a Root, chunk: Option<&'a [u8]>, folder: &'a Path) -> Self {
+        let read = root.buffers.iter().map(|_| OnceCell::new()).collect();
+        Self { root, chunk, folder, read, total: Cell::new(0) }
+    }
+
+    /// The bytes of `bufferViews[index]`, and its stride; `owner` is who asks, for the sentence.
+    pub fn view(
+        &self,
+        index: usize,
+        owner: impl Fn() -> String,
+    ) -> Result<(&[u8], Option<u64>), Problem> {
+        let view = at(&self.root.buffer_views, index, "bufferViews", &owner)?;
+        let bytes = self.buffer(view.buffer, index)?;
+        let range = usize::try_from(view.byte_offset).ok().zip(
+            view.byte_offset.checked_add(view.byte_length).and_then(|e| usize::try_from(e).ok()),
+        );
+        let bytes = range.and_then(|(start, end)| bytes.get(start..end)).ok_or_else(|| {
+            format!(
+                "bufferViews[{index}] spans {} bytes from byte {} of buffers[{}], which holds {}",
+                view.byte_length,
+                view.byte_offset,
+                view.buffer,
+                bytes.len()
+            )
+        })?;
+        Ok((bytes, view.byte_stride))
+    }
+
+    fn buffer(&self, index: usize, view: usize) -> Result<&[u8], Problem> {
+        let buffer = at(&self.root.buffers, index, "buffers", || format!("bufferViews[{view}]"))?;
+        let cell = at(&self.read, index, "buffers", || format!("bufferViews[{view}]"))?;
+        let bytes = match (&buffer.uri, cell.get()) {
+            (_, Some(bytes)) => bytes,
+            (Some(uri), None) => {
+                let total = self.total.get().saturating_add(buffer.byte_length);
+                if total > MAX_BYTES {
+                    return Err(format!(
+                        "its buffers hold more than {} GiB together",
+                        MAX_BYTES >> 30
+                    ));
+                }
+                self.total.set(total);
+                let bytes = read(uri, buffer.byte_length, self.folder)
+                    .map_err(|problem| format!("buffers[{index}]: {problem}"))?;
+                cell.get_or_init(|| bytes)
+            }
+            (None, None) => self.chunk.filter(|_| index == 0).ok_or_else(|| {
+                format!("buffers[{index}] has no uri, and the file no binary chunk for it")
+            })?,
+        };
+        // What follows the stated length is padding.
+        usize::try_from(buffer.byte_length).ok().and_then(|n| bytes.get(..n)).ok_or_else(|| {
+            format!(
+                "buffers[{index}] states {} bytes and holds {}",
+                buffer.byte_length,
+                bytes.len()
+            )
+        })
+    }
+}
+
+/// The bytes behind a URI, at most `length` of a file's.
+fn read(uri: &str, length: u64, folder: &Path) -> Result<Vec<u8>, Problem> {
+    if let Some(data) = uri.strip_prefix("data:") {
+        return decode(data);
+    }
+    let path = beside(uri, folder)?;
+    let unreadable = |e: std::io::Error| format!("its file {} cannot be read: {e}", quoted(uri));
+    // A pipe or a device could keep a reader forever, and a pipe already on opening.
+    if !std::fs::metadata(&path).map_err(unreadable)?.is_file() {
+        return Err(format!("its uri {} is not a regular file", quoted(uri)));
+    }
+    let file = std::fs::File::open(&path).map_err(unreadable)?;
+    let mut bytes = Vec::new();
+    file.take(length).read_to_end(&mut bytes).map_err(unreadable)?;
+    Ok(bytes)
+}
+
+/// The bytes of a data URI after its `data:`.
+fn decode(data: &str) -> Result<Vec<u8>, Problem> {
+    let encoded = data
+        .split_once(',')
+        .filter(|(header, _)| header.ends_with(";base64"))
+        .map(|(_, encoded)| encoded)
+        .ok_or("its data URI must read data:application/octet-stream;base64,…")?;
+    let encoded: Vec<u8> = percent_decode_str(encoded).collect();
+    BASE64.decode(encoded).map_err(|e| format!("its data URI is not base64: {e}"))
+}
+
+/// The path of a relative URI, which must stay inside the scene's folder.
+fn beside(uri: &str, folder: &Path) -> Result<PathBuf, Problem> {
+    let outside = || {
+        format!(
+            "its uri {} must be a relative path to a file in the scene's folder or below",
+            quoted(uri)
+        )
+    };
+    // A colon before the first slash ends a scheme (RFC 3986 §4.2); one in a file's name is escaped.
+    if uri.split('/').next().is_some_and(|first| first.contains(':')) {
+        return Err(outside());
+    }
+    let name = percent_decode_str(uri)
+        .decode_utf8()
+        .map_err(|_| format!("its uri {} is not UTF-8 once its % escapes are read", quoted(uri)))?;
+    let relative = Path::new(name.as_ref());
+    let inside = |c: Component<'_>| matches!(c, Component::Normal(_) | Component::CurDir);
+    if name.is_empty() || !relative.components().all(inside) {
+        return Err(outside());
+    }
+    let path = folder.join(relative);
+    // A link could still lead out. What does not exist is left to the reader's own sentence.
+    if let (Ok(real), Ok(real_folder)) = (path.canonicalize(), folder.canonicalize())
+        && !real.starts_with(real_folder)
+    {
+        return Err(outside());
+    }
+    Ok(path)
+}

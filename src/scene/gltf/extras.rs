@@ -1,0 +1,123 @@
+//! What nodes say in their extras: area lights and shadow roles.
+//!
+//! glTF 2.0 has no area light; extras are what Blender writes a node's custom properties to.
+
+use super::json::Root;
+use super::{MAX_COORDINATE, Problem, nodes, quoted};
+use crate::scene::{AreaLight, Role};
+use crate::{Error, RectangleLight};
+use glam::DMat4;
+use serde_json::Value;
+
+/// The shortest and longest side of a light in the world, in metres: techniques divide by its area,
+/// in f32 on the GPU, and multiply by it.
+const SIDES: [f64; 2] = [1e-6, 1e6];
+
+/// The node's `shadow_role`, or [`Role::Both`].
+pub(super) fn role(extras: &Value) -> Result<Role, Problem> {
+    let Some(value) = extras.get("shadow_role") else { return Ok(Role::default()) };
+    value.as_str().and_then(|word| word.parse().ok()).ok_or_else(|| {
+        format!("its shadow_role is {}; write occluder, receiver or both", shown(value))
+    })
+}
+
+/// The node's area light, if it has one: its rectangle carried into the world.
+pub(super) fn light(
+    root: &Root,
+    node: usize,
+    extras: &Value,
+    world: &DMat4,
+) -> Result<Option<AreaLight>, Problem> {
+    let Some(kind) = extras.get("area_light") else { return Ok(None) };
+    let sentence = |problem: Problem| format!("{}: {problem}", nodes::label(root, node));
+    if kind.as_str() != Some("rectangle") {
+        return Err(sentence(format!("its area_light is {}; write \"rectangle\"", shown(kind))));
+    }
+    let light = rectangle(extras, world).map_err(sentence)?;
+    let color = color(extras).map_err(sentence)?;
+    let intensity = match extras.get("intensity") {
+        Some(value) => brightness(value, "intensity").map_err(sentence)?,
+        None => 1.0,
+    };
+    Ok(Some(AreaLight { name: nodes::name(root, node), light, color, intensity }))
+}
+
+fn rectangle(extras: &Value, world: &DMat4) -> Result<RectangleLight, Problem> {
+    let (width, height) = (side(extras, "width")?, side(extras, "height")?);
+    let lacking = match (width == 0.0, height == 0.0) {
+        (true, true) => Some("width 0 and height 0 are a point light"),
+        (true, false) => Some("width 0 is a line light"),
+        (false, true) => Some("height 0 is a line light"),
+        (false, false) => None,
+    };
+    if let Some(lacking) = lacking {
+        return Err(format!(
+            "its {lacking}, which no technique here takes yet; write sides above 0"
+        ));
+    }
+    let half_u = world.x_axis.truncate() * (0.5 * width);
+    let mut half_v = world.y_axis.truncate() * (0.5 * height);
+    for (what, half) in [("width", half_u), ("height", half_v)] {
+        let side = 2.0 * half.length();
+        if !(SIDES[0]..=SIDES[1]).contains(&side) {
+            return Err(format!(
+                "its {what} with the node's scale is {side} m; it must be from {:e} to {:e} m",
+                SIDES[0], SIDES[1]
+            ));
+        }
+    }
+    let center = world.w_axis.truncate();
+    if center.abs().max_element() > MAX_COORDINATE {
+        return Err(format!("it lies further than {MAX_COORDINATE:e} m from the origin"));
+    }
+    // Light leaves along half_v × half_u. Where the node mirrors, that is its +Z: turn one axis.
+    if half_v.cross(half_u).dot(-world.z_axis.truncate()) < 0.0 {
+        half_v = -half_v;
+    }
+    RectangleLight::new(center, half_u, half_v).map_err(|e| match e {
+        Error::Light(problem) => format!(
+            "its light cannot be used: {problem}; a node above it with a rotation and an uneven \
+             scale may skew it"
+        ),
+        other => other.to_string(),
+    })
+}
+
+fn side(extras: &Value, key: &str) -> Result<f64, Problem> {
+    let value = extras.get(key).ok_or_else(|| {
+        format!("its area_light has no {key}; give it one in metres, as in \"{key}\": 1.0")
+    })?;
+    value
+        .as_f64()
+        .filter(|side| side.is_finite() && *side >= 0.0)
+        .ok_or_else(|| format!("its {key} is {}; write a number of metres above 0", shown(value)))
+}
+
+fn color(extras: &Value) -> Result<[f32; 3], Problem> {
+    let Some(value) = extras.get("color") else { return Ok([1.0; 3]) };
+    let channels = value.as_array().filter(|channels| channels.len() == 3).ok_or_else(|| {
+        format!("its color is {}; write three numbers, [red, green, blue]", shown(value))
+    })?;
+    let mut color = [0.0; 3];
+    for (channel, value) in color.iter_mut().zip(channels) {
+        *channel = brightness(value, "color")?;
+    }
+    Ok(color)
+}
+
+fn brightness(value: &Value, key: &str) -> Result<f32, Problem> {
+    let number = value.as_f64().map(|v| v as f32);
+    number
+        .filter(|v| v.is_finite() && *v >= 0.0)
+        .ok_or_else(|| format!("its {key} holds {}; numbers from 0 up are meant", shown(value)))
+}
+
+/// A value as a sentence shows it: on one line, not endless.
+fn shown(value: &Value) -> String {
+    match value {
+        Value::String(word) => quoted(word),
+        Value::Array(_) => "a list".into(),
+        Value::Object(_) => "an object".into(),
+        other => other.to_string(),
+    }
+}

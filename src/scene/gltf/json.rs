@@ -1,0 +1,203 @@
+//! The parts of a glTF file's JSON that shadows depend on, and no others: what is wrong with a
+//! texture or an animation stops no scene.
+//!
+//! Read by serde with numbers in f64, which a node 20 km from the origin needs, and with every index
+//! as the file gives it: whoever follows one checks it (see [`at`]).
+
+use super::Problem;
+use serde::Deserialize;
+use serde_json::Value;
+
+/// What decides whether the rest can be read: another version's members have other types.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct Head {
+    asset: Asset,
+    #[serde(default)]
+    extensions_required: Vec<String>,
+}
+
+#[derive(Deserialize)]
+struct Asset {
+    version: String,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Root {
+    pub scene: Option<usize>,
+    #[serde(default)]
+    pub scenes: Vec<SceneRoots>,
+    #[serde(default)]
+    pub nodes: Vec<Node>,
+    #[serde(default)]
+    pub meshes: Vec<Mesh>,
+    #[serde(default)]
+    pub cameras: Vec<Camera>,
+    #[serde(default)]
+    pub materials: Vec<Material>,
+    #[serde(default)]
+    pub accessors: Vec<Accessor>,
+    #[serde(default)]
+    pub buffer_views: Vec<BufferView>,
+    #[serde(default)]
+    pub buffers: Vec<Buffer>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct SceneRoots {
+    #[serde(default)]
+    pub nodes: Vec<usize>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Node {
+    pub name: Option<String>,
+    #[serde(default)]
+    pub children: Vec<usize>,
+    pub matrix: Option<[f64; 16]>,
+    pub translation: Option<[f64; 3]>,
+    pub rotation: Option<[f64; 4]>,
+    pub scale: Option<[f64; 3]>,
+    pub mesh: Option<usize>,
+    pub camera: Option<usize>,
+    #[serde(default)]
+    pub extras: Value,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Mesh {
+    pub name: Option<String>,
+    #[serde(default)]
+    pub primitives: Vec<Primitive>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Primitive {
+    pub attributes: Attributes,
+    pub indices: Option<usize>,
+    pub material: Option<usize>,
+    pub mode: Option<u64>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Attributes {
+    #[serde(rename = "POSITION")]
+    pub position: Option<usize>,
+    #[serde(rename = "NORMAL")]
+    pub normal: Option<usize>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Camera {
+    /// Absent on an orthographic camera.
+    pub perspective: Option<Perspective>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Perspective {
+    pub yfov: f64,
+    pub znear: f64,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Material {
+    #[serde(default)]
+    pub double_sided: bool,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Accessor {
+    pub buffer_view: Option<usize>,
+    #[serde(default)]
+    pub byte_offset: u64,
+    pub component_type: u32,
+    pub count: u64,
+    #[serde(rename = "type")]
+    pub kind: String,
+    pub sparse: Option<Sparse>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Sparse {
+    pub count: u64,
+    pub indices: SparseIndices,
+    pub values: SparseValues,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct SparseIndices {
+    pub buffer_view: usize,
+    #[serde(default)]
+    pub byte_offset: u64,
+    pub component_type: u32,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct SparseValues {
+    pub buffer_view: usize,
+    #[serde(default)]
+    pub byte_offset: u64,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct BufferView {
+    pub buffer: usize,
+    #[serde(default)]
+    pub byte_offset: u64,
+    pub byte_length: u64,
+    pub byte_stride: Option<u64>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Buffer {
+    pub uri: Option<String>,
+    pub byte_length: u64,
+}
+
+/// How the extensions begin that a file may require because they change neither triangles nor
+/// transforms.
+const HARMLESS: [&str; 5] =
+    ["KHR_lights_punctual", "KHR_materials_", "KHR_technique", "KHR_texture_", "EXT_texture_"];
+
+/// Reads the JSON and refuses files that need more than this loader knows.
+pub(super) fn parse(text: &[u8]) -> Result<Root, Problem> {
+    // A byte order mark is not allowed, and common enough that every reader ignores it.
+    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+    let head: Head = from_json(text)?;
+    let version = &head.asset.version;
+    if version != "2" && !version.starts_with("2.") {
+        let version = super::quoted(version);
+        return Err(format!("its asset.version is {version}; only glTF 2.0 is read"));
+    }
+    let unknown = |name: &&String| !HARMLESS.iter().any(|known| name.starts_with(known));
+    if let Some(name) = head.extensions_required.iter().find(unknown) {
+        return Err(format!(
+            "it requires the extension {}, which is not supported; export it without",
+            super::quoted(name)
+        ));
+    }
+    from_json(text)
+}
+
+fn from_json<'a, T: Deserialize<'a>>(text: &'a [u8]) -> Result<T, Problem> {
+    serde_json::from_slice(text).map_err(|e| format!("it is not the JSON of a glTF 2.0 file: {e}"))
+}
+
+/// Follows an index: `owner` (node "lamp", say) refers to item `index` of the array called `what`.
+pub(super) fn at<'a, T>(
+    items: &'a [T],
+    index: usize,
+    what: &str,
+    owner: impl FnOnce() -> String,
+) -> Result<&'a T, Problem> {
+    items.get(index).ok_or_else(|| {
+        format!("{} refers to {what}[{index}], and the file has {}", owner(), items.len())
+    })
+}

@@ -1,0 +1,142 @@
+//! The node hierarchy: where everything stands, and the camera.
+
+use super::json::{Root, at};
+use super::{MAX_COORDINATE, Problem, quoted};
+use crate::scene::Camera;
+use glam::{DMat3, DMat4, DQuat, DVec3};
+use std::f64::consts::PI;
+
+/// A node of the scene.
+pub(super) struct Placed {
+    /// Index into the file's nodes.
+    pub node: usize,
+    /// Its space to the world's, finite.
+    pub world: DMat4,
+}
+
+/// How far a matrix's last row may be from 0, 0, 0, 1: it is written as f32 and means exactly that.
+const AFFINE: f64 = 1e-5;
+
+/// The node's name, or `node N`.
+pub(super) fn name(root: &Root, node: usize) -> String {
+    match root.nodes.get(node).and_then(|n| n.name.as_deref()) {
+        Some(name) if !name.is_empty() => name.into(),
+        _ => format!("node {node}"),
+    }
+}
+
+/// The node as a sentence names it: `node "lamp"`, or `node 3`.
+pub(super) fn label(root: &Root, node: usize) -> String {
+    match root.nodes.get(node).and_then(|n| n.name.as_deref()) {
+        Some(name) if !name.is_empty() => format!("node {}", quoted(name)),
+        _ => format!("node {node}"),
+    }
+}
+
+/// The nodes of the default scene with their transforms, in the order of the file.
+pub(super) fn placed(root: &Root) -> Result<Vec<Placed>, Problem> {
+    // Parents wait in a list, not on the call stack, which a deep file could exhaust.
+    let mut waiting: Vec<(usize, DMat4)> =
+        roots(root)?.into_iter().map(|node| (node, DMat4::IDENTITY)).collect();
+    let mut seen = vec![false; root.nodes.len()];
+    let mut placed = Vec::new();
+    while let Some((index, parent)) = waiting.pop() {
+        let node = at(&root.nodes, index, "nodes", || "the scene".into())?;
+        // A tree reaches each node once; anything else may be a cycle, or as bad: 2^n paths.
+        if std::mem::replace(&mut seen[index], true) {
+            return Err(format!(
+                "{} is reached twice; a node may have one parent, and none of its own children as that",
+                label(root, index)
+            ));
+        }
+        let local = local(root, index).map_err(|e| format!("{}: {e}", label(root, index)))?;
+        let world = parent * local;
+        if !world.is_finite() {
+            return Err(format!("{}: its transform is not finite", label(root, index)));
+        }
+        for child in &node.children {
+            at(&root.nodes, *child, "nodes", || label(root, index))?;
+            waiting.push((*child, world));
+        }
+        placed.push(Placed { node: index, world });
+    }
+    placed.sort_by_key(|p| p.node);
+    Ok(placed)
+}
+
+fn roots(root: &Root) -> Result<Vec<usize>, Problem> {
+    if root.scene.is_some() || !root.scenes.is_empty() {
+        let index = root.scene.unwrap_or(0);
+        return Ok(at(&root.scenes, index, "scenes", || "its member \"scene\"".into())?
+            .nodes
+            .clone());
+    }
+    let mut is_child = vec![false; root.nodes.len()];
+    for child in root.nodes.iter().flat_map(|n| &n.children) {
+        if let Some(flag) = is_child.get_mut(*child) {
+            *flag = true;
+        }
+    }
+    Ok((0..root.nodes.len()).filter(|node| !is_child[*node]).collect())
+}
+
+/// The node's transform to its parent's space.
+fn local(root: &Root, index: usize) -> Result<DMat4, Problem> {
+    let node = at(&root.nodes, index, "nodes", || "the scene".into())?;
+    if let Some(matrix) = &node.matrix {
+        let m = DMat4::from_cols_array(matrix);
+        let last = m.row(3) - glam::DVec4::W;
+        // Written so that NaN is refused too.
+        if !(last.abs().max_element() <= AFFINE && m.is_finite()) {
+            return Err("its matrix is not finite and affine; its last row must be 0 0 0 1".into());
+        }
+        return Ok(DMat4::from_cols(
+            m.x_axis.with_w(0.0),
+            m.y_axis.with_w(0.0),
+            m.z_axis.with_w(0.0),
+            m.w_axis.with_w(1.0),
+        ));
+    }
+    let translation = DVec3::from_array(node.translation.unwrap_or_default());
+    let scale = DVec3::from_array(node.scale.unwrap_or([1.0; 3]));
+    let rotation = DQuat::from_array(node.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]));
+    // Written as f32, quaternions are not quite of length 1, and a length is a scale.
+    let length = rotation.length();
+    if !(length.is_normal() && translation.is_finite() && scale.is_finite()) {
+        return Err(
+            "its translation, rotation and scale must be finite, and the rotation not 0".into()
+        );
+    }
+    Ok(DMat4::from_scale_rotation_translation(scale, rotation / length, translation))
+}
+
+/// `cameras[index]`, seen from a node; `None` for an orthographic one.
+pub(super) fn camera(
+    root: &Root,
+    index: usize,
+    at_node: &Placed,
+) -> Result<Option<Camera>, Problem> {
+    let camera = at(&root.cameras, index, "cameras", || label(root, at_node.node))?;
+    let Some(perspective) = &camera.perspective else { return Ok(None) };
+    let (yfov, near) = (perspective.yfov, perspective.znear);
+    if !(yfov > 0.0 && yfov < PI) {
+        return Err(format!("cameras[{index}] has a yfov of {yfov}; it must be between 0 and π"));
+    }
+    if !(near > 0.0 && near.is_finite()) {
+        return Err(format!("cameras[{index}] has a znear of {near}; it must be above 0"));
+    }
+    // A camera's scale has no meaning (glTF 2.0 §3.10.3): keep where it looks, then what is up.
+    let m = at_node.world;
+    let z = m.z_axis.truncate().try_normalize();
+    let x = z.and_then(|z| m.y_axis.truncate().cross(z).try_normalize().map(|x| (x, z)));
+    let eye = m.w_axis.truncate();
+    let Some((x, z)) = x.filter(|_| eye.abs().max_element() <= MAX_COORDINATE) else {
+        return Err(format!(
+            "{}: no view can be had from its transform, which is flat or out of reach",
+            label(root, at_node.node)
+        ));
+    };
+    let mut world_from_view = DMat4::from_mat3(DMat3::from_cols(x, z.cross(x), z));
+    world_from_view.w_axis = eye.extend(1.0);
+    Ok(Some(Camera { world_from_view, yfov, near }))
+}

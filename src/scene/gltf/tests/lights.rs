@@ -1,0 +1,141 @@
+//! Area lights in a node's extras.
+
+use super::*;
+use crate::RectangleLight;
+
+/// The light of a node with these members beside its extras.
+fn light(node: Value, extras: Value) -> Result<crate::scene::AreaLight, String> {
+    let mut lamp = node;
+    lamp["name"] = json!("lamp");
+    lamp["extras"] = json!({"area_light": "rectangle", "width": 2.0, "height": 1});
+    let Value::Object(extras) = extras else { panic!("extras are an object") };
+    for (key, value) in extras {
+        lamp["extras"][key] = value;
+    }
+    with_nodes(&json!([{"mesh": 0}, lamp])).map(|scene| scene.light(None).unwrap().clone())
+}
+
+fn rectangle(node: Value) -> RectangleLight {
+    light(node, json!({})).unwrap().light
+}
+
+#[test]
+fn a_light_lies_in_its_nodes_plane_and_emits_along_minus_z() {
+    let lamp = light(json!({"translation": [1, 2, 3]}), json!({})).unwrap();
+    assert_eq!((lamp.name.as_str(), lamp.color, lamp.intensity), ("lamp", [1.0; 3], 1.0));
+    assert_eq!(lamp.light.center(), DVec3::new(1.0, 2.0, 3.0));
+    assert_eq!(lamp.light.emission(), DVec3::NEG_Z);
+    assert_eq!(lamp.light.half_extents(), [1.0, 0.5]);
+    let bright = light(json!({}), json!({"color": [1, 0.5, 0], "intensity": 40})).unwrap();
+    assert_eq!((bright.color, bright.intensity), ([1.0, 0.5, 0.0], 40.0));
+}
+
+#[test]
+fn a_nodes_scale_stretches_its_light() {
+    assert_eq!(rectangle(json!({"scale": [3, 4, 5]})).half_extents(), [3.0, 2.0]);
+    // Flattened along its own normal it is the same light.
+    let flat = rectangle(json!({"scale": [1, 1, 0]}));
+    assert_eq!((flat.half_extents(), flat.emission()), ([1.0, 0.5], DVec3::NEG_Z));
+}
+
+/// Whatever a node mirrors, light leaves where its −Z points.
+#[test]
+fn mirrored_lights_emit_along_their_nodes_minus_z() {
+    for (scale, z) in [
+        ([-1, 1, 1], -1.0),
+        ([1, -1, 1], -1.0),
+        ([1, 1, -1], 1.0),
+        ([-1, -1, 1], -1.0),
+        ([-1, -1, -1], 1.0),
+    ] {
+        let light = rectangle(json!({"scale": scale}));
+        assert_eq!(light.emission(), DVec3::Z * z, "{scale:?}");
+        assert_eq!(light.half_extents(), [1.0, 0.5], "{scale:?}");
+    }
+}
+
+#[test]
+fn lights_that_cannot_be_used_are_refused_by_name() {
+    for (node, extras, sentence) in [
+        (
+            json!({}),
+            json!({"area_light": "disk"}),
+            "its area_light is \"disk\"; write \"rectangle\"",
+        ),
+        (json!({}), json!({"area_light": 1}), "its area_light is 1; write \"rectangle\""),
+        (json!({}), json!({"width": -2}), "its width is -2; write a number of metres above 0"),
+        (json!({}), json!({"height": "NaN"}), "its height is \"NaN\"; write a number"),
+        (
+            json!({}),
+            json!({"height": 0}),
+            "its height 0 is a line light, which no technique here takes yet",
+        ),
+        (json!({}), json!({"width": 0.0}), "its width 0 is a line light"),
+        (json!({}), json!({"width": 0, "height": 0}), "its width 0 and height 0 are a point light"),
+        (json!({}), json!({"color": [1, 1]}), "its color is a list; write three numbers"),
+        (json!({}), json!({"color": [1, -1, 1]}), "its color holds -1; numbers from 0 up"),
+        (json!({}), json!({"intensity": "1"}), "its intensity holds \"1\"; numbers from 0 up"),
+        (json!({"scale": [0, 1, 1]}), json!({}), "its width with the node's scale is 0 m"),
+        (
+            json!({"scale": [1, 1e9, 1]}),
+            json!({}),
+            "its height with the node's scale is 1000000000 m",
+        ),
+        (json!({"translation": [0, 1e10, 0]}), json!({}), "it lies further than 1e9 m"),
+        (
+            json!({"matrix": [1, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}),
+            json!({}),
+            "its light cannot be used: its two axes must be perpendicular",
+        ),
+    ] {
+        let found = light(node, extras).unwrap_err();
+        assert!(found.starts_with(&format!("node \"lamp\": {sentence}")), "{found}");
+    }
+    let nodes = json!([{"mesh": 0}, {"extras": {"area_light": "rectangle", "height": 1}}]);
+    let found = with_nodes(&nodes).unwrap_err();
+    assert!(found.starts_with("node 1: its area_light has no width"), "{found}");
+}
+
+/// A parent that stretches a turned child skews it: refused in the plane, harmless across it.
+#[test]
+fn shear_is_refused_where_it_skews_the_rectangle() {
+    let (file, primitives) = square();
+    let under_stretch = |rotation: [f64; 4]| {
+        let nodes = json!([
+            {"mesh": 0},
+            {"scale": [2, 1, 1], "children": [2]},
+            {"name": "lamp", "rotation": rotation,
+             "extras": {"area_light": "rectangle", "width": 1, "height": 1}},
+        ]);
+        file.scene(&primitives, json!({"nodes": nodes, "scenes": [{"nodes": [0, 1]}]}))
+    };
+    let (sin, cos) = 0.4_f64.sin_cos();
+    assert!(under_stretch([0.0, 0.0, sin, cos]).unwrap_err().contains("uneven scale"));
+    let scene = under_stretch([0.0, sin, 0.0, cos]).unwrap();
+    let light = scene.light(None).unwrap().light;
+    // The plane leans; its normal is on the side of the node's −Z, though no longer along it.
+    let minus_z = DVec3::new(-2.0 * 0.8_f64.sin(), 0.0, -0.8_f64.cos());
+    assert!(light.emission().dot(minus_z) > 0.0);
+}
+
+#[test]
+fn a_scene_without_a_light_is_loaded_and_says_so_when_asked_for_one() {
+    let scene = with_nodes(&json!([{"mesh": 0}])).unwrap();
+    assert!(scene.light(None).is_err());
+}
+
+#[test]
+fn lights_stand_in_the_order_of_the_file() {
+    let (file, primitives) = square();
+    let extras = json!({"area_light": "rectangle", "width": 1, "height": 1});
+    let nodes = json!([
+        {"mesh": 0},
+        {"name": "a", "extras": extras},
+        {"name": "b", "extras": extras, "children": [1]},
+    ]);
+    let members = json!({"nodes": nodes, "scenes": [{"nodes": [2, 0]}]});
+    let scene = file.scene(&primitives, members).unwrap();
+    let names: Vec<_> = scene.lights.iter().map(|l| l.name.as_str()).collect();
+    assert_eq!(names, ["a", "b"]);
+    assert_eq!(scene.light(Some("b")).unwrap().name, "b");
+}
