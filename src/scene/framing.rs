@@ -79,3 +79,44 @@ fn solid(bounds: Bounds) -> Bounds {
         Bounds { min: bounds.min - half, max: bounds.max + half }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
+
+    use super::*;
+    use crate::scene::generate::{spheres, square_light, stage};
+
+    /// All of the frame is in the image, and one corner of it at the margin.
+    #[test]
+    fn the_frame_fits_exactly() {
+        let light = square_light(1.0).unwrap();
+        for scene in [spheres(light), stage(light), Scene::default()] {
+            for aspect in [0.4, 1.0, 2.5] {
+                let camera = Camera::framing(&scene, aspect);
+                let view_from_world = camera.world_from_view.inverse();
+                let tan = (0.5 * camera.yfov).tan();
+                let reach = focus(&scene).corners().map(|c| {
+                    let v = view_from_world.transform_point3(c);
+                    assert!(-v.z > camera.near, "behind the near plane");
+                    (v.x.abs() / (tan * aspect)).max(v.y.abs() / tan) / -v.z
+                });
+                let widest = reach.into_iter().fold(0.0, f64::max);
+                assert!((widest - (1.0 - MARGIN)).abs() < 1e-9, "{aspect}: {widest}");
+            }
+        }
+    }
+
+    /// What casts, its place on the ground, and no more ground than that.
+    #[test]
+    fn the_frame_is_what_casts_and_where_the_shadow_falls() {
+        let mut scene = stage(square_light(1.0).unwrap());
+        let cube = crate::scene::generate::cuboid(DVec3::ONE);
+        let above = DMat4::from_translation(DVec3::Y * 2.0);
+        scene.add("cube", cube, above, crate::scene::Role::Occluder);
+        let frame = focus(&scene);
+        let reach = 0.5 + SHADOW_REACH;
+        assert_eq!(frame.min, DVec3::new(-reach, 0.0, -reach));
+        assert_eq!(frame.max, DVec3::new(reach, 2.5, reach));
+    }
+}

@@ -146,11 +146,10 @@ fn read(uri: &str, length: u64, folder: &Path) -> Result<Vec<u8>, Problem> {
         return decode(data);
     }
     let path = beside(uri, folder)?;
-    let named = || quoted(&path.display().to_string());
-    let unreadable = |e: std::io::Error| format!("{} cannot be read: {e}", named());
+    let unreadable = |e: std::io::Error| format!("its file {} cannot be read: {e}", quoted(uri));
     // A pipe or a device could keep a reader forever, and a pipe already on opening.
     if !std::fs::metadata(&path).map_err(unreadable)?.is_file() {
-        return Err(format!("{} is not a regular file", named()));
+        return Err(format!("its uri {} is not a regular file", quoted(uri)));
     }
     let file = std::fs::File::open(&path).map_err(unreadable)?;
     let mut bytes = Vec::new();

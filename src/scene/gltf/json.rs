@@ -8,10 +8,23 @@ use super::Problem;
 use serde::Deserialize;
 use serde_json::Value;
 
+/// What decides whether the rest can be read: another version's members have other types.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct Head {
+    asset: Asset,
+    #[serde(default)]
+    extensions_required: Vec<String>,
+}
+
+#[derive(Deserialize)]
+struct Asset {
+    version: String,
+}
+
 #[derive(Debug, Default, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(super) struct Root {
-    pub asset: Asset,
     pub scene: Option<usize>,
     #[serde(default)]
     pub scenes: Vec<SceneRoots>,
@@ -29,13 +42,6 @@ pub(super) struct Root {
     pub buffer_views: Vec<BufferView>,
     #[serde(default)]
     pub buffers: Vec<Buffer>,
-    #[serde(default)]
-    pub extensions_required: Vec<String>,
-}
-
-#[derive(Debug, Default, Deserialize)]
-pub(super) struct Asset {
-    pub version: String,
 }
 
 #[derive(Debug, Deserialize)]
@@ -155,29 +161,33 @@ pub(super) struct Buffer {
     pub byte_length: u64,
 }
 
-/// Extensions that a file may require and that change neither triangles nor transforms.
-const HARMLESS: [&str; 4] =
-    ["KHR_lights_punctual", "KHR_materials_", "KHR_texture_", "EXT_texture_"];
+/// How the extensions begin that a file may require because they change neither triangles nor
+/// transforms.
+const HARMLESS: [&str; 5] =
+    ["KHR_lights_punctual", "KHR_materials_", "KHR_technique", "KHR_texture_", "EXT_texture_"];
 
 /// Reads the JSON and refuses files that need more than this loader knows.
 pub(super) fn parse(text: &[u8]) -> Result<Root, Problem> {
     // A byte order mark is not allowed, and common enough that every reader ignores it.
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
-    let root: Root = serde_json::from_slice(text)
-        .map_err(|e| format!("it is not the JSON of a glTF 2.0 file: {e}"))?;
-    let version = &root.asset.version;
+    let head: Head = from_json(text)?;
+    let version = &head.asset.version;
     if version != "2" && !version.starts_with("2.") {
         let version = super::quoted(version);
         return Err(format!("its asset.version is {version}; only glTF 2.0 is read"));
     }
     let unknown = |name: &&String| !HARMLESS.iter().any(|known| name.starts_with(known));
-    if let Some(name) = root.extensions_required.iter().find(unknown) {
+    if let Some(name) = head.extensions_required.iter().find(unknown) {
         return Err(format!(
             "it requires the extension {}, which is not supported; export it without",
             super::quoted(name)
         ));
     }
-    Ok(root)
+    from_json(text)
+}
+
+fn from_json<'a, T: Deserialize<'a>>(text: &'a [u8]) -> Result<T, Problem> {
+    serde_json::from_slice(text).map_err(|e| format!("it is not the JSON of a glTF 2.0 file: {e}"))
 }
 
 /// Follows an index: `owner` (node "lamp", say) refers to item `index` of the array called `what`.

@@ -67,7 +67,9 @@ pub(super) fn placed(root: &Root) -> Result<Vec<Placed>, Problem> {
 fn roots(root: &Root) -> Result<Vec<usize>, Problem> {
     if root.scene.is_some() || !root.scenes.is_empty() {
         let index = root.scene.unwrap_or(0);
-        return Ok(at(&root.scenes, index, "scenes", || "its default scene".into())?.nodes.clone());
+        return Ok(at(&root.scenes, index, "scenes", || "its member \"scene\"".into())?
+            .nodes
+            .clone());
     }
     let mut is_child = vec![false; root.nodes.len()];
     for child in root.nodes.iter().flat_map(|n| &n.children) {

@@ -186,7 +186,7 @@ impl Source<'_> {
         let point = vertex.and_then(|v| Some((v, self.positions.get(v)?)));
         let Some((vertex, point)) = point else {
             return Err(format!(
-                "{}: its index {} at {corner} is beyond its {} positions",
+                "{}: its corner {corner} is vertex {}, and it has {} positions",
                 self.label,
                 vertex.unwrap_or(u32::MAX),
                 self.positions.len()

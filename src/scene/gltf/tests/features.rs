@@ -218,6 +218,9 @@ fn transforms_multiply_down_the_hierarchy_in_f64() {
     let found = scene.instances[0].world_from_mesh;
     assert!(found.abs_diff_eq(expected, 1e-11), "{found}");
 
+    let scene = with_nodes(&json!([{"mesh": 0, "rotation": [0, 0, 0, 3]}])).unwrap();
+    assert_eq!(scene.instances[0].world_from_mesh, DMat4::IDENTITY, "a rotation never scales");
+
     let mut matrix = expected.to_cols_array();
     matrix[3] = 1e-8; // An exporter's rounding error.
     let scene = with_nodes(&json!([{"mesh": 0, "matrix": matrix}])).unwrap();

@@ -20,7 +20,7 @@ fn changed(pointer: &str, value: Value, sentence: &str) {
 
 #[test]
 fn indices_of_the_json_that_lead_nowhere() {
-    changed("/scene", json!(7), "its default scene refers to scenes[7], and the file has 1");
+    changed("/scene", json!(7), "its member \"scene\" refers to scenes[7], and the file has 1");
     changed("/scenes/0/nodes/0", json!(9), "the scene refers to nodes[9], and the file has 1");
     changed("/nodes/0/children", json!([5]), "node \"thing\" refers to nodes[5]");
     changed("/nodes/0/mesh", json!(3), "node \"thing\" refers to meshes[3], and the file has 1");
@@ -77,7 +77,7 @@ fn accessors_of_the_wrong_kind() {
         json!(5),
         "mesh \"shape\": it has 5 corners; a list of triangles",
     );
-    changed("/accessors/0/count", json!(3), "its index 3 at 5 is beyond its 3 positions");
+    changed("/accessors/0/count", json!(3), "its corner 5 is vertex 3, and it has 3 positions");
     changed("/accessors/0/bufferView", Value::Null, "compressed meshes are not supported");
     let (mut file, primitives) = square();
     let normal = file.vectors(&SQUARE[..3]);
@@ -244,6 +244,8 @@ fn extensions_versions_and_files_that_are_something_else() {
         (&b""[..], "it is not the JSON of a glTF 2.0 file"),
         (b"\x89PNG\r\n", "it is not the JSON of a glTF 2.0 file"),
         (b"{}", "missing field `asset`"),
+        // Version 1 had maps where version 2 has lists.
+        (br#"{"accessors": {}, "asset": {"version": "1.0"}}"#, "its asset.version is \"1.0\""),
         (b"glTF", "its .glb header is cut off"),
         (b"glTF\x01\0\0\0\x0c\0\0\0", "a .glb of version 1; only version 2"),
         (b"glTF\x02\0\0\0\x0b\0\0\0", "less than a header's 12 bytes"),
@@ -294,7 +296,7 @@ fn buffers_that_lie_elsewhere() {
         assert!(sentence(uri).contains(outside), "{uri}: {}", sentence(uri));
     }
     assert!(sentence("%FF.bin").contains("is not UTF-8"));
-    assert!(sentence("gone.bin").contains("gone.bin\" cannot be read"));
+    assert!(sentence("gone.bin").contains("its file \"gone.bin\" cannot be read"));
     assert!(sentence("a%00b.bin").contains("cannot be read"));
     assert!(sentence(".").contains("is not a regular file"));
     assert!(sentence("data:text/plain,abc").contains("its data URI must read"));
