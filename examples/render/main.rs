@@ -49,9 +49,9 @@ fn load(options: &Options) -> Result<Scene, Stop> {
 
 fn render(options: &Options) -> Result<String, Stop> {
     let scene = load(options)?;
-    let light = scene.light(options.light.as_deref()).map_err(|e| {
-        Stop::Wrong(format!("{}: {e}", options.scene.display()))
-    })?;
+    let light = scene
+        .light(options.light.as_deref())
+        .map_err(|e| Stop::Wrong(format!("{}: {e}", options.scene.display())))?;
     let [width, height] = options.size;
     let aspect = f64::from(width) / f64::from(height);
     let camera = scene.camera.unwrap_or_else(|| Camera::framing(&scene, aspect));
@@ -72,7 +72,8 @@ fn render(options: &Options) -> Result<String, Stop> {
     let positions = stage.gbuffer().positions()?;
     let normals = stage.gbuffer().normals()?;
     let memory = stage.node()?.memory();
-    let report = report::Report { device: &device, options, scene: &scene, plan: &plan, frames, memory };
+    let report =
+        report::Report { device: &device, options, scene: &scene, plan: &plan, frames, memory };
 
     let mut files = Files::default();
     files.exr_y("visibility.exr", options.size, &visibility)?;

@@ -43,10 +43,8 @@ impl Files {
             let [r, g, b, _] = values[p.y() * width as usize + p.x()];
             (r, g, b)
         };
-        let image = ExrImage::from_channels(
-            (width as usize, height as usize),
-            SpecificChannels::rgb(at),
-        );
+        let image =
+            ExrImage::from_channels((width as usize, height as usize), SpecificChannels::rgb(at));
         let mut bytes = Cursor::new(Vec::new());
         image.write().to_buffered(&mut bytes).map_err(|e| failed(name, e))?;
         self.0.push((name, bytes.into_inner()));

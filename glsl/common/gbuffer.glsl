@@ -24,31 +24,50 @@ float depth_at(ivec2 p)
     return texelFetch(gbuffer_depth, p, 0).x;
 }
 
-// The step along one axis to the neighbour that more likely lies on the same surface: the one whose
-// depth differs less.
-vec3 step_along(GBuffer g, ivec2 p, ivec2 axis, float depth, vec3 position)
+// A depth for the arithmetic below: background and pixels outside the image are far off any plane.
+float depth_or_far(GBuffer g, ivec2 p)
 {
-    ivec2 after = min(p + axis, g.extent - 1);
-    ivec2 before = max(p - axis, ivec2(0));
-    float depth_after = depth_at(after);
-    float depth_before = depth_at(before);
-    bool use_after = after != p && depth_after != g.background;
-    bool use_before = before != p && depth_before != g.background;
-    if (use_after && use_before) {
-        use_before = abs(depth_before - depth) < abs(depth_after - depth);
-        use_after = !use_before;
+    bool outside = any(lessThan(p, ivec2(0))) || any(greaterThanEqual(p, g.extent));
+    float depth = outside ? g.background : depth_at(p);
+    return depth == g.background ? 1.0e30 : depth;
+}
+
+// The plane of the facet that a pixel shows. A plane's depth is linear over the image, so of the four
+// quadrants around the pixel the one is taken whose depths bend least: along both axes and across.
+vec3 facet_normal(GBuffer g, ivec2 p, float depth, vec3 position)
+{
+    // Neighbours along x and y, after and before; how much depth bends behind them.
+    vec4 near;
+    vec4 bend;
+    for (int i = 0; i < 4; ++i) {
+        ivec2 axis = (i < 2 ? ivec2(1, 0) : ivec2(0, 1)) * (1 - 2 * (i & 1));
+        near[i] = depth_or_far(g, p + axis);
+        bend[i] = abs(2.0 * near[i] - depth_or_far(g, p + 2 * axis) - depth);
     }
-    if (use_after) {
-        vec4 q = unproject(g.light_from_ndc, vec2(after), vec2(g.extent), depth_after);
-        return dehomogenize(q) - position;
+    ivec2 best = ivec2(0);
+    float least = 3.0e38;
+    for (int i = 0; i < 4; ++i) {
+        ivec2 q = ivec2(i & 1, i >> 1);
+        float corner = depth_or_far(g, p + 1 - 2 * q);
+        float twist = abs(near[q.x] + near[2 + q.y] - corner - depth);
+        float score = bend[q.x] + bend[2 + q.y] + twist;
+        if (score < least) {
+            least = score;
+            best = q;
+        }
     }
-    if (use_before) {
-        vec4 q = unproject(g.light_from_ndc, vec2(before), vec2(g.extent), depth_before);
-        return position - dehomogenize(q);
-    }
-    // Alone: a plane that faces the viewer.
-    vec4 q = unproject(g.light_from_ndc, vec2(p + axis), vec2(g.extent), depth);
-    return dehomogenize(q) - position;
+    ivec2 side = 1 - 2 * best;
+    // Alone, a pixel's plane faces the viewer.
+    float depth_x = near[best.x] > 1.0e29 ? depth : near[best.x];
+    float depth_y = near[2 + best.y] > 1.0e29 ? depth : near[2 + best.y];
+    vec2 extent = vec2(g.extent);
+    vec2 pixel = vec2(p);
+    vec3 x = dehomogenize(
+        unproject(g.light_from_ndc, pixel + vec2(side.x, 0.0), extent, depth_x));
+    vec3 y = dehomogenize(
+        unproject(g.light_from_ndc, pixel + vec2(0.0, side.y), extent, depth_y));
+    return plane_normal(x - position, y - position,
+                        towards_viewer(g.light_from_ndc, position, g.background));
 }
 
 Receiver receiver_at(GBuffer g, ivec2 p)
@@ -66,9 +85,7 @@ Receiver receiver_at(GBuffer g, ivec2 p)
     r.blocks = role > 0.75;
     r.position = dehomogenize(unproject(g.light_from_ndc, vec2(p), vec2(g.extent), depth));
     if (r.receives) {
-        vec3 x = step_along(g, p, ivec2(1, 0), depth, r.position);
-        vec3 y = step_along(g, p, ivec2(0, 1), depth, r.position);
-        r.normal = plane_normal(x, y, towards_viewer(g.light_from_ndc, r.position, g.background));
+        r.normal = facet_normal(g, p, depth, r.position);
     }
     return r;
 }

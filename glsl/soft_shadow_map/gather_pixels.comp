@@ -50,6 +50,12 @@ struct Receivers {
 // Rounding of (u, v, w), of the sum that tells above from below, and of the G-buffer's position.
 const float ROUNDING = 1.0 / 2097152.0;
 
+// A patch stands for the surface within half a texel's diagonal of its centre. Where that surface is the
+// pixel's own, bent by up to 30 degrees between facets, its centre lies at most half the diagonal
+// times sin 30 degrees above the pixel's plane. (Mean error on the bunny, every mesh both, for 0, 0.1, 1/4,
+// 1/2, 0.7 of the diagonal: 4.0, 2.9, 3.0, 3.2, 3.3 %; on its lit pixels 6.4, 0.6, 0.3, 0.2, 0.2 %.)
+const float OWN_SURFACE = 0.25;
+
 vec4 texel_occlusion(vec2 lo, float w_o, Receivers r)
 {
     vec4 above = (lo.x + 0.5) * r.n_x + (lo.y + 0.5) * r.n_y + r.n_0 - r.c * w_o;
@@ -182,9 +188,8 @@ void main()
         r.n_y[i] = n.y;
         r.n_0[i] = p.normal.z - dot(n, push.first);
         r.c[i] = c;
-        // A patch stands for the surface within half a texel of its centre; nearer to the plane than
-        // that it may be the pixel's own.
-        r.bias[i] = 0.5 * length(1.0 / push.texels_per_uv) + push.snap * (abs(n.x) + abs(n.y)) +
+        r.bias[i] = OWN_SURFACE * length(1.0 / push.texels_per_uv) +
+                    push.snap * (abs(n.x) + abs(n.y)) +
                     ROUNDING * (dot(abs(n), abs(t)) + abs(r.n_0[i]) + abs(c) * w);
         below[i] = there && p.blocks ? 1.0 - fraction_above(p.normal.xy * half_light, c) : 0.0;
     }
