@@ -15,7 +15,7 @@ mod instance;
 mod messages;
 
 pub use buffer::HostBuffer;
-pub use compute::run_compute;
+pub use compute::{ComputeProgram, run_compute};
 pub use device::{HeadlessDevice, HeadlessOptions};
 pub use image::{ImageSource, OwnedImage, bytes_per_texel, read_image};
 pub use messages::MessageLog;
