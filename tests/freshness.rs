@@ -1,6 +1,6 @@
 //! The committed SPIR-V is what the GLSL compiles to.
 //!
-//! `ANTUMBRA_WRITE_SPIRV=1 cargo test -p antumbra-tests --test freshness` writes it anew.
+//! `ANTUMBRA_WRITE_SPIRV=1 cargo test --test freshness` writes it anew.
 
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
@@ -47,7 +47,7 @@ fn committed_modules_are_what_the_glsl_compiles_to() {
     let stale = differences(&compiled, &committed());
     assert!(
         stale.is_empty(),
-        "{}\nrun: ANTUMBRA_WRITE_SPIRV=1 cargo test -p antumbra-tests --test freshness",
+        "{}\nrun: ANTUMBRA_WRITE_SPIRV=1 cargo test --test freshness",
         stale.join("\n")
     );
 }

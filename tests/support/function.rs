@@ -272,14 +272,14 @@ impl Function {
 /// Numbers, and tuples and arrays of them, as one flat list.
 pub trait Flat {
     /// Appends the numbers in order.
-    fn flatten(&self, to: &mut Vec<f64>);
+    fn flatten(self, to: &mut Vec<f64>);
 }
 
 macro_rules! flat_number {
     ($($number:ty),*) => {$(
         impl Flat for $number {
-            fn flatten(&self, to: &mut Vec<f64>) {
-                to.push(f64::from(*self));
+            fn flatten(self, to: &mut Vec<f64>) {
+                to.push(f64::from(self));
             }
         }
     )*};
@@ -287,14 +287,14 @@ macro_rules! flat_number {
 flat_number!(f32, f64, i32, u32, bool);
 
 impl<T: Flat, const N: usize> Flat for [T; N] {
-    fn flatten(&self, to: &mut Vec<f64>) {
-        self.iter().for_each(|x| x.flatten(to));
+    fn flatten(self, to: &mut Vec<f64>) {
+        self.into_iter().for_each(|x| x.flatten(to));
     }
 }
 
 impl<T: Flat> Flat for Vec<T> {
-    fn flatten(&self, to: &mut Vec<f64>) {
-        self.iter().for_each(|x| x.flatten(to));
+    fn flatten(self, to: &mut Vec<f64>) {
+        self.into_iter().for_each(|x| x.flatten(to));
     }
 }
 
@@ -302,7 +302,7 @@ macro_rules! flat_tuple {
     ($($name:ident)*) => {
         impl<$($name: Flat),*> Flat for ($($name,)*) {
             #[allow(non_snake_case, unused_variables)]
-            fn flatten(&self, to: &mut Vec<f64>) {
+            fn flatten(self, to: &mut Vec<f64>) {
                 let ($($name,)*) = self;
                 $($name.flatten(to);)*
             }
