@@ -8,6 +8,7 @@ pub mod compare;
 pub mod compile;
 pub mod device;
 pub mod function;
+pub mod measure;
 pub mod reflect;
 mod signature;
 
