@@ -153,3 +153,26 @@ fn what_does_not_fit_is_an_error() {
     let image = OwnedImage::new(&device, "huge", vk::Format::R32_SFLOAT, [side, 1], usage);
     assert!(image.unwrap_err().to_string().contains("huge"));
 }
+
+/// A host may hand the device and what comes from it to other threads.
+#[test]
+fn a_device_can_be_shared_by_threads() {
+    fn shared<T: Send + Sync>() {}
+    shared::<HeadlessDevice>();
+    shared::<HostBuffer>();
+    shared::<OwnedImage>();
+    let device = device();
+    std::thread::scope(|scope| {
+        for start in [0_u32, 1000] {
+            let device: &HeadlessDevice = &device;
+            scope.spawn(move || {
+                let values = vec![start; 64];
+                let buffer = HostBuffer::with_data(device, "values", &values, STORAGE).unwrap();
+                for _ in 0..10 {
+                    run_compute(device, &increment(), &[], &[&buffer], [1, 1, 1]).unwrap();
+                }
+                assert_eq!(buffer.read::<u32>(), vec![start + 10; 64]);
+            });
+        }
+    });
+}

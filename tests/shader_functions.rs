@@ -11,9 +11,12 @@ use glam::Vec3;
 use num_traits::Float;
 use proptest::prelude::{Strategy, any};
 
+type Pair = (f32, f32);
+type Triple = (f32, f32, f32);
+
 /// A micro-patch and a receiver as scenes have them: within a few windows of the light, in front of
 /// the receiver and behind it.
-fn patches() -> impl Strategy<Value = ((f32, f32), f32, (f32, f32), f32, (f32, f32))> {
+fn patches() -> impl Strategy<Value = (Pair, f32, Pair, f32, Pair)> {
     let texel = (0.0..256.0_f32, 0.0..256.0_f32);
     let receiver = (-20.0..276.0_f32, -20.0..276.0_f32);
     (texel, 0.05..4.0_f32, receiver, 0.05..2.0_f32, (0.001..0.2_f32, 0.001..0.2_f32))
@@ -109,7 +112,7 @@ fn normals_face_the_viewer() {
     }
     let step = || (-1.0..1.0_f32, -1.0..1.0_f32, -1.0..1.0_f32);
     // Steps that are nearly parallel lose digits to cancellation in their cross product.
-    let apart = |x: &((f32, f32, f32), (f32, f32, f32), (f32, f32, f32))| {
+    let apart = |x: &(Triple, Triple, Triple)| {
         let (a, b, c) = (Vec3::from(x.0), Vec3::from(x.1), Vec3::from(x.2));
         let n = a.cross(b);
         n.length() > 0.1 && n.normalize().dot(c).abs() > 1e-3
