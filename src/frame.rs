@@ -301,25 +301,38 @@ pub fn plan(description: &Description, limits: Limits, frame: &Frame) -> Result<
         let kept = frame.meshes.iter().filter(move |m| keep(m.role) && m.count >= 3);
         kept.copied().collect::<Vec<_>>()
     };
-    let occluders = list(Role::blocks);
-    let receivers = list(Role::receives);
     let boxes = |meshes: &[MeshInstance]| {
         meshes.iter().map(|m| (m.bounds, m.world_from_mesh)).collect::<Vec<_>>()
     };
+    let receivers = list(Role::receives);
+    let receiver_boxes = boxes(&receivers);
+    let mut occluders = list(Role::blocks);
+    let given = occluders.len();
+    occluders.retain(|m| {
+        !depth_layers::is_aside(light, &(m.bounds, m.world_from_mesh), &receiver_boxes)
+    });
 
     let settings = &description.settings.soft_shadow_map;
     let wanted = soft_shadow_map::wanted(settings);
     let fit = depth_layers::fit_occluders(light, &boxes(&occluders), frame.window, settings.map);
     let receiver_fit = fit.as_ref().and_then(|view| {
         let side = wanted.receiver_map.unwrap_or(settings.map);
-        depth_layers::fit_receivers(light, &boxes(&receivers), view, side)
+        depth_layers::fit_receivers(light, &receiver_boxes, view, side)
     });
     let need = match (&fit, &receiver_fit) {
-        (None, _) if occluders.is_empty() => Need::No("there are no occluders".into()),
+        (None, _) if given == 0 => Need::No("there are no occluders".into()),
+        (None, _) if occluders.is_empty() => {
+            Need::No("every occluder is flat, with light and receivers on one side of it".into())
+        }
         (None, _) => Need::No("every occluder lies behind the light".into()),
         (_, None) => Need::No("no receiver lies where an occluder could shadow it".into()),
         _ => Need::Yes(
-            format!("{} occluder and {} receiver meshes", occluders.len(), receivers.len()).into(),
+            format!(
+                "{} of {given} occluder meshes can shadow some of {} receiver meshes",
+                occluders.len(),
+                receivers.len()
+            )
+            .into(),
         ),
     };
     let placeholder = MapView { min: [-1.0; 2], max: [1.0; 2], near: 1.0, far: 2.0, side: 16 };

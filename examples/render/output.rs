@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 #[derive(Default)]
 pub struct Files(Vec<(&'static str, Vec<u8>)>);
 
-fn failed(path: impl AsRef<Path>, problem: impl ToString) -> Error {
+fn failed(path: impl AsRef<Path>, problem: impl std::fmt::Display) -> Error {
     Error::File { path: path.as_ref().display().to_string(), problem: problem.to_string() }
 }
 

@@ -12,10 +12,12 @@ layout(push_constant) uniform Push {
     float w_far;             // no receiver is further than 1/w_far
     float receiver_inv_near; // 1 over the receiver map's near plane, 1/m
     int receiver_map;        // its side in texels
+    float steps;             // steps a unit that contributions are rounded to; 0 rounds none
 } push;
 
 layout(location = 0) flat out vec2 texel;
 layout(location = 1) flat out float w_o;
+layout(location = 2) flat out float threshold;
 
 // Rasters drop fragments whose centre lies on a rectangle's edge within their own rounding; this much
 // more, in receiver texels, keeps them (error 9e-6 against 1.6e-4 without).
@@ -26,6 +28,10 @@ void main()
     uvec2 p = patches[gl_VertexIndex / 6];
     texel = vec2(p.x & 0xffffu, p.x >> 16);
     w_o = uintBitsToFloat(p.y);
+    // A plane-filling sequence (R2: powers of the plastic number's inverse, times 2^32): neighbours
+    // round up and down in turn. The top 16 bits are enough.
+    uint spread = (p.x & 0xffffu) * 3242174889u + (p.x >> 16) * 2447445414u;
+    threshold = float(spread >> 16) / 65536.0;
 
     // The patch is felt up to half the light's size, as seen through the patch from the furthest
     // receiver there is.

@@ -20,7 +20,7 @@
 
 mod view;
 
-pub use view::{Bounds, MapView, fit_occluders, fit_receivers};
+pub use view::{Bounds, MapView, fit_occluders, fit_receivers, is_aside};
 
 use crate::graph::{
     Access, Draw, Graph, MeshList, Need, Owner, Pass, Push, ResourceId, Target, Use, Work,

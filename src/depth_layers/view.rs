@@ -117,6 +117,41 @@ fn pad(min: &mut [f64; 2], max: &mut [f64; 2], side: u32) {
     }
 }
 
+/// Flat is an extent of no more than this share of a box's largest.
+const FLAT: f64 = 1e-6;
+
+/// Whether a mesh is flat and has the whole light and every receiver on one side of its plane, as a
+/// ground has: no ray from the one to the other crosses it, so it blocks nothing, and a map need not
+/// spend its texels on it.
+pub fn is_aside(
+    light: &RectangleLight,
+    (bounds, world_from_mesh): &(Bounds, DMat4),
+    receivers: &[(Bounds, DMat4)],
+) -> bool {
+    let light_from_world = light.light_from_world();
+    let extent = |axis: usize| f64::from(bounds[1][axis]) - f64::from(bounds[0][axis]);
+    let largest = (0..3).map(extent).fold(0.0, f64::max);
+    let Some(thin) = (0..3).find(|&axis| extent(axis) <= FLAT * largest) else { return false };
+    let light_from_mesh = light_from_world * *world_from_mesh;
+    let axis = |i: usize| light_from_mesh.col(i).truncate();
+    let normal = axis((thin + 1) % 3).cross(axis((thin + 2) % 3)).normalize_or_zero();
+    if normal == DVec3::ZERO {
+        return false;
+    }
+    let own = corners(bounds, &light_from_mesh);
+    let slack = FLAT * own.iter().map(|p| p.distance(own[0])).fold(0.0, f64::max);
+    let [a, b] = light.half_extents();
+    let lamp = [(a, b), (a, -b), (-a, b), (-a, -b)].map(|(x, y)| DVec3::new(x, y, 0.0));
+    let seen = receivers.iter().flat_map(|(b, m)| corners(b, &(light_from_world * *m)));
+    let (mut above, mut below) = (true, true);
+    for p in lamp.into_iter().chain(seen) {
+        let height = normal.dot(p - own[0]);
+        above &= height >= -slack;
+        below &= height <= slack;
+    }
+    above || below
+}
+
 /// The view that just holds all occluders; none where there are none in front of the light.
 ///
 /// `window` fixes the tangents (least and largest u, v) instead of fitting them, as a host does that
@@ -192,7 +227,7 @@ mod tests {
         let to_clip = view.clip_from_light() * ceiling().light_from_world() * at;
         let mut widest: f64 = 0.0;
         for i in 0..8 {
-            let corner = DVec3::from_array(std::array::from_fn(|a| (i >> a & 1) as f64 - 0.5));
+            let corner = DVec3::from_array(std::array::from_fn(|a| f64::from(i >> a & 1) - 0.5));
             let clip = to_clip * corner.extend(1.0);
             let ndc = clip.xyz() / clip.w;
             assert!(ndc.x.abs() < 1.0 && ndc.y.abs() < 1.0 && ndc.z > 0.0 && ndc.z < 1.0);
@@ -210,6 +245,20 @@ mod tests {
         let across = DMat4::from_translation(DVec3::new(0.0, 4.0, 0.0));
         let view = fit_occluders(&ceiling(), &[(UNIT, across)], None, 64).unwrap();
         assert!(view.near > 0.0 && view.max[0].is_finite() && view.max[0] <= 11.0);
+    }
+
+    #[test]
+    fn a_ground_under_everything_is_aside() {
+        let light = ceiling();
+        let ground = ([[-4.0, 0.0, -4.0], [4.0, 0.0, 4.0]], DMat4::IDENTITY);
+        let standing = (UNIT, DMat4::from_translation(DVec3::new(0.0, 0.5, 0.0)));
+        let sunk = (UNIT, DMat4::from_translation(DVec3::new(0.0, 0.4, 0.0)));
+        assert!(is_aside(&light, &ground, &[ground, standing]));
+        assert!(!is_aside(&light, &ground, &[ground, sunk]), "it shadows what lies beneath it");
+        assert!(!is_aside(&light, &standing, &[ground]), "a box is not flat");
+        // A wall that the light shines past on both sides.
+        let wall = ([[0.0, 0.0, -4.0], [0.0, 4.0, 4.0]], DMat4::IDENTITY);
+        assert!(!is_aside(&light, &wall, &[ground]));
     }
 
     #[test]

@@ -11,6 +11,8 @@ use ash::vk;
 /// Texels a side of a block and of a superblock, as in `node.glsl`.
 const BLOCK: u32 = 8;
 const SUPERBLOCK: u32 = 32;
+/// Blended contributions are multiples of 2⁻²⁴, see `patch.frag`.
+const BLEND_STEPS: f32 = 16_777_216.0;
 /// Blocks a group, as in `patch_count.comp`.
 const GROUP: u32 = 64;
 
@@ -317,7 +319,7 @@ fn blend_map(
             w_far: (1.0 / view.far) as f32,
             receiver_inv_near: (1.0 / view.near) as f32,
             receiver_map: settings.receiver_map as i32,
-            pad: 0,
+            steps: if settings.accumulate == Accumulate::Blend { BLEND_STEPS } else { 0.0 },
         }),
         work: Work::Raster {
             vertex: shaders::PATCH_VERT,

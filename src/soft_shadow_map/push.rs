@@ -120,6 +120,6 @@ pub struct PatchDraw {
     pub receiver_inv_near: f32,
     /// The receiver map's side in texels.
     pub receiver_map: i32,
-    /// Fills the struct to 8 bytes, as GLSL does.
-    pub pad: i32,
+    /// Steps a unit of occlusion that contributions are rounded to; 0 rounds none.
+    pub steps: f32,
 }
