@@ -245,6 +245,12 @@ pub(crate) fn nominal(description: &Description, limits: Limits) -> FrameGraph {
     build(description, limits, &RectangleLight::unit(), &views)
 }
 
+/// The graph of a description with every row that any of its frames could run; the numbers in its
+/// push constants mean nothing.
+pub fn full_graph(description: &Description) -> Graph {
+    nominal(description, Limits::default()).graph
+}
+
 fn build(
     description: &Description,
     limits: Limits,

@@ -33,7 +33,8 @@ fn settings_of(settings: &Settings) -> Map<String, Value> {
         .iter()
         .filter_map(|k| {
             let value = settings.get(k.key)?;
-            let value = value.parse::<f64>().map_or_else(|_| json!(value), |n| json!(n));
+            // Numbers are numbers, names are strings.
+            let value = serde_json::from_str::<Value>(&value).unwrap_or_else(|_| json!(value));
             Some((k.key.to_string(), value))
         })
         .collect()

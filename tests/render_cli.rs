@@ -1,0 +1,229 @@
+//! `render` as other programs drive it: its files, its report, and one sentence for anything wrong.
+
+// A test says what went wrong by panicking.
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use serde_json::{Value, json};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::OnceLock;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// The example, built once by the cargo that runs the tests.
+fn render() -> &'static Path {
+    static BUILT: OnceLock<PathBuf> = OnceLock::new();
+    BUILT.get_or_init(|| {
+        let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
+        let output = Command::new(cargo)
+            .args(["build", "--workspace", "--example", "render", "--message-format=json"])
+            .current_dir(root())
+            .output()
+            .unwrap();
+        let text = String::from_utf8_lossy(&output.stdout);
+        let executable = text
+            .lines()
+            .filter_map(|line| serde_json::from_str::<Value>(line).ok())
+            .filter(|message| message["target"]["name"] == "render")
+            .find_map(|message| message["executable"].as_str().map(PathBuf::from));
+        executable.unwrap_or_else(|| panic!("{}", String::from_utf8_lossy(&output.stderr)))
+    })
+}
+
+/// A folder of its own for a test.
+fn folder(name: &str) -> PathBuf {
+    let folder =
+        std::env::temp_dir().join(format!("antumbra-render-{}-{name}", std::process::id()));
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn run(scene: &Path, out: &Path, options: &[&str]) -> Output {
+    Command::new(render()).arg(scene).arg("--out").arg(out).args(options).output().unwrap()
+}
+
+const FILES: [&str; 6] =
+    ["normal.exr", "position.exr", "report.json", "shaded.png", "visibility.exr", "visibility.png"];
+
+fn files(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> = fs::read_dir(folder)
+        .map(|entries| entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect())
+        .unwrap_or_default();
+    names.sort();
+    names
+}
+
+/// Runs what must fail: status 2, one line that holds `wanted`, and no file.
+fn refuse(name: &str, scene: &Path, options: &[&str], wanted: &str) {
+    let out = folder(name);
+    let output = run(scene, &out, options);
+    let line = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{name}: {line}");
+    assert_eq!(line.lines().count(), 1, "{name}: one line, not {line}");
+    assert!(line.contains(wanted), "{name}: \"{wanted}\" is not in {line}");
+    assert_eq!(files(&out), Vec::<String>::new(), "{name}");
+    fs::remove_dir_all(out).unwrap();
+}
+
+#[test]
+fn a_model_gives_every_file_and_a_whole_report() {
+    let out = folder("bunny");
+    let scene = root().join("scenes/bunny.glb");
+    let options =
+        ["--size", "96x64", "--set", "map=64", "--set", "sides=one", "--repeat", "2", "--validate"];
+    let output = run(&scene, &out, &options);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(files(&out), FILES);
+    let report: Value =
+        serde_json::from_slice(&fs::read(out.join("report.json")).unwrap()).unwrap();
+    assert_eq!(report["technique"], "soft-shadow-map");
+    assert_eq!(report["settings"]["map"], json!(64));
+    assert_eq!(report["settings"]["sides"], "one");
+    assert_eq!(report["triangles"], 5650);
+    assert_eq!(report["lights"], 1);
+    assert!(report["frame_ms"].as_f64().unwrap() > 0.0);
+    assert!(report["record_us"].as_f64().unwrap() > 0.0);
+    assert!(report["gpu_bytes"].as_u64().unwrap() > 10_000);
+    assert!(!report["driver"].as_str().unwrap().is_empty());
+    for list in ["passes", "skipped"] {
+        for row in report[list].as_array().unwrap() {
+            assert!(row["name"].as_str().unwrap().contains('.'), "{row}");
+            assert!(!row["why"].as_str().unwrap().is_empty(), "{row}");
+        }
+    }
+    assert!(report["passes"][0]["ms"].as_f64().unwrap() >= 0.0);
+    // EXR: the magic number, and the channels in the header.
+    let exr = fs::read(out.join("visibility.exr")).unwrap();
+    assert_eq!(exr[..4], [0x76, 0x2f, 0x31, 0x01]);
+    assert_eq!(fs::read(out.join("shaded.png")).unwrap()[..4], *b"\x89PNG");
+    fs::remove_dir_all(out).unwrap();
+}
+
+#[test]
+fn a_role_on_the_command_line_counts() {
+    let out = folder("roles");
+    let scene = root().join("scenes/bunny.glb");
+    // Nothing blocks: everything is lit.
+    let options = ["--size", "32x32", "--role", "occluder0=receiver"];
+    assert!(run(&scene, &out, &options).status.success());
+    let report: Value =
+        serde_json::from_slice(&fs::read(out.join("report.json")).unwrap()).unwrap();
+    assert_eq!(report["passes"][0]["name"], "visibility.lit");
+    assert!(report["skipped"].as_array().unwrap().len() > 2);
+    fs::remove_dir_all(out).unwrap();
+}
+
+#[test]
+fn wrong_options_are_one_sentence() {
+    let bunny = root().join("scenes/bunny.glb");
+    refuse("key", &bunny, &["--set", "maps=3"], "maps");
+    refuse("range", &bunny, &["--set", "map=5000"], "16 to 4096");
+    refuse("form", &bunny, &["--set", "map"], "KEY=VALUE");
+    refuse("agree", &bunny, &["--set", "accumulate=blend"], "receivers=map");
+    refuse("technique", &bunny, &["--technique", "magic"], "soft-shadow-map");
+    refuse("size", &bunny, &["--size", "0x10"], "WxH");
+    refuse("repeat", &bunny, &["--repeat", "0"], "--repeat");
+    refuse("light", &bunny, &["--light", "sun"], "sun");
+    refuse("role", &bunny, &["--role", "ground=wall"], "wall");
+    refuse("node", &bunny, &["--role", "nobody=both"], "nobody");
+    refuse("option", &bunny, &["--sides", "two"], "--sides");
+    refuse("budget", &bunny, &["--max-error", "0.01"], "--max-error");
+}
+
+/// A small scene as text: one triangle, and whatever the test adds.
+fn triangle(nodes: &Value) -> Value {
+    let positions: [f32; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+    let bytes: Vec<u8> = positions.iter().flat_map(|x| x.to_le_bytes()).collect();
+    json!({
+        "asset": { "version": "2.0" },
+        "scene": 0,
+        "scenes": [{ "nodes": (0..nodes.as_array().unwrap().len()).collect::<Vec<_>>() }],
+        "nodes": nodes,
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 } }] }],
+        "accessors": [{ "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3" }],
+        "bufferViews": [{ "buffer": 0, "byteLength": 36 }],
+        "buffers": [{ "byteLength": bytes.len(), "uri": "triangle.bin" }],
+    })
+}
+
+fn write(folder: &Path, scene: &Value, positions: [f32; 9]) -> PathBuf {
+    let bytes: Vec<u8> = positions.iter().flat_map(|x| x.to_le_bytes()).collect();
+    fs::write(folder.join("triangle.bin"), bytes).unwrap();
+    let path = folder.join("scene.gltf");
+    fs::write(&path, scene.to_string()).unwrap();
+    path
+}
+
+#[test]
+fn wrong_scenes_are_one_sentence() {
+    let there = folder("scenes");
+    let good = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+    let lamp = json!({
+        "name": "lamp", "translation": [0, 3, 0], "rotation": [-0.7071068, 0, 0, 0.7071068],
+        "extras": { "area_light": "rectangle", "width": 1, "height": 1 },
+    });
+    let mesh = json!({ "name": "floor", "mesh": 0 });
+
+    refuse("missing", &there.join("nothing.glb"), &[], "nothing.glb");
+    fs::write(there.join("noise.glb"), b"glTFnoise").unwrap();
+    refuse("corrupt", &there.join("noise.glb"), &[], "noise.glb");
+    let scene = write(&there, &triangle(&json!([mesh])), good);
+    refuse("no light", &scene, &[], "light");
+    let scene = write(&there, &triangle(&json!([lamp])), good);
+    refuse("no triangles", &scene, &[], "triangles");
+    let mut negative = lamp.clone();
+    negative["extras"]["width"] = json!(-1);
+    let scene = write(&there, &triangle(&json!([mesh, negative])), good);
+    refuse("negative light", &scene, &[], "lamp");
+    let mut bad = good;
+    bad[4] = f32::NAN;
+    let scene = write(&there, &triangle(&json!([mesh, lamp])), bad);
+    refuse("NaN", &scene, &[], "position");
+    let mut extension = triangle(&json!([mesh, lamp]));
+    extension["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
+    let scene = write(&there, &extension, good);
+    refuse("extension", &scene, &[], "KHR_draco_mesh_compression");
+    let mut range = triangle(&json!([mesh, lamp]));
+    range["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(7);
+    let scene = write(&there, &range, good);
+    refuse("accessor", &scene, &[], "7");
+
+    // And the good one renders.
+    let scene = write(&there, &triangle(&json!([mesh, lamp])), good);
+    let out = folder("good");
+    let output = run(&scene, &out, &["--size", "32x32"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(files(&out), FILES);
+    fs::remove_dir_all(out).unwrap();
+    fs::remove_dir_all(there).unwrap();
+}
+
+#[test]
+fn a_missing_driver_is_one_sentence() {
+    let out = folder("driver");
+    let output = Command::new(render())
+        .arg(root().join("scenes/bunny.glb"))
+        .arg("--out")
+        .arg(&out)
+        .env("ANTUMBRA_DRIVER", "no such device")
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let line = String::from_utf8(output.stderr).unwrap();
+    assert!(line.contains("no such device") && line.lines().count() == 1, "{line}");
+    fs::remove_dir_all(out).unwrap();
+}
+
+#[test]
+fn nothing_is_left_where_a_file_cannot_be_written() {
+    let out = folder("unwritable");
+    fs::create_dir(out.join("shaded.png")).unwrap();
+    let output = run(&root().join("scenes/bunny.glb"), &out, &["--size", "32x32"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(files(&out), ["shaded.png"], "only what was there before");
+    fs::remove_dir_all(out).unwrap();
+}

@@ -1,0 +1,167 @@
+//! Every row of every graph against its SPIR-V: bindings, push constants, workgroups.
+
+// A test says what went wrong by panicking.
+#![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
+
+use antumbra::depth_layers::DepthPush;
+use antumbra::graph::{Draw, Graph, PUSH_BYTES, Pass, Work};
+use antumbra::shaders::Module;
+use antumbra::{Description, frame};
+use antumbra_tests::measure::settings;
+use antumbra_tests::reflect::{Interface, reflect};
+use ash::vk;
+use std::collections::BTreeSet;
+
+/// One description for every set of rows there is.
+fn descriptions() -> Vec<(String, Description)> {
+    let mut all = Vec::new();
+    for words in [
+        "receivers=pixels sides=one",
+        "receivers=pixels sides=bottom",
+        "receivers=pixels sides=two",
+        "receivers=map accumulate=gather sides=two map=100 receiver_map=77",
+        "receivers=map accumulate=blend sides=two map=17 receiver_map=16",
+        "receivers=map accumulate=blend-fp16 sides=one",
+    ] {
+        for mask_format in [None, Some(vk::Format::R8_UNORM)] {
+            let settings = settings(words);
+            let description = Description { settings, mask_format, ..Description::new([641, 479]) };
+            all.push((format!("{words}, mask {mask_format:?}"), description));
+        }
+    }
+    all
+}
+
+fn graphs() -> Vec<(String, Graph)> {
+    descriptions().into_iter().map(|(words, d)| (words, frame::full_graph(&d))).collect()
+}
+
+fn modules(pass: &Pass) -> Vec<Module> {
+    match pass.work {
+        Work::Dispatch { shader, .. } => vec![shader],
+        Work::Raster { vertex, fragment, .. } => std::iter::once(vertex).chain(fragment).collect(),
+    }
+}
+
+fn interface(module: Module) -> Interface {
+    reflect(module.spirv).unwrap_or_else(|e| panic!("{}: {e}", module.path))
+}
+
+/// What a row and its shaders disagree on.
+fn disagreements(graph: &Graph, pass: &Pass) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut seen = BTreeSet::new();
+    let pushed = match pass.work {
+        Work::Raster { draw: Draw::Meshes(_), .. } => size_of::<DepthPush>(),
+        _ => pass.push.bytes().len(),
+    };
+    for module in modules(pass) {
+        let shader = interface(module);
+        for b in &shader.bindings {
+            seen.insert(b.binding);
+            let used = pass.uses.iter().find(|u| u.binding == Some(b.binding));
+            let Some(used) = used else {
+                found.push(format!(
+                    "{}: binding {} ({}) is not in the row",
+                    module.path, b.binding, b.name
+                ));
+                continue;
+            };
+            if b.set != 0 || used.access.descriptor() != Some(b.kind) {
+                found.push(format!(
+                    "{}: binding {} is {:?} of set {}, the row has {:?}",
+                    module.path, b.binding, b.kind, b.set, used.access
+                ));
+            }
+            if b.writes != used.access.writes() {
+                found.push(format!(
+                    "{}: binding {} ({}) {} written, the row has {:?}",
+                    module.path,
+                    b.binding,
+                    b.name,
+                    if b.writes { "is" } else { "is not" },
+                    used.access
+                ));
+            }
+            if b.kind == vk::DescriptorType::STORAGE_IMAGE {
+                let shape = graph.resource(used.resource).shape;
+                let antumbra::graph::Shape::Image { format, .. } = shape else {
+                    found.push(format!("{}: binding {} is no image", module.path, b.binding));
+                    continue;
+                };
+                if format != b.format {
+                    found.push(format!("{}: {:?}, not {format:?}", module.path, b.format));
+                }
+            }
+        }
+        let bytes = shader.push_bytes() as usize;
+        // A fragment shader may declare a part of what the vertex shader does, and structs are
+        // padded to their alignment.
+        if bytes > pushed || pushed > PUSH_BYTES || (pushed > bytes + 4 && modules(pass).len() == 1)
+        {
+            found
+                .push(format!("{}: {bytes} bytes of push constants, pushed {pushed}", module.path));
+        }
+        if matches!(pass.work, Work::Dispatch { .. }) {
+            let invocations: u32 = shader.workgroup.iter().product();
+            if !(1..=256).contains(&invocations) {
+                found.push(format!("{}: workgroup {:?}", module.path, shader.workgroup));
+            }
+        }
+    }
+    for binding in pass.uses.iter().filter_map(|u| u.binding) {
+        if !seen.contains(&binding) {
+            found.push(format!("{}: binding {binding} is in no shader", pass.name));
+        }
+    }
+    found
+}
+
+#[test]
+fn every_row_is_what_its_shaders_say() {
+    let mut problems = Vec::new();
+    let mut rows = BTreeSet::new();
+    for (words, graph) in graphs() {
+        for pass in graph.passes() {
+            rows.insert(pass.name);
+            problems
+                .extend(disagreements(&graph, pass).into_iter().map(|d| format!("{words}: {d}")));
+        }
+    }
+    println!("{} rows: {rows:?}", rows.len());
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+}
+
+/// The comparison notices a wrong binding, a wrong access and too few push constants.
+#[test]
+fn a_wrong_row_is_noticed() {
+    let (_, graph) = graphs().remove(0);
+    let pass = |name: &str| graph.passes().iter().find(|p| p.name == name).unwrap().clone();
+    let good = pass("soft_shadow_map.blocks");
+    assert!(disagreements(&graph, &good).is_empty());
+    let mut wrong = good.clone();
+    wrong.uses[2].binding = Some(7);
+    assert_eq!(disagreements(&graph, &wrong).len(), 2, "one in the shader, one in the row");
+    let mut wrong = good.clone();
+    wrong.uses[2].access = antumbra::graph::Access::BufferReadCompute;
+    assert_eq!(disagreements(&graph, &wrong).len(), 1);
+    let mut wrong = good;
+    wrong.push = antumbra::graph::Push::NONE;
+    assert_eq!(disagreements(&graph, &wrong).len(), 1);
+}
+
+/// Every embedded module is some row's, and every committed one is embedded.
+#[test]
+fn every_module_has_a_row() {
+    let used: BTreeSet<&str> = graphs()
+        .iter()
+        .flat_map(|(_, g)| g.passes().iter().flat_map(modules).map(|m| m.path).collect::<Vec<_>>())
+        .collect();
+    let embedded: BTreeSet<&str> = antumbra::shaders::ALL.iter().map(|m| m.path).collect();
+    assert_eq!(used, embedded);
+    let committed: BTreeSet<String> =
+        antumbra_tests::compile::committed().into_iter().map(|(name, _)| name).collect();
+    let headless = |name: &String| name.starts_with("headless/");
+    let listed: BTreeSet<String> = committed.into_iter().filter(|name| !headless(name)).collect();
+    assert_eq!(listed, embedded.iter().map(ToString::to_string).collect());
+}
