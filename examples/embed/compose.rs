@@ -100,7 +100,7 @@ impl ComposePass {
         let create = [vk::ComputePipelineCreateInfo::default().stage(stage).layout(layout)];
         // SAFETY: the layout is the shader's; a pipeline does not need its module once it is made.
         let made = unsafe {
-            let made = device.create_compute_pipelines(vk::PipelineCache::null(), &create, None);
+            let made = device.create_compute_pipelines(gpu.pipeline_cache, &create, None);
             device.destroy_shader_module(module, None);
             made
         };

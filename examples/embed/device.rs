@@ -24,6 +24,8 @@ pub struct Gpu {
     pub device: ash::Device,
     pub queue: vk::Queue,
     pub queue_family: u32,
+    /// The engine's pipelines and the node's.
+    pub pipeline_cache: vk::PipelineCache,
     pub debug_utils: Option<ext::debug_utils::Device>,
     pub allocator: Allocator,
     messenger: Option<(ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
@@ -49,6 +51,9 @@ impl Gpu {
         let device = unsafe { instance.create_device(physical_device, &create, None) }?;
         // SAFETY: one queue of this family was asked for above.
         let queue = unsafe { device.get_device_queue(queue_family, 0) };
+        let create = vk::PipelineCacheCreateInfo::default();
+        // SAFETY: the device lives. (An engine would start from the bytes of its last run.)
+        let pipeline_cache = unsafe { device.create_pipeline_cache(&create, None) }?;
         let debug_utils = validate.then(|| ext::debug_utils::Device::new(&instance, &device));
         let allocator = Allocator::new(&AllocatorCreateDesc {
             instance: instance.clone(),
@@ -65,6 +70,7 @@ impl Gpu {
             device,
             queue,
             queue_family,
+            pipeline_cache,
             debug_utils,
             allocator,
             messenger,
@@ -86,6 +92,7 @@ impl Gpu {
         drop(self.allocator);
         // SAFETY: the caller waited for the device and destroyed everything made from it.
         unsafe {
+            self.device.destroy_pipeline_cache(self.pipeline_cache, None);
             self.device.destroy_device(None);
             if let Some((loader, messenger)) = &self.messenger {
                 loader.destroy_debug_utils_messenger(*messenger, None);

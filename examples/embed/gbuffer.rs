@@ -272,7 +272,6 @@ fn make_pipeline(
         .layout(layout)
         .render_pass(render_pass)];
     // SAFETY: all that the create info points to lives until the end of this call.
-    let made =
-        unsafe { gpu.device.create_graphics_pipelines(vk::PipelineCache::null(), &create, None) };
+    let made = unsafe { gpu.device.create_graphics_pipelines(gpu.pipeline_cache, &create, None) };
     Ok(made.map_err(|(_, e)| e)?[0])
 }

@@ -115,7 +115,8 @@ fn run(options: &Options) -> Outcome<()> {
             gpu.device.clone(),
             gpu.queue_family,
         )
-    };
+    }
+    .with_pipeline_cache(gpu.pipeline_cache);
     if let Some(debug_utils) = &gpu.debug_utils {
         host = host.with_debug_utils(debug_utils.clone());
     }
