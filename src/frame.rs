@@ -21,6 +21,8 @@ pub struct Description {
     pub depth_format: vk::Format,
     /// The format of the mask, where there is one.
     pub mask_format: Option<vk::Format>,
+    /// Lets the node's own images be copied out, for tests and debuggers; off by default.
+    pub inspect: bool,
     /// Every distance between positions, in bytes, that a mesh may have; 12 is tightly packed.
     pub position_strides: Vec<u32>,
 }
@@ -35,6 +37,7 @@ impl Description {
             frames_in_flight: 2,
             depth_format: vk::Format::D32_SFLOAT,
             mask_format: None,
+            inspect: false,
             position_strides: vec![12],
         }
     }

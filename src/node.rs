@@ -3,6 +3,7 @@
 use crate::Error;
 use crate::frame::{self, Description, Frame, FrameGraph, FramePlan, Limits};
 use crate::gpu::{Allocator, Host, NodeObjects, Requirements, Retired};
+use crate::graph::{Owner, Shape};
 use crate::soft_shadow_map::Accumulate;
 use ash::vk;
 
@@ -31,6 +32,21 @@ pub struct VisibilityImage {
     pub view: vk::ImageView,
     /// Width and height, those of the G-buffer.
     pub extent: [u32; 2],
+}
+
+/// One of the node's own images, for tests and debuggers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Inspected {
+    /// `room.thing`.
+    pub name: &'static str,
+    /// The image.
+    pub image: vk::Image,
+    /// Its format.
+    pub format: vk::Format,
+    /// Width and height in texels.
+    pub extent: [u32; 2],
+    /// The layout it is in behind the plan.
+    pub layout: vk::ImageLayout,
 }
 
 impl ShadowNode {
@@ -137,6 +153,34 @@ impl ShadowNode {
     pub fn timings(&self, slot: u32) -> Option<Vec<(&'static str, f64)>> {
         let rows = self.objects.timings(&self.host, slot)?;
         Some(rows.into_iter().map(|(row, ms)| (self.rows[row], ms)).collect())
+    }
+
+    /// The node's own images that a plan writes, and the layout they are in behind it; they can be
+    /// copied out where the description says `inspect`.
+    pub fn inspect(&self, plan: &FramePlan) -> Vec<Inspected> {
+        let graph = &plan.plan.graph;
+        let last_layout = |id| {
+            let steps = plan.plan.steps.iter().rev();
+            let mut uses = steps.flat_map(|s| &graph.passes()[s.pass].uses);
+            uses.find(|u| u.resource == id).map(|u| u.access.scope().layout)
+        };
+        (0..graph.resources().len())
+            .map(|index| graph.id(index))
+            .filter(|&id| graph.resource(id).owner == Owner::Transient)
+            .filter_map(|id| {
+                let resource = graph.resource(id);
+                let Shape::Image { format, width, height } = resource.shape else { return None };
+                let layout = last_layout(id)?;
+                let (image, _) = self.objects.image(id);
+                Some(Inspected {
+                    name: resource.name,
+                    image,
+                    format,
+                    extent: [width, height],
+                    layout,
+                })
+            })
+            .collect()
     }
 
     /// Name and bytes of everything the node holds in device memory.

@@ -156,7 +156,7 @@ impl Settings {
 }
 
 /// The name of a choice.
-fn name_of<T: PartialEq>(all: &[(&str, T)], choice: T) -> String {
+fn name_of<T: PartialEq + Copy>(all: &[(&str, T)], choice: T) -> String {
     all.iter().find(|(_, t)| *t == choice).map_or_else(String::new, |(name, _)| (*name).into())
 }
 

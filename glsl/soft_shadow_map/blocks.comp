@@ -10,8 +10,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 0) uniform texture2D front_depth;
 layout(set = 0, binding = 1) uniform texture2D back_depth;
-layout(set = 0, binding = 2, std430) writeonly buffer Texels { float texels[]; };
-layout(set = 0, binding = 3, std430) writeonly buffer Blocks { vec4 blocks[]; };
+layout(set = 0, binding = 2, std430) buffer Texels { float texels[]; };
+layout(set = 0, binding = 3, std430) buffer Blocks { vec4 blocks[]; };
 
 layout(push_constant) uniform Push {
     int map;        // the map's side in texels

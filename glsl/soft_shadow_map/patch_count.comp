@@ -6,7 +6,7 @@
 layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0, std430) readonly buffer Blocks { vec4 blocks[]; };
-layout(set = 0, binding = 1, std430) writeonly buffer Groups { uint groups[]; };
+layout(set = 0, binding = 1, std430) buffer Groups { uint groups[]; };
 
 layout(push_constant) uniform Push {
     int blocks; // of one side

@@ -10,7 +10,7 @@ layout(local_size_x = 64) in;
 layout(set = 0, binding = 0, std430) readonly buffer Texels { float texels[]; };
 layout(set = 0, binding = 1, std430) readonly buffer Blocks { vec4 blocks[]; };
 layout(set = 0, binding = 2, std430) readonly buffer Offsets { uint offsets[]; };
-layout(set = 0, binding = 3, std430) writeonly buffer Patches { uvec2 patches[]; };
+layout(set = 0, binding = 3, std430) buffer Patches { uvec2 patches[]; };
 
 layout(push_constant) uniform Push {
     int row;  // blocks a row

@@ -6,9 +6,9 @@
 layout(local_size_x = 1) in;
 
 layout(set = 0, binding = 0, std430) readonly buffer Groups { uint groups[]; };
-layout(set = 0, binding = 1, std430) writeonly buffer Offsets { uint offsets[]; };
+layout(set = 0, binding = 1, std430) buffer Offsets { uint offsets[]; };
 // VkDrawIndirectCommand
-layout(set = 0, binding = 2, std430) writeonly buffer Arguments { uint arguments[4]; };
+layout(set = 0, binding = 2, std430) buffer Arguments { uint arguments[4]; };
 
 layout(push_constant) uniform Push {
     int groups;

@@ -8,7 +8,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 0, std430) readonly buffer Blocks { vec4 blocks[]; };
-layout(set = 0, binding = 1, std430) writeonly buffer Superblocks { vec4 superblocks[]; };
+layout(set = 0, binding = 1, std430) buffer Superblocks { vec4 superblocks[]; };
 
 layout(push_constant) uniform Push {
     int row; // superblocks a row

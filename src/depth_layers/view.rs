@@ -176,7 +176,7 @@ pub fn fit_receivers(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DVec4Swizzles as _;
+    use glam::Vec4Swizzles as _;
 
     fn ceiling() -> RectangleLight {
         RectangleLight::new(DVec3::new(0.0, 4.0, 0.0), DVec3::X * 0.5, DVec3::NEG_Z * 0.5).unwrap()

@@ -32,7 +32,7 @@ impl NodeObjects {
         graph: &Graph,
         description: &Description,
     ) -> Result<Self, Error> {
-        let objects = Objects::new(host, allocator, graph)?;
+        let objects = Objects::new(host, allocator, graph, description.inspect)?;
         let mut rows: Vec<RowPipeline> = Vec::with_capacity(graph.passes().len());
         let made = graph
             .passes()

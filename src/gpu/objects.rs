@@ -31,10 +31,16 @@ pub(crate) struct Objects(Vec<Owned>);
 
 impl Objects {
     /// Makes every transient and exported resource that a row touches.
-    pub fn new(host: &Host, allocator: &mut dyn Allocator, graph: &Graph) -> Result<Self, Error> {
+    /// With `inspect` every image can be copied from.
+    pub fn new(
+        host: &Host,
+        allocator: &mut dyn Allocator,
+        graph: &Graph,
+        inspect: bool,
+    ) -> Result<Self, Error> {
         let mut made = Self(Vec::with_capacity(graph.resources().len()));
         for index in 0..graph.resources().len() {
-            match made.make(host, allocator, graph, index) {
+            match Self::make(host, allocator, graph, index, inspect) {
                 Ok(owned) => made.0.push(owned),
                 Err(e) => {
                     made.destroy(host, allocator);
@@ -46,11 +52,11 @@ impl Objects {
     }
 
     fn make(
-        &self,
         host: &Host,
         allocator: &mut dyn Allocator,
         graph: &Graph,
         index: usize,
+        inspect: bool,
     ) -> Result<Owned, Error> {
         let id = graph.id(index);
         let resource = graph.resource(id);
@@ -60,9 +66,7 @@ impl Objects {
             return Ok(owned);
         }
         let result = match resource.shape {
-            Shape::Image { format, width, height } => {
-                owned.image(host, allocator, graph, id, format, [width, height])
-            }
+            Shape::Image { .. } => owned.image(host, allocator, graph, id, inspect),
             Shape::Buffer { bytes } => owned.buffer(host, allocator, graph, id, bytes),
         };
         match result {
@@ -109,16 +113,19 @@ impl Owned {
         allocator: &mut dyn Allocator,
         graph: &Graph,
         id: ResourceId,
-        format: vk::Format,
-        [width, height]: [u32; 2],
+        inspect: bool,
     ) -> Result<(), Error> {
         let resource = graph.resource(id);
+        let Shape::Image { format, width, height } = resource.shape else { return Ok(()) };
         let mut usage = graph
             .uses_of(id)
             .fold(vk::ImageUsageFlags::empty(), |usage, access| usage | access.image_usage());
         if resource.owner == Owner::Exported {
             // What hosts do with the result: sample it, or copy it out.
             usage |= vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_SRC;
+        }
+        if inspect {
+            usage |= vk::ImageUsageFlags::TRANSFER_SRC;
         }
         let create = vk::ImageCreateInfo::default()
             .image_type(vk::ImageType::TYPE_2D)

@@ -50,6 +50,7 @@
 mod passes;
 pub mod push;
 mod settings;
+pub mod twin;
 
 pub use passes::{Inputs, declare, wanted};
 pub use settings::{Accumulate, Receivers, Settings, Sides, spread_of};

@@ -4,6 +4,8 @@
 //! receives. Techniques that work at the pixels write it themselves; those that work in the light's
 //! space are resolved onto the pixels here.
 
+pub mod twin;
+
 use crate::depth_layers::MapView;
 use crate::graph::{Access, Graph, Need, Owner, Pass, Push, ResourceId, Use, Work};
 use crate::shaders;

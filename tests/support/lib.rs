@@ -1,1 +1,16 @@
-//! What the tests share.
+//! What the tests share: a device that watches the validation layer, the GLSL compiler, SPIR-V
+//! reflection, and the harness that runs one GLSL function beside its twin.
+
+// A test says what went wrong by panicking.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+pub mod compare;
+pub mod compile;
+pub mod device;
+pub mod function;
+pub mod measure;
+pub mod reflect;
+mod signature;
+
+pub use device::{TestDevice, device};
+pub use function::{Case, Function};

@@ -19,68 +19,60 @@ pub fn run_compute(
     buffers: &[&HostBuffer],
     groups: [u32; 3],
 ) -> Result<(), Error> {
-    let limits = device.limits();
-    let most = limits.max_compute_work_group_count;
-    if (0..3).any(|axis| groups[axis] == 0 || groups[axis] > most[axis]) {
-        let problem = format!("a dispatch of {groups:?} workgroups; each must be 1 to {most:?}");
-        return Err(Error::Frame(problem));
-    }
-    if push.len() > limits.max_push_constants_size as usize || !push.len().is_multiple_of(4) {
-        return Err(Error::Frame(format!(
-            "{} bytes of push constants; they must be a multiple of 4 up to {}",
-            push.len(),
-            limits.max_push_constants_size
-        )));
-    }
-    let objects = Objects::new(device.device(), spirv, push.len() as u32, buffers)?;
+    let program = ComputeProgram::new(device, spirv, push.len(), buffers)?;
     device.submit_and_wait(|cmd| {
-        let compute = vk::PipelineBindPoint::COMPUTE;
-        let raw = device.device();
-        // SAFETY: recording; the objects live until the submit was waited for.
-        unsafe { raw.cmd_bind_pipeline(cmd, compute, objects.pipeline) };
-        if !buffers.is_empty() {
-            let sets = [objects.set];
-            // SAFETY: as above; the set was written for this layout.
-            unsafe { raw.cmd_bind_descriptor_sets(cmd, compute, objects.layout, 0, &sets, &[]) };
-        }
-        if !push.is_empty() {
-            let stage = vk::ShaderStageFlags::COMPUTE;
-            // SAFETY: as above; the layout has a range of this length from offset 0.
-            unsafe { raw.cmd_push_constants(cmd, objects.layout, stage, 0, push) };
-        }
-        // SAFETY: as above; the counts are within the limits.
-        unsafe { raw.cmd_dispatch(cmd, groups[0], groups[1], groups[2]) };
-        Ok(())
+        // SAFETY: `cmd` records outside a render pass; the program and the buffers live until
+        // `submit_and_wait` has waited; it is the only dispatch, so there is nothing to order.
+        unsafe { program.record(cmd, push, groups) }
     })
 }
 
-/// What one dispatch needs. Starts as nulls, so that dropping it half made is right too.
-struct Objects<'d> {
-    device: &'d ash::Device,
+/// A compute pipeline with its buffers bound, to be dispatched as often as one likes.
+// Starts as nulls, so that dropping it half made is right too.
+#[derive(Debug)]
+pub struct ComputeProgram {
+    device: HeadlessDevice,
     module: vk::ShaderModule,
     set_layout: vk::DescriptorSetLayout,
     layout: vk::PipelineLayout,
     pool: vk::DescriptorPool,
     set: vk::DescriptorSet,
     pipeline: vk::Pipeline,
+    push_bytes: usize,
 }
 
-impl<'d> Objects<'d> {
-    fn new(
-        device: &'d ash::Device,
+impl ComputeProgram {
+    /// A pipeline of `spirv`'s entry point `main`, with `push_bytes` bytes of push constants and
+    /// the buffers as storage buffers at set 0, bindings 0, 1, 2 ….
+    ///
+    /// # Errors
+    /// [`Error::Frame`] if `push_bytes` exceeds the device's limit or is not a multiple of 4;
+    /// [`Error::Vulkan`] if the driver refuses.
+    pub fn new(
+        device: &HeadlessDevice,
         spirv: &[u32],
-        push_bytes: u32,
+        push_bytes: usize,
         buffers: &[&HostBuffer],
     ) -> Result<Self, Error> {
+        let most = device.limits().max_push_constants_size;
+        let Some(range_bytes) =
+            u32::try_from(push_bytes).ok().filter(|b| *b <= most && b.is_multiple_of(4))
+        else {
+            return Err(Error::Frame(format!(
+                "{push_bytes} bytes of push constants; they must be a multiple of 4 up to {most}"
+            )));
+        };
         let mut new = Self {
-            device,
+            device: device.clone(),
             module: vk::ShaderModule::null(),
             set_layout: vk::DescriptorSetLayout::null(),
             layout: vk::PipelineLayout::null(),
             pool: vk::DescriptorPool::null(),
             set: vk::DescriptorSet::null(),
             pipeline: vk::Pipeline::null(),
+            push_bytes,
         };
+        let device = device.device();
         let info = vk::ShaderModuleCreateInfo::default().code(spirv);
         // SAFETY: the device lives; the words are the caller's to get right, as for any shader.
         new.module = unsafe { device.create_shader_module(&info, None) }
@@ -104,10 +96,10 @@ impl<'d> Objects<'d> {
         let set_layouts = [new.set_layout];
         let ranges = [vk::PushConstantRange::default()
             .stage_flags(vk::ShaderStageFlags::COMPUTE)
-            .size(push_bytes)];
+            .size(range_bytes)];
         let info = vk::PipelineLayoutCreateInfo::default()
             .set_layouts(&set_layouts)
-            .push_constant_ranges(if push_bytes == 0 { &[] } else { &ranges });
+            .push_constant_ranges(if range_bytes == 0 { &[] } else { &ranges });
         // SAFETY: the set layout was made above.
         new.layout = unsafe { device.create_pipeline_layout(&info, None) }
             .map_err(Error::vulkan("creating a pipeline layout"))?;
@@ -129,20 +121,65 @@ impl<'d> Objects<'d> {
         Ok(new)
     }
 
+    /// Records one dispatch.
+    ///
+    /// # Errors
+    /// [`Error::Frame`] if `groups` exceeds the device's limits or `push` is not as long as was
+    /// said; then nothing is recorded.
+    ///
+    /// # Safety
+    /// `cmd` is recording on this device, outside a render pass; the program and its buffers outlive
+    /// its execution; barriers order this dispatch after whatever it depends on.
+    pub unsafe fn record(
+        &self,
+        cmd: vk::CommandBuffer,
+        push: &[u8],
+        groups: [u32; 3],
+    ) -> Result<(), Error> {
+        let most = self.device.limits().max_compute_work_group_count;
+        if groups.iter().zip(&most).any(|(count, most)| *count == 0 || count > most) {
+            let problem = format!("{groups:?} workgroups; each count must be 1 to {most:?}");
+            return Err(Error::Frame(problem));
+        }
+        if push.len() != self.push_bytes {
+            let (given, said) = (push.len(), self.push_bytes);
+            let problem = format!("{given} bytes of push constants where {said} were said");
+            return Err(Error::Frame(problem));
+        }
+        let compute = vk::PipelineBindPoint::COMPUTE;
+        let raw = self.device.device();
+        // SAFETY: `cmd` is recording and the objects live, by contract.
+        unsafe { raw.cmd_bind_pipeline(cmd, compute, self.pipeline) };
+        if self.set != vk::DescriptorSet::null() {
+            // SAFETY: as above; the set was written for this layout.
+            unsafe {
+                raw.cmd_bind_descriptor_sets(cmd, compute, self.layout, 0, &[self.set], &[]);
+            }
+        }
+        if !push.is_empty() {
+            let stage = vk::ShaderStageFlags::COMPUTE;
+            // SAFETY: as above; the layout has a range of this length from offset 0.
+            unsafe { raw.cmd_push_constants(cmd, self.layout, stage, 0, push) };
+        }
+        // SAFETY: as above; the counts are within the limits.
+        unsafe { raw.cmd_dispatch(cmd, groups[0], groups[1], groups[2]) };
+        Ok(())
+    }
+
     fn write_set(&mut self, buffers: &[&HostBuffer]) -> Result<(), Error> {
         let sizes = [vk::DescriptorPoolSize::default()
             .ty(vk::DescriptorType::STORAGE_BUFFER)
             .descriptor_count(buffers.len() as u32)];
         let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
         // SAFETY: the device lives.
-        self.pool = unsafe { self.device.create_descriptor_pool(&info, None) }
+        self.pool = unsafe { self.device.device().create_descriptor_pool(&info, None) }
             .map_err(Error::vulkan("creating a descriptor pool"))?;
         let set_layouts = [self.set_layout];
         let info = vk::DescriptorSetAllocateInfo::default()
             .descriptor_pool(self.pool)
             .set_layouts(&set_layouts);
         // SAFETY: the pool has room for just this set.
-        let sets = unsafe { self.device.allocate_descriptor_sets(&info) }
+        let sets = unsafe { self.device.device().allocate_descriptor_sets(&info) }
             .map_err(Error::vulkan("allocating a descriptor set"))?;
         self.set = sets[0];
 
@@ -161,14 +198,14 @@ impl<'d> Objects<'d> {
             })
             .collect();
         // SAFETY: the set has these bindings and is not in use; the buffers live.
-        unsafe { self.device.update_descriptor_sets(&writes, &[]) };
+        unsafe { self.device.device().update_descriptor_sets(&writes, &[]) };
         Ok(())
     }
 }
 
-impl Drop for Objects<'_> {
+impl Drop for ComputeProgram {
     fn drop(&mut self) {
-        let Self { device, .. } = *self;
+        let device = self.device.device();
         // SAFETY: made from this device or null; the submit that used them was waited for. The same
         // holds for each call below.
         unsafe { device.destroy_pipeline(self.pipeline, None) };

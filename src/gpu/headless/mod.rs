@@ -18,7 +18,7 @@ mod scene;
 mod stage;
 
 pub use buffer::HostBuffer;
-pub use compute::run_compute;
+pub use compute::{ComputeProgram, run_compute};
 pub use device::{HeadlessDevice, HeadlessOptions};
 pub use gbuffer::{GBuffer, GBufferPainter, View};
 pub use image::{ImageSource, OwnedImage, bytes_per_texel, read_image};

@@ -96,6 +96,7 @@ impl Stage {
             settings,
             frames_in_flight: 1,
             mask_format: Some(MASK),
+            inspect: true,
             ..Description::new(self.gbuffer.depth.extent())
         };
         let mut allocator = self.device.allocator().lock().unwrap_or_else(PoisonError::into_inner);
@@ -168,6 +169,21 @@ impl Stage {
         let source =
             ImageSource { image: result.image, format: visibility::FORMAT, extent: result.extent };
         read_image(&self.device, &source, RESULT.layout)
+    }
+
+    /// Reads one of the node's own images behind a frame of `plan`: its texels and its side.
+    ///
+    /// # Errors
+    /// [`Error::Frame`] where the plan writes no image of that name; otherwise as [`read_image`].
+    pub fn inspect<T: bytemuck::AnyBitPattern>(
+        &mut self,
+        plan: &FramePlan,
+        name: &str,
+    ) -> Result<(Vec<T>, [u32; 2]), Error> {
+        let image = self.node()?.inspect(plan).into_iter().find(|i| i.name == name);
+        let image = image.ok_or_else(|| Error::Frame(format!("the plan writes no {name}")))?;
+        let source = ImageSource { image: image.image, format: image.format, extent: image.extent };
+        Ok((read_image(&self.device, &source, image.layout)?, image.extent))
     }
 
     fn drop_node(&mut self) {

@@ -1,0 +1,60 @@
+# make demo    real models with soft shadows, in out/
+# make test    every test, on each driver
+# make bench   accuracy against cost, in out/report/
+#
+# ANTUMBRA_DRIVER=<part of a device name> picks the device for all of them.
+
+.PHONY: demo test bench clean
+
+CARGO ?= cargo
+SHELL := /bin/bash
+
+# ---------------------------------------------------------------------------------------------
+
+demo:
+	@tests/drivers.sh demo
+	@$(CARGO) build --release --example render
+	@for model in bunny suzanne; do \
+	    $(CARGO) run --quiet --release --example render -- scenes/$$model.glb --out out/$$model \
+	        || exit; \
+	done
+	@echo
+	@echo "Look at out/bunny/shaded.png and out/suzanne/shaded.png; visibility.png beside them is"
+	@echo "how much of the light each pixel sees, and report.json what each pass cost."
+
+bench:
+	@tests/drivers.sh demo
+	$(CARGO) bench --bench accuracy_cost -- --out out/report
+
+# ---------------------------------------------------------------------------------------------
+
+# Tests that use no device; they run once. Every other file in tests/ runs once a driver.
+NO_DEVICE := freshness naga_translation reflection
+DEVICE := $(filter-out $(NO_DEVICE),$(basename $(notdir $(wildcard tests/*.rs))))
+# Always the whole workspace: cargo builds the dependencies anew where only one package is asked for.
+test_once := $(CARGO) test --workspace --lib $(NO_DEVICE:%=--test %)
+test_on_device := $(CARGO) test --workspace $(DEVICE:%=--test %)
+
+# Beside the installed drivers; a device must still be chosen by its name.
+SWIFTSHADER := VK_ADD_DRIVER_FILES=$(CURDIR)/.drivers/vk_swiftshader_icd.json
+# A GPU shows as one of these. Without ANTUMBRA_DRIVER the best device is used, which is then the GPU.
+GPU := $(wildcard /dev/dri/renderD* /dev/nvidia0 /dev/dxg)
+
+test: export ANTUMBRA_VALIDATE := 1
+test:
+	@tests/drivers.sh test
+	$(test_once)
+	$(CARGO) test --workspace --doc
+ifdef ANTUMBRA_DRIVER
+	$(SWIFTSHADER) $(test_on_device)
+else
+	ANTUMBRA_DRIVER=llvmpipe $(test_on_device)
+	ANTUMBRA_DRIVER=SwiftShader $(SWIFTSHADER) $(test_on_device)
+ifneq ($(GPU),)
+	$(test_on_device)
+endif
+endif
+
+clean:
+	$(CARGO) clean
+	rm -rf out .drivers

@@ -1,0 +1,120 @@
+//! The CPU twins of `glsl/common/light.glsl` and of the sums, in any float type.
+//!
+//! A twin says the same as the shader, line by line, and shares no code with it.
+
+use num_traits::Float;
+
+fn clamp<T: Float>(x: T, low: T, high: T) -> T {
+    x.max(low).min(high)
+}
+
+fn half<T: Float>() -> T {
+    T::one() / (T::one() + T::one())
+}
+
+/// k = 1/(w_o − w_r), in metres: what a step of u at the occluder covers on the light's plane.
+pub fn magnification<T: Float>(w_o: T, w_r: T) -> T {
+    T::one() / (w_o - w_r)
+}
+
+/// The length of the part of [a, b] within the light, which is [−½, ½].
+pub fn overlap<T: Float>(a: T, b: T) -> T {
+    let h = half::<T>();
+    clamp(b, -h, h) - clamp(a, -h, h)
+}
+
+/// The fraction of the light that a micro-patch hides: texels `lo` to `hi` at `w_o`, seen from the
+/// receiver at `t` and `w_r` (Atty 2006 section 3.4).
+pub fn patch_occlusion<T: Float>(
+    lo: [T; 2],
+    hi: [T; 2],
+    w_o: T,
+    t: [T; 2],
+    w_r: T,
+    scale: [T; 2],
+) -> T {
+    if w_o <= w_r {
+        return T::zero();
+    }
+    let k = magnification(w_o, w_r);
+    let along = |i: usize| {
+        let m = scale[i] * k;
+        overlap((lo[i] - t[i]) * m, (hi[i] - t[i]) * m)
+    };
+    along(0) * along(1)
+}
+
+/// A square occluder map of w, 0 where there is nothing, and the light as it is seen through it.
+#[derive(Clone, Copy, Debug)]
+pub struct OccluderMap<'a> {
+    /// w of each texel, row by row.
+    pub w: &'a [f32],
+    /// Texels a row.
+    pub side: usize,
+    /// (Δu/Lx, Δv/Ly), 1/m.
+    pub scale: [f32; 2],
+}
+
+/// The occlusion of a receiver by every micro-patch of a map, added up in f64: what blending and
+/// gathering both stand for.
+pub fn occlusion(map: &OccluderMap, t: [f32; 2], w_r: f32) -> f64 {
+    let wide = |a: [f32; 2]| a.map(f64::from);
+    map.w
+        .iter()
+        .enumerate()
+        .filter(|(_, w)| **w > 0.0)
+        .map(|(i, &w)| {
+            let lo = [(i % map.side) as f64, (i / map.side) as f64];
+            let hi = [lo[0] + 1.0, lo[1] + 1.0];
+            patch_occlusion(lo, hi, w.into(), wide(t), w_r.into(), wide(map.scale))
+        })
+        .sum()
+}
+
+/// The sum of k² over a node of `count` texels with mean w `mean` and central moment sums `s2` and
+/// `s3`, by the series of the module's derivation.
+pub fn node_sum<T: Float>(count: T, mean: T, s2: T, s3: T, w_r: T) -> T {
+    let two = T::one() + T::one();
+    let r = T::one() / (mean - w_r);
+    r * r * (count + r * r * ((two + T::one()) * s2 - two * two * s3 * r))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_patch_hides_what_back_projection_says() {
+        // Light 1 m wide, patch 0.25 m wide at half the distance to the receiver on the axis at 2 m:
+        // it covers 0.5 m of the light.
+        let (w_o, w_r) = (1.0_f64, 0.5);
+        let texel = 0.25;
+        let seen = patch_occlusion([-0.5; 2], [0.5; 2], w_o, [0.0; 2], w_r, [texel; 2]);
+        assert!((seen - 0.25).abs() < 1e-15);
+        // Moved aside until half of it misses the light.
+        let aside = patch_occlusion([0.5, -0.5], [1.5, 0.5], w_o, [0.0; 2], w_r, [texel; 2]);
+        assert!((aside - 0.125).abs() < 1e-15);
+        assert_eq!(patch_occlusion([-0.5; 2], [0.5; 2], w_r, [0.0; 2], w_o, [texel; 2]), 0.0);
+    }
+
+    #[test]
+    fn a_flat_map_that_fills_the_light_sums_to_one() {
+        let w = vec![1.0_f32; 64 * 64];
+        let map = OccluderMap { w: &w, side: 64, scale: [1.0 / 40.0; 2] };
+        let sum = occlusion(&map, [32.25, 31.5], 0.5);
+        assert!((sum - 1.0).abs() < 1e-12, "{sum}");
+    }
+
+    #[test]
+    fn the_series_is_the_sum_for_small_spreads() {
+        let w_r = 0.3_f64;
+        let ws: Vec<f64> = (0..64).map(|i| 0.8 + 0.02 * f64::from(i * 37 % 64) / 64.0).collect();
+        let n = ws.len() as f64;
+        let mean = ws.iter().sum::<f64>() / n;
+        let moment = |p: i32| ws.iter().map(|w| (w - mean).powi(p)).sum::<f64>();
+        let exact: f64 = ws.iter().map(|&w| magnification(w, w_r).powi(2)).sum();
+        let series = node_sum(n, mean, moment(2), moment(3), w_r);
+        let q = 0.01 / (mean - w_r) * 1.02;
+        assert!((series / exact - 1.0).abs() < 5.0 * q.powi(4) * 1.1);
+    }
+}

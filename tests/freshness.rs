@@ -1,0 +1,93 @@
+//! The committed SPIR-V is what the GLSL compiles to.
+//!
+//! `ANTUMBRA_WRITE_SPIRV=1 cargo test --test freshness` writes it anew.
+
+// A test says what went wrong by panicking.
+#![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
+
+use antumbra_tests::compile::{committed, compile, glsl_root, shader_names, spirv_root, to_bytes};
+use std::collections::BTreeMap;
+
+type Modules = BTreeMap<String, Vec<u8>>;
+
+/// One line for each module that is missing, left over or different.
+fn differences(compiled: &Modules, committed: &Modules) -> Vec<String> {
+    let left_over = committed.keys().filter(|name| !compiled.contains_key(*name));
+    let left_over = left_over.map(|name| format!("spirv/{name}.spv has no glsl/{name}"));
+    let others = compiled.iter().filter_map(|(name, bytes)| match committed.get(name) {
+        None => Some(format!("spirv/{name}.spv is missing")),
+        Some(old) if old != bytes => Some(format!("spirv/{name}.spv is not what the GLSL gives")),
+        Some(_) => None,
+    });
+    left_over.chain(others).collect()
+}
+
+fn write(compiled: &Modules, committed: &Modules) {
+    for (name, bytes) in compiled.iter().filter(|(name, bytes)| committed.get(*name) != Some(bytes))
+    {
+        let path = spirv_root().join(format!("{name}.spv"));
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(&path, bytes).unwrap();
+        println!("wrote spirv/{name}.spv");
+    }
+    for name in committed.keys().filter(|name| !compiled.contains_key(*name)) {
+        std::fs::remove_file(spirv_root().join(format!("{name}.spv"))).unwrap();
+        println!("removed spirv/{name}.spv");
+    }
+}
+
+#[test]
+fn committed_modules_are_what_the_glsl_compiles_to() {
+    assert!(glsl_root().join("common/light.glsl").exists(), "looked in {:?}", glsl_root());
+    let compiled: Modules =
+        shader_names().into_iter().map(|name| (name.clone(), to_bytes(&compile(&name)))).collect();
+    if std::env::var("ANTUMBRA_WRITE_SPIRV").is_ok_and(|value| value == "1") {
+        write(&compiled, &committed());
+    }
+    let stale = differences(&compiled, &committed());
+    assert!(
+        stale.is_empty(),
+        "{}\nrun: ANTUMBRA_WRITE_SPIRV=1 cargo test --test freshness",
+        stale.join("\n")
+    );
+}
+
+#[test]
+fn a_stale_a_missing_and_a_left_over_module_are_each_named() {
+    let modules = |pairs: &[(&str, u8)]| -> Modules {
+        pairs.iter().map(|(name, byte)| ((*name).to_owned(), vec![*byte])).collect()
+    };
+    let compiled = modules(&[("a.comp", 1), ("b.comp", 2), ("c.comp", 3)]);
+    assert!(differences(&compiled, &compiled).is_empty());
+    let found = differences(&compiled, &modules(&[("a.comp", 1), ("b.comp", 9), ("d.comp", 4)]));
+    assert_eq!(found.len(), 3, "{found:?}");
+    assert!(found[0].contains("d.comp.spv has no"));
+    assert!(found[1].contains("b.comp.spv is not"));
+    assert!(found[2].contains("c.comp.spv is missing"));
+}
+
+#[test]
+fn the_same_text_gives_the_same_words_without_paths() {
+    let source = "#version 450\n#extension GL_GOOGLE_include_directive : require\n\
+                  #include \"common/light.glsl\"\n\
+                  layout(local_size_x = 1) in;\n\
+                  layout(set = 0, binding = 0) buffer B { float x; };\n\
+                  void main() { x = overlap(x, 1.0); }\n";
+    let compile = || antumbra_tests::compile::try_compile("made-up.comp", source).unwrap();
+    let words = compile();
+    assert_eq!(words, compile());
+    assert_eq!(words[1], 0x0001_0000, "SPIR-V 1.0");
+    let text = String::from_utf8_lossy(&to_bytes(&words)).into_owned();
+    assert!(!text.contains("light.glsl") && !text.contains(".comp"), "a path in the module");
+}
+
+#[test]
+fn a_shader_that_does_not_compile_says_where() {
+    let compile = antumbra_tests::compile::try_compile;
+    let log = compile("broken.comp", "#version 450\nvoid main() { nonsense; }\n").unwrap_err();
+    assert!(log.contains("broken.comp") && log.contains("nonsense"), "{log}");
+    let missing = "#version 450\n#extension GL_GOOGLE_include_directive : require\n\
+                   #include \"common/nowhere.glsl\"\nvoid main() {}\n";
+    let log = compile("missing.comp", missing).unwrap_err();
+    assert!(log.contains("glsl/common/nowhere.glsl"), "{log}");
+}

@@ -1,0 +1,190 @@
+//! GLSL functions alone, beside their twins; and the harness that does it, with wrong twins.
+
+// A test says what went wrong by panicking.
+#![allow(missing_docs, clippy::unwrap_used)]
+
+use antumbra::soft_shadow_map::twin::{magnification, overlap, patch_occlusion};
+use antumbra::visibility::twin::{fraction_above, plane_normal, unproject};
+use antumbra_tests::compare::Tolerance;
+use antumbra_tests::{Function, device};
+use glam::Vec3;
+use num_traits::Float;
+use proptest::prelude::{Strategy, any};
+
+type Pair = (f32, f32);
+type Triple = (f32, f32, f32);
+
+/// A micro-patch and a receiver as scenes have them: within a few windows of the light, in front of
+/// the receiver and behind it.
+fn patches() -> impl Strategy<Value = (Pair, f32, Pair, f32, Pair)> {
+    let texel = (0.0..256.0_f32, 0.0..256.0_f32);
+    let receiver = (-20.0..276.0_f32, -20.0..276.0_f32);
+    (texel, 0.05..4.0_f32, receiver, 0.05..2.0_f32, (0.001..0.2_f32, 0.001..0.2_f32))
+}
+
+#[test]
+fn magnification_of_a_patch() {
+    Function::new("common/light.glsl", "float magnification(float w_o, float w_r)")
+        .case((1.0, 0.5))
+        .random(5_000, (1.0..4.0, 0.01..0.99))
+        // A division may be off by 2.5 units in the last place (Vulkan, precision of operations).
+        .f32(Tolerance::ulps(3), |x| vec![magnification(x[0], x[1])])
+        .check(&device());
+}
+
+#[test]
+fn overlap_with_the_light() {
+    Function::new("common/light.glsl", "float overlap(float a, float b)")
+        .case((-0.25, 0.25))
+        .case((f32::MIN, f32::MAX))
+        .random(10_000, (-2.0..3.0, -2.0..3.0))
+        .f32(Tolerance::exact(), |x| vec![overlap(x[0], x[1])])
+        .f64(Tolerance::absolute(6e-8), |x| vec![overlap(x[0], x[1])])
+        .check(&device());
+}
+
+#[test]
+fn occlusion_by_a_patch() {
+    let prototype =
+        "float patch_occlusion(vec2 lo, vec2 hi, float w_o, vec2 t, float w_r, vec2 scale)";
+    let cases = patches().prop_map(|(lo, w_o, t, w_r, scale)| {
+        let lo = (lo.0.floor(), lo.1.floor());
+        (lo, (lo.0 + 1.0, lo.1 + 1.0), w_o, t, w_r, scale)
+    });
+    fn twin<T: Float>(x: &[T]) -> Vec<T> {
+        vec![patch_occlusion([x[0], x[1]], [x[2], x[3]], x[4], [x[5], x[6]], x[7], [x[8], x[9]])]
+    }
+    Function::new("common/light.glsl", prototype)
+        .case(((0.0, 0.0), (1.0, 1.0), 1.0, (0.5, 0.5), 0.5, (0.1, 0.1)))
+        .random(20_000, cases)
+        // An edge at the light's rim, ±½, carries the rounding of three factors: a few 2^-24 of ½,
+        // and 1/(w_o − w_r) magnifies that of w where the two are close.
+        .f32(Tolerance::absolute(2e-6), twin::<f32>)
+        .f64(Tolerance::absolute(2e-6), twin::<f64>)
+        .check(&device());
+}
+
+#[test]
+fn part_of_the_light_above_a_plane() {
+    let flat = (-1.0..1.0_f32, -1e-6..1e-6_f32);
+    let any = (-1.0..1.0_f32, -1.0..1.0_f32);
+    for slope in [any, flat] {
+        Function::new("common/light.glsl", "float fraction_above(vec2 slope, float c)")
+            .case(((0.0, 0.0), -1.0))
+            .case(((0.0, 0.0), 1.0))
+            .case(((1.0, 1.0), 0.0))
+            .random(10_000, (slope, -2.0..2.0_f32))
+            .f32(Tolerance::absolute(1e-6), |x| vec![fraction_above([x[0], x[1]], x[2])])
+            .f64(Tolerance::absolute(2e-6), |x| vec![fraction_above([x[0], x[1]], x[2])])
+            .check(&device());
+    }
+}
+
+#[test]
+fn pixels_to_light_space() {
+    fn twin<T: Float>(x: &[T]) -> Vec<T> {
+        unproject(&x[..16], [x[16], x[17]], [x[18], x[19]], x[20]).to_vec()
+    }
+    Function::new(
+        "common/receiver.glsl",
+        "vec4 unproject(mat4 light_from_ndc, vec2 pixel, vec2 extent, float depth)",
+    )
+    .random(
+        5_000,
+        (
+            proptest::array::uniform16(-2.0_f32..2.0),
+            (0.0..640.0_f32, 0.0..480.0_f32),
+            (640.0..641.0_f32, 480.0..481.0_f32),
+            0.0..1.0_f32,
+        ),
+    )
+    // Four products of at most 2, each with the rounding of a coordinate within ±1.
+    .f32(Tolerance::absolute(4e-6), twin::<f32>)
+    .f64(Tolerance::absolute(4e-6), twin::<f64>)
+    .check(&device());
+}
+
+#[test]
+fn normals_face_the_viewer() {
+    fn twin<T: Float>(x: &[T]) -> Vec<T> {
+        let v = |i: usize| [x[i], x[i + 1], x[i + 2]];
+        plane_normal(v(0), v(3), v(6)).to_vec()
+    }
+    let step = || (-1.0..1.0_f32, -1.0..1.0_f32, -1.0..1.0_f32);
+    // Steps that are nearly parallel lose digits to cancellation in their cross product.
+    let apart = |x: &(Triple, Triple, Triple)| {
+        let (a, b, c) = (Vec3::from(x.0), Vec3::from(x.1), Vec3::from(x.2));
+        let n = a.cross(b);
+        n.length() > 0.1 && n.normalize().dot(c).abs() > 1e-3
+    };
+    let steps = (step(), step(), step()).prop_filter("neither parallel nor edge-on", apart);
+    Function::new(
+        "common/receiver.glsl",
+        "vec3 plane_normal(vec3 along_x, vec3 along_y, vec3 to_viewer)",
+    )
+    .case(((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, -1.0)))
+    .random(5_000, steps)
+    .f32(Tolerance::absolute(4e-6), twin::<f32>)
+    .f64(Tolerance::absolute(4e-6), twin::<f64>)
+    .check(&device());
+}
+
+/// A twin that is wrong in one small corner is caught, and the report shows a case of that corner.
+#[test]
+fn a_wrong_twin_is_caught_with_a_case_that_shows_it() {
+    let wrong = |x: &[f32]| vec![if x[0] > 2.9 { 0.125 } else { x[0].abs() }];
+    let problem = Function::new("common/light.glsl", "float abs(float x)")
+        .random(10_000, -3.0..3.0)
+        .f32(Tolerance::ulps(4), wrong)
+        .try_check(&device())
+        .unwrap_err();
+    assert!(problem.contains("float abs(float x)"), "{problem}");
+    assert!(problem.contains("the twin in f32"), "{problem}");
+    assert!(problem.contains("worst:    [2.9"), "{problem}");
+    assert!(problem.contains("expected: [0.125]"), "{problem}");
+}
+
+/// One unit in the last place of one result is caught where nothing is allowed.
+#[test]
+fn a_twin_off_by_one_ulp_is_caught() {
+    let off = |x: &[f32]| vec![x[0].abs().next_up()];
+    let function = Function::new("common/light.glsl", "float abs(float x)").case(0.5);
+    let device = device();
+    assert!(function.f32(Tolerance::exact(), off).try_check(&device).is_err());
+    let function = Function::new("common/light.glsl", "float abs(float x)").case(0.5);
+    assert!(function.f32(Tolerance::ulps(1), off).try_check(&device).is_ok());
+}
+
+/// GLSL's own functions stand for every type that can go in and out.
+#[test]
+fn every_kind_of_parameter_and_result_goes_through() {
+    let device = device();
+    let builtin = |prototype| Function::new("common/light.glsl", prototype);
+    builtin("vec3 cross(vec3 a, vec3 b)")
+        .case(([1.0, 0.0, 0.0], [0.0, 1.0, 0.0]))
+        .f32(Tolerance::exact(), |_| vec![0.0, 0.0, 1.0])
+        .check(&device);
+    builtin("mat4 transpose(mat4 m)")
+        .random(100, proptest::array::uniform16(-1.0_f32..1.0))
+        .f32(Tolerance::exact(), |m| (0..16).map(|i| m[i % 4 * 4 + i / 4]).collect())
+        .check(&device);
+    builtin("int bitCount(uint x)")
+        .random(1_000, any::<u32>())
+        .bits(|x| vec![x[0].count_ones()])
+        .check(&device);
+    builtin("ivec2 abs(ivec2 x)")
+        .case([-7, 9])
+        .f64(Tolerance::exact(), |x| vec![x[0].abs(), x[1].abs()])
+        .check(&device);
+    builtin("bool isnan(float x)")
+        .case(f32::NAN)
+        .case(1.0)
+        .f32(Tolerance::exact(), |x| vec![f32::from(x[0].is_nan())])
+        .check(&device);
+    builtin("float modf(float x, out float whole)")
+        .case(2.75)
+        .f32(Tolerance::exact(), |x| vec![x[0].fract(), x[0].trunc()])
+        .check(&device);
+    let cases = builtin("uint floatBitsToUint(float x)").case(1.0).outputs(&device);
+    assert_eq!(cases[0].output, [f64::from(0x3f80_0000)]);
+}

@@ -1,0 +1,149 @@
+//! Blended and gathered sums against the f64 sum of the twin, over the same depth map.
+
+// A test says what went wrong by panicking.
+#![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
+
+use antumbra::FramePlan;
+use antumbra::gpu::headless::{HeadlessDevice, Stage};
+use antumbra::graph::Pass;
+use antumbra::scene::{Scene, generate};
+use antumbra::soft_shadow_map::push::{Blocks, GatherMap, PatchDraw};
+use antumbra::soft_shadow_map::twin::{OccluderMap, occlusion};
+use antumbra_tests::device;
+use antumbra_tests::measure::Setup;
+
+/// What both accumulations must reach.
+const BOUND: f64 = 2e-5;
+
+/// Receiver texels that are checked, of each map.
+const CHECKED: usize = 96;
+
+fn scenes() -> Vec<(&'static str, Scene)> {
+    let light = || generate::square_light(0.4).unwrap();
+    vec![
+        ("card", generate::card(light())),
+        ("spheres", generate::spheres(light())),
+        ("contact", generate::contact(light())),
+        ("slats", generate::slats(light(), 24)),
+        ("foliage", generate::foliage(light(), 300, 7)),
+    ]
+}
+
+fn pass<'a>(plan: &'a FramePlan, name: &str) -> &'a Pass {
+    plan.plan.graph.passes().iter().find(|p| p.name == name).unwrap()
+}
+
+fn push<T: bytemuck::AnyBitPattern>(pass: &Pass) -> T {
+    bytemuck::pod_read_unaligned(pass.push.bytes())
+}
+
+/// Where a receiver texel lies, and where its sum is.
+struct Grid {
+    scale: [f32; 2],
+    t_step: [f32; 2],
+    t_first: [f32; 2],
+    receiver_inv_near: f32,
+}
+
+fn grid_of(plan: &FramePlan, accumulate: &str) -> Grid {
+    if accumulate == "gather" {
+        let p: GatherMap = push(pass(plan, "soft_shadow_map.gather_front"));
+        let GatherMap { scale, t_step, t_first, receiver_inv_near, .. } = p;
+        Grid { scale, t_step, t_first, receiver_inv_near }
+    } else {
+        let p: PatchDraw = push(pass(plan, "soft_shadow_map.blend_front"));
+        let PatchDraw { scale, t_step, t_first, receiver_inv_near, .. } = p;
+        Grid { scale, t_step, t_first, receiver_inv_near }
+    }
+}
+
+/// The largest |error| over the checked texels, relative to a sum above 1, and the largest sum.
+fn worst_error(stage: &mut Stage, setup: &Setup, accumulate: &str) -> (f64, f64) {
+    let plan = stage.plan(&setup.light(), None).unwrap();
+    stage.run(&plan).unwrap();
+    let (depth, [side, _]) = stage.inspect::<f32>(&plan, "depth_layers.front_depth").unwrap();
+    let (receivers, [receiver_side, _]) =
+        stage.inspect::<f32>(&plan, "depth_layers.receiver_depth").unwrap();
+    let (sums, _) = stage.inspect::<f32>(&plan, "soft_shadow_map.front_map").unwrap();
+    let blocks: Blocks = push(pass(&plan, "soft_shadow_map.blocks"));
+    let grid = grid_of(&plan, accumulate);
+    let w: Vec<f32> = depth.iter().map(|d| d * blocks.inv_near).collect();
+    let map = OccluderMap { w: &w, side: side as usize, scale: grid.scale };
+
+    // A low-discrepancy walk over the texels that are in some shadow, and a few that are not.
+    let shadowed: Vec<usize> = (0..sums.len()).filter(|&i| sums[i] > 0.0).collect();
+    assert!(shadowed.len() > CHECKED, "nothing is shadowed");
+    let golden = 0.618_033_988_749_895;
+    let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
+    for n in 0..CHECKED {
+        let share = (n as f64 * golden).fract();
+        let index = if n % 16 == 15 {
+            (share * sums.len() as f64) as usize
+        } else {
+            shadowed[(share * shadowed.len() as f64) as usize]
+        };
+        if receivers[index] == 0.0 {
+            assert_eq!(sums[index], 0.0, "a texel without a receiver");
+            continue;
+        }
+        let p = [index % receiver_side as usize, index / receiver_side as usize];
+        let t = [0, 1].map(|i| grid.t_first[i] + p[i] as f32 * grid.t_step[i]);
+        let exact = occlusion(&map, t, receivers[index] * grid.receiver_inv_near);
+        worst = worst.max((f64::from(sums[index]) - exact).abs() / exact.max(1.0));
+        largest = largest.max(exact);
+    }
+    (worst, largest)
+}
+
+fn sides_of(device: &HeadlessDevice) -> &'static [u32] {
+    // SwiftShader blends 512² maps for minutes; the sums are the same additions.
+    if device.name().contains("SwiftShader") { &[64, 100, 256] } else { &[64, 100, 256, 512] }
+}
+
+#[test]
+fn gathered_sums_are_the_exact_sums() {
+    let device = device();
+    for (name, scene) in scenes() {
+        let setup = Setup::ground(&scene, 2.2, 32);
+        for &side in sides_of(&device) {
+            let words =
+                format!("receivers=map map={side} receiver_map={side} tolerance=0 sides=one");
+            let mut stage = setup.stage(&device, &words);
+            let (worst, largest) = worst_error(&mut stage, &setup, "gather");
+            println!("{name}, N = {side}: gather {worst:.1e} of sums up to {largest:.3}");
+            assert!(worst <= BOUND, "{name}, N = {side}: {worst:.2e}");
+        }
+    }
+}
+
+#[test]
+fn the_tolerance_is_kept() {
+    let device = device();
+    for (name, scene) in scenes() {
+        let setup = Setup::ground(&scene, 2.2, 32);
+        for tolerance in [1e-5, 1e-4, 1e-3, 1e-2, 1e-1] {
+            let words =
+                format!("receivers=map map=128 receiver_map=128 sides=one tolerance={tolerance}");
+            let mut stage = setup.stage(&device, &words);
+            let (worst, _) = worst_error(&mut stage, &setup, "gather");
+            println!("{name}, tolerance {tolerance}: {worst:.1e}");
+            assert!(worst <= tolerance + BOUND, "{name}, {tolerance}: {worst:.2e}");
+        }
+    }
+}
+
+#[test]
+fn blended_sums_are_the_exact_sums() {
+    let device = device();
+    for (name, scene) in scenes() {
+        let setup = Setup::ground(&scene, 2.2, 32);
+        for &side in sides_of(&device) {
+            let words =
+                format!("receivers=map map={side} receiver_map={side} sides=one accumulate=blend");
+            let mut stage = setup.stage(&device, &words);
+            let (worst, largest) = worst_error(&mut stage, &setup, "blend");
+            println!("{name}, N = {side}: blend {worst:.1e} of sums up to {largest:.3}");
+            assert!(worst <= BOUND, "{name}, N = {side}: {worst:.2e}");
+        }
+    }
+}

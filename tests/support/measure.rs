@@ -1,0 +1,116 @@
+//! A scene under a light, seen by a grid of pixels: the node's visible fraction beside the truth.
+
+use antumbra::gpu::headless::{HeadlessDevice, Stage, View};
+use antumbra::scene::{Role, Scene};
+use antumbra::truth::{ErrorSummary, Receiver, Sampling, Tracer};
+use antumbra::{RectangleLight, Settings};
+use glam::DVec3;
+
+/// Settings from the words of a command line: `"map=64 sides=one"`.
+///
+/// # Panics
+/// If a setting is refused.
+pub fn settings(words: &str) -> Settings {
+    let mut settings = Settings::default();
+    for word in words.split_whitespace() {
+        let (key, value) = word.split_once('=').expect("KEY=VALUE");
+        settings.set(key, value).unwrap_or_else(|e| panic!("{e}"));
+    }
+    settings
+}
+
+/// A scene with the pixels that look at it.
+pub struct Setup<'a> {
+    /// The scene; its first light is used.
+    pub scene: &'a Scene,
+    /// How pixels look at it.
+    pub view: View,
+    /// Width and height.
+    pub extent: [u32; 2],
+    /// Least and largest tangents of the occluder map; fitted without.
+    pub window: Option<[[f64; 2]; 2]>,
+    /// Whether occluders that do not receive are seen by the pixels.
+    pub occluders_seen: bool,
+}
+
+impl<'a> Setup<'a> {
+    /// A square grid of `side` pixels on the ground, over |x|, |z| ≤ `half`.
+    pub fn ground(scene: &'a Scene, half: f64, side: u32) -> Self {
+        let view = View::map_of_ground(half, 8.0);
+        Self { scene, view, extent: [side; 2], window: None, occluders_seen: false }
+    }
+
+    /// The scene's first light.
+    pub fn light(&self) -> RectangleLight {
+        self.scene.light(None).unwrap().light
+    }
+
+    /// A stage with a node of these settings.
+    ///
+    /// # Panics
+    /// If the node refuses.
+    pub fn stage(&self, device: &HeadlessDevice, words: &str) -> Stage {
+        let seen = self.occluders_seen;
+        let keep = |i: &antumbra::scene::Instance| seen || i.role != Role::Occluder;
+        Stage::new(device, self.scene, &self.view, self.extent, settings(words), keep)
+            .unwrap_or_else(|e| panic!("{words}: {e}"))
+    }
+
+    /// One frame's visible fractions.
+    ///
+    /// # Panics
+    /// If the frame fails.
+    pub fn visibility(&self, stage: &mut Stage) -> Vec<f32> {
+        let plan = stage.plan(&self.light(), self.window).unwrap_or_else(|e| panic!("{e}"));
+        stage.run(&plan).unwrap();
+        stage.visibility().unwrap()
+    }
+
+    /// What each pixel shows: position and normal, without a normal where nothing receives.
+    ///
+    /// # Panics
+    /// If the G-buffer cannot be read.
+    pub fn receivers(stage: &Stage) -> Vec<Receiver> {
+        let wide = |a: &[f32; 4]| DVec3::new(a[0].into(), a[1].into(), a[2].into());
+        let positions = stage.gbuffer().positions().unwrap();
+        let normals = stage.gbuffer().normals().unwrap();
+        let roles = stage.gbuffer().roles().unwrap();
+        positions
+            .iter()
+            .zip(&normals)
+            .zip(&roles)
+            .map(|((p, n), role)| Receiver {
+                position: wide(p),
+                normal: if *role == 0 { DVec3::ZERO } else { wide(n) },
+            })
+            .collect()
+    }
+
+    /// The traced visible fractions and their noise.
+    ///
+    /// # Panics
+    /// If the scene cannot be traced.
+    pub fn traced(&self, stage: &Stage, rays: u32) -> (Vec<f32>, f64) {
+        let tracer = Tracer::new(self.scene).unwrap();
+        let sampling = Sampling::new(rays, 1).unwrap();
+        let traced =
+            tracer.visible_fractions(&self.light(), &Self::receivers(stage), &sampling).unwrap();
+        (traced.visible, traced.noise)
+    }
+}
+
+/// Mean |error| over the pixels in shadow or penumbra, in percent (Atty 2006 section 5.2.1).
+///
+/// # Panics
+/// If the images cannot be compared.
+pub fn percent(truth: &[f32], image: &[f32]) -> f64 {
+    100.0 * summary(truth, image).mean_abs_error
+}
+
+/// The whole comparison.
+///
+/// # Panics
+/// If the images cannot be compared.
+pub fn summary(truth: &[f32], image: &[f32]) -> ErrorSummary {
+    ErrorSummary::between(truth, image, None).unwrap_or_else(|e| panic!("{e}"))
+}
