@@ -274,10 +274,8 @@ fn writes(access: vk::AccessFlags) -> bool {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
-
     use super::*;
-    use crate::graph::{Need, Pass, Push, Use, Work};
+    use crate::graph::{Pass, Push, Use, Work};
     use crate::shaders;
     use vk::{AccessFlags as A, ImageLayout as L, PipelineStageFlags as S};
 
