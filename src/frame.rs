@@ -186,7 +186,7 @@ pub struct FramePlan {
 
 impl FramePlan {
     /// How the node touches the host's images and the visibility image: stages, accesses and layouts
-    /// on entry and on exit.
+    /// on entry and on exit. An image that this frame's rows leave alone is not in the list.
     pub fn accesses(&self) -> &[graph::BoundaryUse] {
         &self.plan.boundary
     }

@@ -1,4 +1,62 @@
 //! Soft shadows from area lights, as one node of a Vulkan engine's render graph.
+//!
+//! The result is one image: for each pixel of the host's G-buffer the **visible fraction** of a
+//! rectangle light, 0 in umbra to 1 in the light.
+//!
+//! ```text
+//!   the host: meshes, a light, the G-buffer's depth
+//!        │
+//!        ▼
+//!   depth_layers       what the light sees: occluders' nearest and furthest faces, receivers
+//!        │
+//!        ▼
+//!   soft_shadow_map    each texel a micro-patch; what the patches hide of the light, added up
+//!        │
+//!        ▼
+//!   visibility         the visible fraction at each pixel
+//!        │
+//!        ▼
+//!   the host: visibility × unshadowed irradiance
+//! ```
+//! Values go down and never back up. Each of these modules declares its passes as rows of data in a
+//! [`graph`]; [`ShadowNode::plan`] keeps the rows that the frame in front of it needs and derives
+//! their barriers; [`ShadowNode::record`] turns the plan into commands.
+//!
+//! ```no_run
+//! # use antumbra::{Allocator, Description, Error, Frame, Host, Requirements, ShadowNode};
+//! # fn host_frame(
+//! #     host: Host, memory: &mut dyn Allocator, cmd: ash::vk::CommandBuffer, frame: &Frame,
+//! # ) -> Result<(), Error> {
+//! // Once: lend a device (Host::borrow), ask whether it will do, make the node.
+//! Requirements::check(&host).met()?;
+//! let mut node = ShadowNode::new(host.clone(), memory, Description::new([1920, 1080]))?;
+//!
+//! // Each frame: say what is where, plan, record between the G-buffer and the shading.
+//! let plan = node.plan(frame)?;
+//! println!("{}", plan.plan.table()); // what runs, what does not, and why
+//! node.record(cmd, &plan)?;
+//! let result = node.visibility(); // sample this where you shade
+//!
+//! // Another size. What it replaced lives until the frames recorded before are done.
+//! let retired = node.resize(memory, [1280, 720])?;
+//! retired.destroy(&host, memory);
+//!
+//! // At the end, once the device is idle.
+//! node.destroy(memory);
+//! # Ok(())
+//! # }
+//! ```
+//! `examples/embed` is this in a whole engine.
+//!
+//! | to … | read |
+//! |---|---|
+//! | host the node | [`node`], [`frame`], [`gpu::Host`], [`gpu::Allocator`], [`light`] |
+//! | turn its knobs | [`settings`] |
+//! | follow a technique | its module: the idea, the paper's sections, where it departs, its limits |
+//! | see what a frame does | [`graph`], [`graph::Plan::table`], [`graph::Plan::graphviz`] |
+//! | load or make scenes | [`scene`] |
+//! | measure error | `truth` (feature `truth`) |
+//! | run without a window | `gpu::headless` (feature `headless`) |
 
 pub mod depth_layers;
 pub mod error;
@@ -22,3 +80,8 @@ pub use light::RectangleLight;
 pub use node::{ShadowNode, VisibilityImage};
 pub use scene::Role;
 pub use settings::{Settings, Technique};
+
+/// The README's example is compiled with the doctests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

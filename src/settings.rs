@@ -201,6 +201,16 @@ mod tests {
     }
 
     #[test]
+    fn the_readme_lists_every_knob() {
+        let readme = include_str!("../README.md");
+        for k in KNOBS {
+            let row =
+                format!("| `{}` | {} | {} | {} | {} |", k.key, k.unit, k.range, k.default, k.about);
+            assert!(readme.contains(&row), "README.md's table of settings lacks this row:\n{row}");
+        }
+    }
+
+    #[test]
     fn wrong_values_are_refused_with_what_would_be_right() {
         let refuse =
             |key: &str, value: &str| Settings::default().set(key, value).unwrap_err().to_string();

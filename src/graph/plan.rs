@@ -22,7 +22,8 @@ pub struct BoundaryUse {
     pub resource: ResourceId,
     /// Its name in the graph.
     pub name: &'static str,
-    /// Stages and accesses of the node's first use, and the layout it must be in by then.
+    /// Stages and accesses of the node's first use (of all its uses, where it only reads), and the
+    /// layout it must be in by then.
     pub entry: Scope,
     /// Stages and accesses of the node's last uses, and the layout it is left in.
     pub exit: Scope,
@@ -115,7 +116,19 @@ pub fn compile(graph: Graph, borders: &[Border], place_borders: bool) -> Result<
             let host_owned = resource.owner != Owner::Transient;
             let first = host_owned && !boundary.iter().any(|b| b.resource == u.resource);
             if first {
-                let (entry, name) = (scope, resource.name);
+                let entry = if resource.owner == Owner::Imported {
+                    // Never written here, so one barrier can reach all of its readers.
+                    let rows = kept.iter().map(|&p| &graph.passes()[p]);
+                    let uses = rows.flat_map(|p| &p.uses).filter(|o| o.resource == u.resource);
+                    uses.map(|o| o.access.scope()).fold(scope, |all, one| Scope {
+                        stage: all.stage | one.stage,
+                        access: all.access | one.access,
+                        ..all
+                    })
+                } else {
+                    scope
+                };
+                let name = resource.name;
                 boundary.push(BoundaryUse {
                     resource: u.resource,
                     name,
@@ -124,8 +137,8 @@ pub fn compile(graph: Graph, borders: &[Border], place_borders: bool) -> Result<
                     writes: false,
                 });
                 if !place_borders {
-                    // The host's own barrier has made it ready for exactly this use.
-                    states[u.resource.index()] = State::left_in(scope);
+                    // The host's own barrier has made it ready for exactly this.
+                    states[u.resource.index()] = State::left_in(entry);
                 } else if resource.owner == Owner::Exported {
                     // Written whole: what it held may be forgotten, in whatever layout.
                     let before = border.map_or(scope, |b| b.before);
@@ -145,16 +158,15 @@ pub fn compile(graph: Graph, borders: &[Border], place_borders: bool) -> Result<
         steps.push(Step { pass: index, barriers });
     }
 
-    let mut handover = Vec::new();
     for b in &mut boundary {
-        let state = &mut states[b.resource.index()];
-        b.exit = state.scope();
-        if let (true, Some(border)) =
-            (place_borders, borders.iter().find(|x| x.resource == b.resource))
-        {
-            let barrier = state.touch(border.after, writes(border.after.access));
-            handover
-                .extend(barrier.map(|barrier| ResourceBarrier { resource: b.resource, barrier }));
+        b.exit = states[b.resource.index()].scope();
+    }
+    let mut handover = Vec::new();
+    if place_borders {
+        // What no row of this frame touches is handed over too: its next user counts on it.
+        for &Border { resource, after, .. } in borders {
+            let barrier = states[resource.index()].touch(after, writes(after.access));
+            handover.extend(barrier.map(|barrier| ResourceBarrier { resource, barrier }));
         }
     }
     Ok(Plan { graph, steps, handover, skipped, boundary })
@@ -258,4 +270,73 @@ fn writes(access: vk::AccessFlags) -> bool {
             | vk::AccessFlags::TRANSFER_WRITE
             | vk::AccessFlags::MEMORY_WRITE,
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::graph::{Pass, Push, Use, Work};
+    use crate::shaders;
+    use vk::{AccessFlags as A, ImageLayout as L, PipelineStageFlags as S};
+
+    const DRAWN: Scope = Scope {
+        stage: S::LATE_FRAGMENT_TESTS,
+        access: A::DEPTH_STENCIL_ATTACHMENT_WRITE,
+        layout: L::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
+    };
+    const FETCHED: Scope = Scope {
+        stage: S::FRAGMENT_SHADER,
+        access: A::SHADER_READ,
+        layout: L::SHADER_READ_ONLY_OPTIMAL,
+    };
+
+    /// One imported image; one exported one, which a row writes that reads the import by `reads`.
+    fn plan_of(reads: &[Access], place_borders: bool) -> (Plan, ResourceId) {
+        let mut graph = Graph::new();
+        let extent = [4, 4];
+        let depth = graph.image("depth", vk::Format::D32_SFLOAT, extent, Owner::Imported);
+        let result = graph.image("result", vk::Format::R32_SFLOAT, extent, Owner::Exported);
+        let middle = graph.buffer("middle", 4);
+        let row = |uses| Pass {
+            name: "row",
+            uses,
+            push: Push::NONE,
+            work: Work::Dispatch { shader: shaders::LIT, groups: [1; 3] },
+            need: Need::Yes("test".into()),
+        };
+        for &read in reads {
+            let write = Use::fixed(middle, Access::BufferWriteCompute);
+            graph.push(row(vec![Use::fixed(depth, read), write]));
+        }
+        let mut last = vec![Use::fixed(result, Access::ImageWrite)];
+        if !reads.is_empty() {
+            last.push(Use::fixed(middle, Access::BufferReadCompute));
+        }
+        graph.push(row(last));
+        let borders =
+            [depth, result].map(|resource| Border { resource, before: DRAWN, after: FETCHED });
+        (compile(graph, &borders, place_borders).unwrap(), depth)
+    }
+
+    /// The next user of a lent image counts on its layout, whether or not a row touched it.
+    #[test]
+    fn what_no_row_touches_is_handed_over_too() {
+        let (plan, depth) = plan_of(&[], true);
+        assert!(plan.boundary.iter().all(|b| b.resource != depth));
+        let barrier = plan.handover.iter().find(|b| b.resource == depth).unwrap().barrier;
+        assert_eq!((barrier.src_stage, barrier.src_access), (DRAWN.stage, DRAWN.access));
+        assert_eq!((barrier.dst_stage, barrier.dst_access), (FETCHED.stage, FETCHED.access));
+        assert_eq!((barrier.old_layout, barrier.new_layout), (DRAWN.layout, FETCHED.layout));
+        // Left to the host, all of that is the host's.
+        assert!(plan_of(&[], false).0.handover.is_empty());
+    }
+
+    /// The host's one barrier on entry must reach every stage that reads before anything is written.
+    #[test]
+    fn the_entry_covers_every_reader() {
+        let (plan, depth) = plan_of(&[Access::SampledCompute, Access::SampledFragment], false);
+        let entry = plan.boundary.iter().find(|b| b.resource == depth).unwrap().entry;
+        assert_eq!(entry.stage, S::COMPUTE_SHADER | S::FRAGMENT_SHADER);
+        assert!(plan.steps.iter().flat_map(|s| &s.barriers).all(|b| b.resource != depth));
+    }
 }

@@ -1,0 +1,168 @@
+//! Two frames in flight: while the device works on one, the processor records the next.
+
+use crate::Outcome;
+use crate::device::Gpu;
+use crate::resources::{Buffer, Image};
+use ash::vk;
+use gpu_allocator::MemoryLocation;
+use std::time::Duration;
+
+/// How many frames are recorded before the first of them must be done.
+pub const FRAMES_IN_FLIGHT: usize = 2;
+
+/// What is told about a frame once it is done.
+#[derive(Clone, Copy)]
+pub struct FrameNotes {
+    pub number: u64,
+    pub extent: [u32; 2],
+    /// What the node took of the processor.
+    pub plan: Duration,
+    pub record: Duration,
+    /// Passes that the node recorded.
+    pub passes: usize,
+}
+
+/// A command buffer, the fence behind it, and what it copies its picture into.
+struct Slot {
+    pool: vk::CommandPool,
+    cmd: vk::CommandBuffer,
+    done: vk::Fence,
+    pixels: Option<Buffer>,
+    running: Option<FrameNotes>,
+}
+
+/// The frames in flight.
+pub struct Frames(Vec<Slot>);
+
+impl Frames {
+    pub fn new(gpu: &Gpu) -> Outcome<Self> {
+        let slot = |_| {
+            let create = vk::CommandPoolCreateInfo::default()
+                .flags(vk::CommandPoolCreateFlags::TRANSIENT)
+                .queue_family_index(gpu.queue_family);
+            // SAFETY: the family is the device's.
+            let pool = unsafe { gpu.device.create_command_pool(&create, None) }?;
+            let allocate = vk::CommandBufferAllocateInfo::default()
+                .command_pool(pool)
+                .level(vk::CommandBufferLevel::PRIMARY)
+                .command_buffer_count(1);
+            // SAFETY: the pool is new, and this is the only thread.
+            let (cmd, done) = unsafe {
+                let cmd = gpu.device.allocate_command_buffers(&allocate)?[0];
+                (cmd, gpu.device.create_fence(&vk::FenceCreateInfo::default(), None)?)
+            };
+            Ok(Slot { pool, cmd, done, pixels: None, running: None })
+        };
+        (0..FRAMES_IN_FLIGHT).map(slot).collect::<Outcome<_>>().map(Self)
+    }
+
+    /// Waits until the frame that last had this slot is done, and gives it back; none at the start.
+    /// All frames before it are done then too: a fence waits for everything submitted earlier.
+    pub fn wait(&mut self, gpu: &Gpu, slot: usize) -> Outcome<Option<FrameNotes>> {
+        let slot = &mut self.0[slot];
+        let Some(notes) = slot.running.take() else { return Ok(None) };
+        // SAFETY: the fence was submitted, and nobody else waits for it.
+        unsafe {
+            gpu.device.wait_for_fences(&[slot.done], true, u64::MAX)?;
+            gpu.device.reset_fences(&[slot.done])?;
+        }
+        Ok(Some(notes))
+    }
+
+    /// The picture of the frame that [`Self::wait`] gave back last for this slot.
+    pub fn pixels(&self, slot: usize) -> Outcome<&[u8]> {
+        self.0[slot].pixels.as_ref().ok_or("the slot has no picture yet")?.read()
+    }
+
+    /// Begins a command buffer for pictures of a size; the slot must have been waited for.
+    pub fn begin(
+        &mut self,
+        gpu: &mut Gpu,
+        slot: usize,
+        extent: [u32; 2],
+    ) -> Outcome<vk::CommandBuffer> {
+        let slot = &mut self.0[slot];
+        let bytes = extent.iter().map(|&e| e as usize).product::<usize>() * 4;
+        let fits = slot.pixels.as_ref().is_some_and(|b| b.read().is_ok_and(|p| p.len() >= bytes));
+        if !fits {
+            if let Some(old) = slot.pixels.take() {
+                old.destroy(gpu);
+            }
+            let usage = vk::BufferUsageFlags::TRANSFER_DST;
+            let location = MemoryLocation::GpuToCpu;
+            slot.pixels = Some(Buffer::new(gpu, "pixels", bytes as u64, usage, location)?);
+        }
+        let begin = vk::CommandBufferBeginInfo::default()
+            .flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
+        // SAFETY: the slot's last commands are done.
+        unsafe {
+            gpu.device.reset_command_pool(slot.pool, vk::CommandPoolResetFlags::empty())?;
+            gpu.device.begin_command_buffer(slot.cmd, &begin)?;
+        }
+        Ok(slot.cmd)
+    }
+
+    /// Copies the picture out for the processor and submits; nothing waits.
+    pub fn submit(
+        &mut self,
+        gpu: &Gpu,
+        slot: usize,
+        picture: &Image,
+        notes: FrameNotes,
+    ) -> Outcome<()> {
+        let slot = &mut self.0[slot];
+        let pixels = slot.pixels.as_ref().ok_or("the slot was not begun")?;
+        let [width, height] = picture.extent;
+        let copy = [vk::BufferImageCopy::default()
+            .image_subresource(vk::ImageSubresourceLayers {
+                aspect_mask: vk::ImageAspectFlags::COLOR,
+                layer_count: 1,
+                ..Default::default()
+            })
+            .image_extent(vk::Extent3D { width, height, depth: 1 })];
+        let to_host = [vk::BufferMemoryBarrier::default()
+            .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
+            .dst_access_mask(vk::AccessFlags::HOST_READ)
+            .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+            .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+            .buffer(pixels.raw)
+            .size(vk::WHOLE_SIZE)];
+        let cmds = [slot.cmd];
+        let submit = [vk::SubmitInfo::default().command_buffers(&cmds)];
+        let none = vk::DependencyFlags::empty();
+        use vk::PipelineStageFlags as Stage;
+        // SAFETY: the picture is in the layout to be copied from and the buffer holds all of it;
+        // the fence is not signalled; this is the only thread that submits.
+        unsafe {
+            let layout = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
+            gpu.device.cmd_copy_image_to_buffer(slot.cmd, picture.raw, layout, pixels.raw, &copy);
+            gpu.device.cmd_pipeline_barrier(
+                slot.cmd,
+                Stage::TRANSFER,
+                Stage::HOST,
+                none,
+                &[],
+                &to_host,
+                &[],
+            );
+            gpu.device.end_command_buffer(slot.cmd)?;
+            gpu.device.queue_submit(gpu.queue, &submit, slot.done)?;
+        }
+        slot.running = Some(notes);
+        Ok(())
+    }
+
+    /// Destroys it; every slot must have been waited for.
+    pub fn destroy(self, gpu: &mut Gpu) {
+        for slot in self.0 {
+            // SAFETY: the slot's commands are done.
+            unsafe {
+                gpu.device.destroy_fence(slot.done, None);
+                gpu.device.destroy_command_pool(slot.pool, None);
+            }
+            if let Some(pixels) = slot.pixels {
+                pixels.destroy(gpu);
+            }
+        }
+    }
+}
