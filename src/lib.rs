@@ -28,7 +28,7 @@
 //! #     host: Host, memory: &mut dyn Allocator, cmd: ash::vk::CommandBuffer, frame: &Frame,
 //! # ) -> Result<(), Error> {
 //! // Once: lend a device (Host::borrow), ask whether it will do, make the node.
-//! Requirements::check(&host).met()?;
+//! Requirements::of(&host).met()?;
 //! let mut node = ShadowNode::new(host.clone(), memory, Description::new([1920, 1080]))?;
 //!
 //! // Each frame: say what is where, plan, record between the G-buffer and the shading.
@@ -39,7 +39,7 @@
 //!
 //! // Another size. What it replaced lives until the frames recorded before are done.
 //! let retired = node.resize(memory, [1280, 720])?;
-//! retired.destroy(&host, memory);
+//! retired.destroy(memory);
 //!
 //! // At the end, once the device is idle.
 //! node.destroy(memory);
@@ -73,9 +73,12 @@ pub mod soft_shadow_map;
 pub mod truth;
 pub mod visibility;
 
+pub use ash;
 pub use error::Error;
 pub use frame::{BorderBarriers, Description, Frame, FramePlan, HostImage, MeshInstance};
+pub use glam;
 pub use gpu::{Allocator, Host, Requirements, Retired};
+pub use graph::Scope;
 pub use light::RectangleLight;
 pub use node::{ShadowNode, VisibilityImage};
 pub use scene::Role;

@@ -61,7 +61,7 @@ impl ShadowNode {
         allocator: &mut dyn Allocator,
         description: Description,
     ) -> Result<Self, Error> {
-        let requirements = Requirements::check(&host);
+        let requirements = Requirements::of(&host);
         requirements.met()?;
         description.check()?;
         let settings = &description.settings.soft_shadow_map;
@@ -145,7 +145,7 @@ impl ShadowNode {
     ) -> Result<Retired, Error> {
         let next = Self::new(self.host.clone(), allocator, description)?;
         let old = std::mem::replace(self, next);
-        Ok(Retired::new(old.objects))
+        Ok(Retired::new(old.host, old.objects))
     }
 
     /// Name and milliseconds of each pass that `slot` recorded last; none until the host knows that

@@ -5,7 +5,9 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
-use antumbra_tests::compile::{committed, compile, glsl_root, shader_names, spirv_root, to_bytes};
+use antumbra_tests::compile::{
+    committed, compile, glsl_root, shader_names, spirv_root, to_bytes, try_compile,
+};
 use std::collections::BTreeMap;
 
 type Modules = BTreeMap<String, Vec<u8>>;
@@ -90,4 +92,27 @@ fn a_shader_that_does_not_compile_says_where() {
                    #include \"common/nowhere.glsl\"\nvoid main() {}\n";
     let log = compile("missing.comp", missing).unwrap_err();
     assert!(log.contains("glsl/common/nowhere.glsl"), "{log}");
+}
+
+/// The embed example brings its own shaders, compiled beside their sources.
+#[test]
+fn the_embed_examples_modules_are_fresh_too() {
+    let folder = glsl_root().join("../examples/embed/shaders");
+    let mut compiled = 0;
+    for entry in std::fs::read_dir(&folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        if name.ends_with(".spv") {
+            continue;
+        }
+        let source = std::fs::read_to_string(&path).unwrap();
+        let bytes = to_bytes(&try_compile(&name, &source).unwrap_or_else(|log| panic!("{log}")));
+        let module = folder.join(format!("{name}.spv"));
+        if std::env::var("ANTUMBRA_WRITE_SPIRV").is_ok_and(|value| value == "1") {
+            std::fs::write(&module, &bytes).unwrap();
+        }
+        assert!(std::fs::read(&module).unwrap() == bytes, "{name}.spv is not what the GLSL gives");
+        compiled += 1;
+    }
+    assert_eq!(compiled, 3, "vertex, fragment and compose");
 }

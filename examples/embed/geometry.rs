@@ -46,11 +46,7 @@ impl Model {
         let extreme = |pick: fn(f32, f32) -> f32, start: f32| {
             mesh.positions.iter().fold([start; 3], |m, p| [0, 1, 2].map(|i| pick(m[i], p[i])))
         };
-        let role = match object.role {
-            Role::Both => 255,
-            Role::Receiver => 128,
-            Role::Occluder => 0,
-        };
+        let role = object.role.mask();
         let [r, g, b] = object.albedo;
         use vk::BufferUsageFlags as Usage;
         Ok(Self {

@@ -121,7 +121,7 @@ fn run(options: &Options) -> Outcome<()> {
         host = host.with_debug_utils(debug_utils.clone());
     }
     // One sentence with everything that is missing; on a device of Vulkan 1.1, nothing is.
-    Requirements::check(&host).met()?;
+    Requirements::of(&host).met()?;
 
     // The node. Its memory comes from the engine's allocator.
     let description = Description {
@@ -142,7 +142,7 @@ fn run(options: &Options) -> Outcome<()> {
         let slot = (number % FRAMES_IN_FLIGHT as u64) as usize;
         if let Some(done) = frames.wait(&gpu, slot)? {
             tell(options, &node, &frames, slot, &done)?;
-            destroy_replaced(&mut replaced, &mut gpu, &host, done.number);
+            destroy_replaced(&mut replaced, &mut gpu, done.number);
         }
 
         // ---- Resize -------------------------------------------------------------------------
@@ -237,7 +237,7 @@ fn run(options: &Options) -> Outcome<()> {
         let slot = (number % FRAMES_IN_FLIGHT as u64) as usize;
         if let Some(done) = frames.wait(&gpu, slot)? {
             tell(options, &node, &frames, slot, &done)?;
-            destroy_replaced(&mut replaced, &mut gpu, &host, done.number);
+            destroy_replaced(&mut replaced, &mut gpu, done.number);
         }
     }
     println!("the node in memory:");
@@ -267,11 +267,11 @@ impl Targets {
 }
 
 /// Destroys what no frame after `done` uses.
-fn destroy_replaced(replaced: &mut Vec<Replaced>, gpu: &mut Gpu, host: &Host, done: u64) {
+fn destroy_replaced(replaced: &mut Vec<Replaced>, gpu: &mut Gpu, done: u64) {
     while replaced.first().is_some_and(|r| r.last_frame <= done) {
         let old = replaced.remove(0);
         old.targets.destroy(gpu);
-        old.node.destroy(host, &mut gpu.allocator);
+        old.node.destroy(&mut gpu.allocator);
     }
 }
 

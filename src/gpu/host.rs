@@ -73,15 +73,26 @@ pub struct Requirements {
     pub blends_f32: bool,
     /// Sub-pixel bits of the rasters.
     pub sub_pixel_bits: u32,
-    /// Whether passes can be timed on the host's queue family.
+    /// Whether passes can be timed on the queue family.
     pub timestamps: bool,
 }
 
 impl Requirements {
-    /// Looks at a device and lists **every** gap at once.
-    pub fn check(host: &Host) -> Self {
-        let (instance, physical) = (&host.instance, host.physical_device);
-        // SAFETY: Host::borrow's promise: the handles are valid and belong together.
+    /// Looks at a physical device, before any device is made of it, and lists **every** gap at once.
+    ///
+    /// # Safety
+    /// The instance is alive and the physical device is one of its own.
+    pub unsafe fn check(instance: &ash::Instance, physical_device: vk::PhysicalDevice) -> Self {
+        Self::look(instance, physical_device, None)
+    }
+
+    /// As [`Self::check`], for what a host lends, its queue family included.
+    pub fn of(host: &Host) -> Self {
+        Self::look(&host.instance, host.physical_device, Some(host.queue_family))
+    }
+
+    fn look(instance: &ash::Instance, physical: vk::PhysicalDevice, family: Option<u32>) -> Self {
+        // SAFETY: the promise of `check` or of Host::borrow: the handles belong together.
         let properties = unsafe { instance.get_physical_device_properties(physical) };
         // SAFETY: as above.
         let families = unsafe { instance.get_physical_device_queue_family_properties(physical) };
@@ -108,13 +119,18 @@ impl Requirements {
         if limits.max_compute_work_group_invocations < 64 {
             gaps.push("compute workgroups of fewer than 64 invocations".into());
         }
-        let family = families.get(host.queue_family as usize);
         let wanted = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;
-        if !family.is_some_and(|f| f.queue_flags.contains(wanted)) {
-            gaps.push(format!(
-                "queue family {} is not one for both graphics and compute",
-                host.queue_family
-            ));
+        let serves = |f: &vk::QueueFamilyProperties| f.queue_flags.contains(wanted);
+        let chosen = match family {
+            Some(index) => families.get(index as usize).filter(|f| serves(f)),
+            None => families.iter().find(|f| serves(f)),
+        };
+        match (chosen, family) {
+            (None, Some(index)) => {
+                gaps.push(format!("queue family {index} is not one for both graphics and compute"));
+            }
+            (None, None) => gaps.push("no queue family for both graphics and compute".into()),
+            (Some(_), _) => {}
         }
         use vk::FormatFeatureFlags as F;
         let layer = F::DEPTH_STENCIL_ATTACHMENT | F::SAMPLED_IMAGE;
@@ -131,7 +147,7 @@ impl Requirements {
             blends_f32: single.contains(F::COLOR_ATTACHMENT_BLEND),
             sub_pixel_bits: limits.sub_pixel_precision_bits,
             timestamps: limits.timestamp_period > 0.0
-                && family.is_some_and(|f| f.timestamp_valid_bits > 0),
+                && chosen.is_some_and(|f| f.timestamp_valid_bits > 0),
         }
     }
 

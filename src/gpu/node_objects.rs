@@ -138,16 +138,17 @@ fn label(name: &str) -> CString {
 /// What a resize or a reconfiguration replaced: alive until the frames that use it are done.
 #[must_use = "destroy it once the frames recorded before are done, or its memory is lost"]
 pub struct Retired {
+    host: Host,
     objects: NodeObjects,
 }
 
 impl Retired {
-    pub(crate) fn new(objects: NodeObjects) -> Self {
-        Self { objects }
+    pub(crate) fn new(host: Host, objects: NodeObjects) -> Self {
+        Self { host, objects }
     }
 
     /// Destroys it; the device must be done with every frame recorded before the replacement.
-    pub fn destroy(self, host: &Host, allocator: &mut dyn Allocator) {
-        self.objects.destroy(host, allocator);
+    pub fn destroy(self, allocator: &mut dyn Allocator) {
+        self.objects.destroy(&self.host, allocator);
     }
 }

@@ -34,6 +34,15 @@ impl Role {
         self != Self::Receiver
     }
 
+    /// What the G-buffer's mask holds at the pixels of a mesh of this role, as an 8-bit unorm.
+    pub fn mask(self) -> u8 {
+        match self {
+            Self::Both => 255,
+            Self::Receiver => 128,
+            Self::Occluder => 0,
+        }
+    }
+
     /// Whether a mesh of this role shows shadows.
     pub fn receives(self) -> bool {
         self != Self::Occluder

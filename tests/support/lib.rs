@@ -7,6 +7,7 @@
 pub mod compare;
 pub mod compile;
 pub mod device;
+pub mod example;
 pub mod function;
 pub mod measure;
 pub mod reflect;

@@ -2,7 +2,7 @@
 
 use super::{HeadlessDevice, OwnedImage, SceneBuffers};
 use crate::graph::Scope;
-use crate::scene::{Camera, Instance, Role, Scene};
+use crate::scene::{Camera, Instance, Scene};
 use crate::shaders::{self, Module};
 use crate::{Error, HostImage};
 use ash::vk;
@@ -413,11 +413,7 @@ fn push_of(instance: &Instance, view: &View) -> Push {
     Push {
         clip_from_mesh: (view.clip_from_world * m).as_mat4().to_cols_array(),
         world_from_mesh,
-        role: match instance.role {
-            Role::Both => 1.0,
-            Role::Receiver => 0.5,
-            Role::Occluder => 0.0,
-        },
+        role: f32::from(instance.role.mask()) / 255.0,
     }
 }
 
