@@ -246,8 +246,7 @@ fn a_mirrored_mesh_casts_the_same_shadow() {
     let scene = generate::tall_box(generate::square_light(1.0).unwrap());
     let mut mirrored = scene.clone();
     for instance in mirrored.instances.iter_mut().filter(|i| i.role == Role::Occluder) {
-        instance.world_from_mesh =
-            instance.world_from_mesh * DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0));
+        instance.world_from_mesh *= DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0));
     }
     let words = "receivers=pixels sides=two map=64";
     let image = |scene: &Scene| {

@@ -159,8 +159,7 @@ fn every_module_has_a_row() {
         .collect();
     let embedded: BTreeSet<&str> = antumbra::shaders::ALL.iter().map(|m| m.path).collect();
     assert_eq!(used, embedded);
-    let committed: BTreeSet<String> =
-        antumbra_tests::compile::committed().into_keys().collect();
+    let committed: BTreeSet<String> = antumbra_tests::compile::committed().into_keys().collect();
     let headless = |name: &String| name.starts_with("headless/");
     let listed: BTreeSet<String> = committed.into_iter().filter(|name| !headless(name)).collect();
     assert_eq!(listed, embedded.iter().map(ToString::to_string).collect());

@@ -101,6 +101,16 @@ impl Requirements {
             unsafe { instance.get_physical_device_format_properties(physical, format) }
                 .optimal_tiling_features
         };
+        Self::judge(&properties, &families, family, features)
+    }
+
+    /// What a device's own words mean to the node.
+    fn judge(
+        properties: &vk::PhysicalDeviceProperties,
+        families: &[vk::QueueFamilyProperties],
+        family: Option<u32>,
+        features: impl Fn(vk::Format) -> vk::FormatFeatureFlags,
+    ) -> Self {
         let mut gaps = Vec::new();
         if properties.api_version < vk::API_VERSION_1_1 {
             let (major, minor) = (
@@ -142,7 +152,7 @@ impl Requirements {
             gaps.push("R32_SFLOAT cannot be both written by compute shaders and sampled".into());
         }
         Self {
-            device: name_of(&properties),
+            device: name_of(properties),
             gaps,
             blends_f32: single.contains(F::COLOR_ATTACHMENT_BLEND),
             sub_pixel_bits: limits.sub_pixel_precision_bits,
@@ -165,4 +175,57 @@ fn name_of(properties: &vk::PhysicalDeviceProperties) -> String {
     properties
         .device_name_as_c_str()
         .map_or_else(|_| "(unnamed)".into(), |n: &CStr| n.to_string_lossy().into_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vk::{FormatFeatureFlags as F, QueueFlags};
+
+    fn family(queue_flags: QueueFlags) -> vk::QueueFamilyProperties {
+        vk::QueueFamilyProperties { queue_flags, timestamp_valid_bits: 64, ..Default::default() }
+    }
+
+    /// A device with just what Vulkan 1.1 guarantees.
+    fn modest() -> vk::PhysicalDeviceProperties {
+        let mut properties =
+            vk::PhysicalDeviceProperties { api_version: vk::API_VERSION_1_1, ..Default::default() };
+        properties.limits.max_push_constants_size = 128;
+        properties.limits.max_compute_work_group_invocations = 128;
+        properties.limits.sub_pixel_precision_bits = 4;
+        properties.limits.timestamp_period = 1.0;
+        properties
+    }
+
+    fn guaranteed(_: vk::Format) -> F {
+        F::SAMPLED_IMAGE | F::STORAGE_IMAGE | F::DEPTH_STENCIL_ATTACHMENT | F::COLOR_ATTACHMENT
+    }
+
+    #[test]
+    fn the_least_device_of_vulkan_1_1_is_enough() {
+        let both = family(QueueFlags::GRAPHICS | QueueFlags::COMPUTE);
+        let found = Requirements::judge(&modest(), &[both], Some(0), guaranteed);
+        found.met().unwrap();
+        assert!(!found.blends_f32 && found.timestamps);
+        assert_eq!(found.sub_pixel_bits, 4);
+    }
+
+    #[test]
+    fn every_gap_is_listed_at_once() {
+        let mut poor = modest();
+        poor.api_version = vk::API_VERSION_1_0;
+        poor.limits.max_push_constants_size = 64;
+        poor.limits.max_compute_work_group_invocations = 32;
+        let transfer = family(QueueFlags::TRANSFER);
+        let found = Requirements::judge(&poor, &[transfer], Some(0), |_| F::empty());
+        let sentence = found.met().unwrap_err().to_string();
+        for gap in
+            ["1.0", "64 bytes", "64 invocations", "queue family 0", "D32_SFLOAT", "R32_SFLOAT"]
+        {
+            assert!(sentence.contains(gap), "{gap}: {sentence}");
+        }
+        assert_eq!(found.gaps.len(), 6);
+        let nowhere = Requirements::judge(&modest(), &[transfer], None, guaranteed);
+        assert_eq!(nowhere.gaps, ["no queue family for both graphics and compute"]);
+    }
 }

@@ -1,12 +1,11 @@
 //! A G-buffer: depth, world position, normal and role of each pixel.
 
-use super::{HeadlessDevice, OwnedImage, SceneBuffers};
+use super::{HeadlessDevice, OwnedImage, SceneBuffers, View};
 use crate::graph::Scope;
-use crate::scene::{Camera, Instance, Scene};
+use crate::scene::{Instance, Scene};
 use crate::shaders::{self, Module};
 use crate::{Error, HostImage};
 use ash::vk;
-use glam::{DMat4, DVec4};
 
 const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 const VECTOR: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
@@ -16,42 +15,6 @@ pub(super) const MASK: vk::Format = vk::Format::R8_UNORM;
 /// The layout that the G-buffer is left in.
 const DEPTH_LAYOUT: vk::ImageLayout = vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL;
 const COLOR_LAYOUT: vk::ImageLayout = vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL;
-
-/// How pixels look at the world. Depth is reversed: 0 is the background.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct View {
-    /// World space to clip space.
-    pub clip_from_world: DMat4,
-}
-
-impl View {
-    /// A perspective camera with an infinite far plane.
-    pub fn perspective(camera: &Camera, [width, height]: [u32; 2]) -> Self {
-        let scale = 1.0 / (0.5 * camera.yfov).tan();
-        let aspect = f64::from(width) / f64::from(height);
-        let clip_from_view = DMat4::from_cols(
-            DVec4::new(scale / aspect, 0.0, 0.0, 0.0),
-            DVec4::new(0.0, -scale, 0.0, 0.0),
-            DVec4::new(0.0, 0.0, 0.0, -1.0),
-            DVec4::new(0.0, 0.0, camera.near, 0.0),
-        );
-        Self { clip_from_world: clip_from_view * camera.world_from_view.inverse() }
-    }
-
-    /// Straight down on the ground: pixels are a regular grid over |x|, |z| ≤ `half`, seen from
-    /// height `top` and down to `-top`.
-    pub fn map_of_ground(half: f64, top: f64) -> Self {
-        // x to the right, z down the image, height to reversed depth.
-        Self {
-            clip_from_world: DMat4::from_cols(
-                DVec4::new(1.0 / half, 0.0, 0.0, 0.0),
-                DVec4::new(0.0, 0.0, 0.5 / top, 0.0),
-                DVec4::new(0.0, 1.0 / half, 0.0, 0.0),
-                DVec4::new(0.0, 0.0, 0.5, 1.0),
-            ),
-        }
-    }
-}
 
 /// The images, all of one size.
 pub struct GBuffer {

@@ -16,12 +16,14 @@ mod instance;
 mod messages;
 mod scene;
 mod stage;
+mod view;
 
 pub use buffer::HostBuffer;
 pub use compute::{ComputeProgram, run_compute};
 pub use device::{HeadlessDevice, HeadlessOptions};
-pub use gbuffer::{GBuffer, GBufferPainter, View};
+pub use gbuffer::{GBuffer, GBufferPainter};
 pub use image::{ImageSource, OwnedImage, bytes_per_texel, read_image};
 pub use messages::MessageLog;
 pub use scene::SceneBuffers;
 pub use stage::{FrameTimes, Stage};
+pub use view::View;

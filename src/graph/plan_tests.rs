@@ -1,0 +1,135 @@
+use super::*;
+use crate::graph::{Pass, Push, Use, Work};
+use crate::shaders;
+use vk::{AccessFlags as A, ImageLayout as L, PipelineStageFlags as S};
+
+const DRAWN: Scope = Scope {
+    stage: S::LATE_FRAGMENT_TESTS,
+    access: A::DEPTH_STENCIL_ATTACHMENT_WRITE,
+    layout: L::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
+};
+const FETCHED: Scope = Scope {
+    stage: S::FRAGMENT_SHADER,
+    access: A::SHADER_READ,
+    layout: L::SHADER_READ_ONLY_OPTIMAL,
+};
+
+/// One imported image; one exported one, which a row writes that reads the import by `reads`.
+fn plan_of(reads: &[Access], place_borders: bool) -> (Plan, ResourceId) {
+    let mut graph = Graph::new();
+    let extent = [4, 4];
+    let depth = graph.image("depth", vk::Format::D32_SFLOAT, extent, Owner::Imported);
+    let result = graph.image("result", vk::Format::R32_SFLOAT, extent, Owner::Exported);
+    let middle = graph.buffer("middle", 4);
+    let row = |uses| Pass {
+        name: "row",
+        uses,
+        push: Push::NONE,
+        work: Work::Dispatch { shader: shaders::LIT, groups: [1; 3] },
+        need: Need::Yes("test".into()),
+    };
+    for &read in reads {
+        let write = Use::fixed(middle, Access::BufferWriteCompute);
+        graph.push(row(vec![Use::fixed(depth, read), write]));
+    }
+    let mut last = vec![Use::fixed(result, Access::ImageWrite)];
+    if !reads.is_empty() {
+        last.push(Use::fixed(middle, Access::BufferReadCompute));
+    }
+    graph.push(row(last));
+    let borders =
+        [depth, result].map(|resource| Border { resource, before: DRAWN, after: FETCHED });
+    (compile(graph, &borders, place_borders).unwrap(), depth)
+}
+
+/// The next user of a lent image counts on its layout, whether or not a row touched it.
+#[test]
+fn what_no_row_touches_is_handed_over_too() {
+    let (plan, depth) = plan_of(&[], true);
+    assert!(plan.boundary.iter().all(|b| b.resource != depth));
+    let barrier = plan.handover.iter().find(|b| b.resource == depth).unwrap().barrier;
+    assert_eq!((barrier.src_stage, barrier.src_access), (DRAWN.stage, DRAWN.access));
+    assert_eq!((barrier.dst_stage, barrier.dst_access), (FETCHED.stage, FETCHED.access));
+    assert_eq!((barrier.old_layout, barrier.new_layout), (DRAWN.layout, FETCHED.layout));
+    // Left to the host, all of that is the host's.
+    assert!(plan_of(&[], false).0.handover.is_empty());
+}
+
+/// The host's one barrier on entry must reach every stage that reads before anything is written.
+#[test]
+fn the_entry_covers_every_reader() {
+    let (plan, depth) = plan_of(&[Access::SampledCompute, Access::SampledFragment], false);
+    let entry = plan.boundary.iter().find(|b| b.resource == depth).unwrap().entry;
+    assert_eq!(entry.stage, S::COMPUTE_SHADER | S::FRAGMENT_SHADER);
+    assert!(plan.steps.iter().flat_map(|s| &s.barriers).all(|b| b.resource != depth));
+}
+
+fn buffers() -> (Graph, [ResourceId; 2], ResourceId) {
+    let mut graph = Graph::new();
+    let buffers = [graph.buffer("a", 4), graph.buffer("b", 4)];
+    let result = graph.image("result", vk::Format::R32_SFLOAT, [4; 2], Owner::Exported);
+    (graph, buffers, result)
+}
+
+fn row(name: &'static str, uses: Vec<Use>, need: Need) -> Pass {
+    let work = Work::Dispatch { shader: shaders::LIT, groups: [1; 3] };
+    Pass { name, uses, push: Push::NONE, work, need }
+}
+
+fn needed() -> Need {
+    Need::Yes("test".into())
+}
+
+fn compiled(graph: Graph, result: ResourceId) -> Result<Plan, Error> {
+    compile(graph, &[Border { resource: result, before: FETCHED, after: FETCHED }], true)
+}
+
+#[test]
+fn nothing_is_read_before_it_is_written() {
+    use Access::{BufferReadCompute as R, BufferWriteCompute as W, ImageWrite as I};
+    let (mut graph, [a, b], result) = buffers();
+    let uses = vec![Use::fixed(a, R), Use::fixed(result, I)];
+    graph.push(row("early", uses.clone(), needed()));
+    let error = compiled(graph, result).unwrap_err().to_string();
+    assert!(error.contains("early") && error.contains("reads a,"), "{error}");
+    // A row that does not run writes nothing.
+    let (mut graph, _, _) = buffers();
+    graph.push(row("writer", vec![Use::fixed(a, W)], Need::No("test".into())));
+    graph.push(row("reader", uses, needed()));
+    assert!(compiled(graph, result).is_err());
+    // Nor may a row read what it writes itself.
+    let (mut graph, _, _) = buffers();
+    graph.push(row("writer", vec![Use::fixed(b, W)], needed()));
+    graph.push(row("both", vec![Use::fixed(b, R), Use::fixed(b, W)], needed()));
+    let error = compiled(graph, result).unwrap_err().to_string();
+    assert!(error.contains("touches b twice"), "{error}");
+}
+
+#[test]
+fn rows_whose_output_nobody_reads_drop_out_with_all_that_fed_them() {
+    use Access::{BufferReadCompute as R, BufferWriteCompute as W, ImageWrite as I};
+    let (mut graph, [a, b], result) = buffers();
+    graph.push(row("feeds", vec![Use::fixed(a, W)], needed()));
+    graph.push(row("unread", vec![Use::fixed(a, R), Use::fixed(b, W)], needed()));
+    graph.push(row("result", vec![Use::fixed(result, I)], needed()));
+    graph.push(row("off", vec![Use::fixed(b, W)], Need::No("not today".into())));
+    let plan = compiled(graph, result).unwrap();
+    assert_eq!(plan.steps.iter().map(|s| s.pass).collect::<Vec<_>>(), [2]);
+    let why: Vec<_> = plan.skipped.iter().map(|s| (s.pass, s.why.as_str())).collect();
+    assert_eq!(
+        why,
+        [
+            (0, "nothing reads a in this frame"),
+            (1, "nothing reads b in this frame"),
+            (3, "not today")
+        ]
+    );
+}
+
+#[test]
+fn a_lent_image_without_a_border_is_refused() {
+    let (mut graph, _, result) = buffers();
+    graph.push(row("result", vec![Use::fixed(result, Access::ImageWrite)], needed()));
+    let error = compile(graph, &[], true).unwrap_err().to_string();
+    assert!(error.contains("result") && error.contains("host must say"), "{error}");
+}
