@@ -11,7 +11,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0) uniform texture2D front_depth;
 layout(set = 0, binding = 1) uniform texture2D back_depth;
 layout(set = 0, binding = 2, std430) buffer Texels { float texels[]; };
-layout(set = 0, binding = 3, std430) buffer Blocks { vec4 blocks[]; };
+layout(set = 0, binding = 3, std430) buffer Blocks { uvec4 blocks[]; };
+layout(set = 0, binding = 4, std430) buffer Sums { vec4 sums[]; };
 
 layout(push_constant) uniform Push {
     int map;        // the map's side in texels
@@ -49,6 +50,7 @@ void main()
     float sum = 0.0;
     float w_min = 3.0e38;
     float w_max = 0.0;
+    uvec2 mask = uvec2(0u);
     float w[BLOCK_TEXELS];
     for (int i = 0; i < BLOCK_TEXELS; ++i) {
         w[i] = w_at(block * BLOCK + ivec2(i % BLOCK, i / BLOCK), side);
@@ -58,21 +60,31 @@ void main()
             sum += w[i];
             w_min = min(w_min, w[i]);
             w_max = max(w_max, w[i]);
+            mask[i / 32] |= 1u << (i % 32);
         }
     }
     if (count == 0.0) {
-        blocks[2 * index] = vec4(0.0);
-        blocks[2 * index + 1] = vec4(0.0);
+        blocks[2 * index] = uvec4(0u);
+        blocks[2 * index + 1] = uvec4(0u);
         return;
     }
     float mean = sum / count;
-    float s2 = 0.0;
-    float s3 = 0.0;
-    for (int i = 0; i < BLOCK_TEXELS; ++i) {
-        float d = w[i] > 0.0 ? w[i] - mean : 0.0;
-        s2 += d * d;
-        s3 += d * d * d;
+    // Sums over the texels above and to the left, for sums over any rectangle.
+    vec4 columns[BLOCK];
+    for (int x = 0; x < BLOCK; ++x) {
+        columns[x] = vec4(0.0);
     }
-    blocks[2 * index] = vec4(count, mean, w_min, w_max);
-    blocks[2 * index + 1] = vec4(s2, s3, 0.0, 0.0);
+    for (int y = 0; y < BLOCK; ++y) {
+        vec4 row = vec4(0.0);
+        for (int x = 0; x < BLOCK; ++x) {
+            int i = y * BLOCK + x;
+            float d = w[i] - mean;
+            row += w[i] > 0.0 ? vec4(1.0, d, d * d, d * d * d) : vec4(0.0);
+            columns[x] += row;
+            sums[index * BLOCK_TEXELS + i] = columns[x];
+        }
+    }
+    vec4 total = columns[BLOCK - 1];
+    blocks[2 * index] = floatBitsToUint(vec4(count, mean, w_min, w_max));
+    blocks[2 * index + 1] = uvec4(floatBitsToUint(total.zw), mask);
 }

@@ -7,6 +7,7 @@ const int BLOCK = 8;                   // a block's side in texels
 const int BLOCK_TEXELS = BLOCK * BLOCK;
 const int FAN = 4;                     // a superblock's side in blocks
 const int SUPERBLOCK = FAN * BLOCK;    // and in texels
+const int FAMILY = 1 + FAN * FAN;      // a superblock and its blocks, which lie together
 
 struct Node {
     float count;  // occupied texels
@@ -15,17 +16,19 @@ struct Node {
     float w_max;  // nearest
     float s2;     // sum of (w - mean)^2
     float s3;     // sum of (w - mean)^3
+    uvec2 mask;   // a bit for each occupied texel of a block, or for each such block of a superblock
 };
 
 Node empty_node()
 {
-    return Node(0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    return Node(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, uvec2(0u));
 }
 
-// Two vec4 a node in buffers.
-Node unpack_node(vec4 a, vec4 b)
+// Two uvec4 a node in buffers.
+Node unpack_node(uvec4 a, uvec4 b)
 {
-    return Node(a.x, a.y, a.z, a.w, b.x, b.y);
+    vec4 f = uintBitsToFloat(a);
+    return Node(f.x, f.y, f.z, f.w, uintBitsToFloat(b.x), uintBitsToFloat(b.y), b.zw);
 }
 
 // The sum over a node's texels of k^2, all of them back-projected wholly inside the light, as its

@@ -5,7 +5,7 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0, std430) readonly buffer Blocks { vec4 blocks[]; };
+layout(set = 0, binding = 0, std430) readonly buffer Blocks { uvec4 blocks[]; };
 layout(set = 0, binding = 1, std430) buffer Groups { uint groups[]; };
 
 layout(push_constant) uniform Push {
@@ -23,7 +23,7 @@ void main()
     }
     uint count = 0u;
     for (int i = group * GROUP; i < min((group + 1) * GROUP, push.blocks); ++i) {
-        count += uint(blocks[2 * (push.side * push.blocks + i)].x);
+        count += uint(uintBitsToFloat(blocks[2 * (push.side * push.blocks + i)].x));
     }
     groups[group] = count;
 }

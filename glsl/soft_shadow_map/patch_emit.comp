@@ -8,7 +8,7 @@
 layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0, std430) readonly buffer Texels { float texels[]; };
-layout(set = 0, binding = 1, std430) readonly buffer Blocks { vec4 blocks[]; };
+layout(set = 0, binding = 1, std430) readonly buffer Blocks { uvec4 blocks[]; };
 layout(set = 0, binding = 2, std430) readonly buffer Offsets { uint offsets[]; };
 layout(set = 0, binding = 3, std430) buffer Patches { uvec2 patches[]; };
 
@@ -30,7 +30,7 @@ void main()
     int group = block / GROUP;
     uint at = offsets[group];
     for (int i = group * GROUP; i < block; ++i) {
-        at += uint(blocks[2 * (side + i)].x);
+        at += uint(uintBitsToFloat(blocks[2 * (side + i)].x));
     }
     uvec2 lo = uvec2(block % push.row, block / push.row) * uint(BLOCK);
     for (int n = 0; n < BLOCK_TEXELS; ++n) {

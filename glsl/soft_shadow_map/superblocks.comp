@@ -7,8 +7,8 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0, binding = 0, std430) readonly buffer Blocks { vec4 blocks[]; };
-layout(set = 0, binding = 1, std430) buffer Superblocks { vec4 superblocks[]; };
+layout(set = 0, binding = 0, std430) readonly buffer Blocks { uvec4 blocks[]; };
+layout(set = 0, binding = 1, std430) buffer Nodes { uvec4 nodes[]; };
 
 layout(push_constant) uniform Push {
     int row; // superblocks a row
@@ -22,39 +22,45 @@ void main()
     }
     int side = int(gl_GlobalInvocationID.z);
     int first = (side * push.row * FAN + super.y * FAN) * push.row * FAN + super.x * FAN;
-    int index = (side * push.row + super.y) * push.row + super.x;
+    int index = ((side * push.row + super.y) * push.row + super.x) * FAMILY;
 
     float count = 0.0;
     float sum = 0.0;
     float w_min = 3.0e38;
     float w_max = 0.0;
+    uint mask = 0u;
     for (int i = 0; i < FAN * FAN; ++i) {
-        vec4 a = blocks[2 * (first + (i / FAN) * push.row * FAN + i % FAN)];
-        if (a.x > 0.0) {
-            count += a.x;
-            sum += a.x * a.y;
-            w_min = min(w_min, a.z);
-            w_max = max(w_max, a.w);
+        int at = first + (i / FAN) * push.row * FAN + i % FAN;
+        uvec4 a = blocks[2 * at];
+        uvec4 b = blocks[2 * at + 1];
+        nodes[2 * (index + 1 + i)] = a;
+        nodes[2 * (index + 1 + i) + 1] = b;
+        Node node = unpack_node(a, b);
+        if (node.count > 0.0) {
+            count += node.count;
+            sum += node.count * node.mean;
+            w_min = min(w_min, node.w_min);
+            w_max = max(w_max, node.w_max);
+            mask |= 1u << i;
         }
     }
     if (count == 0.0) {
-        superblocks[2 * index] = vec4(0.0);
-        superblocks[2 * index + 1] = vec4(0.0);
+        nodes[2 * index] = uvec4(0u);
+        nodes[2 * index + 1] = uvec4(0u);
         return;
     }
     float mean = sum / count;
     float s2 = 0.0;
     float s3 = 0.0;
     for (int i = 0; i < FAN * FAN; ++i) {
-        int at = 2 * (first + (i / FAN) * push.row * FAN + i % FAN);
-        vec4 a = blocks[at];
-        vec4 b = blocks[at + 1];
-        if (a.x > 0.0) {
-            float d = a.y - mean;
-            s2 += b.x + a.x * d * d;
-            s3 += b.y + 3.0 * d * b.x + a.x * d * d * d;
+        int at = first + (i / FAN) * push.row * FAN + i % FAN;
+        Node node = unpack_node(blocks[2 * at], blocks[2 * at + 1]);
+        if (node.count > 0.0) {
+            float d = node.mean - mean;
+            s2 += node.s2 + node.count * d * d;
+            s3 += node.s3 + 3.0 * d * node.s2 + node.count * d * d * d;
         }
     }
-    superblocks[2 * index] = vec4(count, mean, w_min, w_max);
-    superblocks[2 * index + 1] = vec4(s2, s3, 0.0, 0.0);
+    nodes[2 * index] = floatBitsToUint(vec4(count, mean, w_min, w_max));
+    nodes[2 * index + 1] = uvec4(floatBitsToUint(vec2(s2, s3)), mask, 0u);
 }

@@ -23,13 +23,15 @@
 //!   (Δu/Lx)(Δv/Ly)k², wherever it is, so a whole node (a square of 8² or 32² texels) inside it is
 //!   one closed form in its moments: with r = 1/(w̄ − w_r) and S₂, S₃ the sums of (w − w̄)² and
 //!   (w − w̄)³ over its n occupied texels, r²(n + 3 S₂ r² − 4 S₃ r³). Nodes outside the window cost
-//!   nothing; nodes across its rim are opened.
+//!   nothing. Of an 8² node across its rim, the rectangle of texels inside the window is a closed form
+//!   as well: four entries of a table of prefix sums of 1, δ, δ² and δ³ (δ = w − w̄) give its moments,
+//!   and its sum is r²(n − 2 S₁ r + 3 S₂ r² − 4 S₃ r³). Only texels on the rim itself are evaluated.
 //!
 //! **The gather's tolerance.** The closed form is the Taylor series of 1/(1 + δ)², δ = (w − w̄)r, cut
 //! behind δ³. With |δ| ≤ q < 1 the rest is at most f(q) = Σ_{j≥4} (j+1) q^j = (5q⁴ − 4q⁵)/(1 − q)² of
-//! a node's n r², and as the sum of 1/(1 + δ)² is never under n (convexity), at most f(q) of the
-//! node's own occlusion. All nodes together are wrong by at most f(q) of the occlusion, which is
-//! f(q)/(1 − f(q)) of the visible fraction at most. [`spread_of`] inverts f. The float sums add
+//! a node's n r². Each 1/(1 + δ)² is at least 1/(1 + q)², so that is at most g(q) = f(q) (1 + q)² of
+//! what the node hides. All nodes together are wrong by at most g(q) of the occlusion, which is
+//! g(q)/(1 − g(q)) of the visible fraction at most. [`spread_of`] inverts g. The float sums add
 //! about 1e-6 to that, whatever the tolerance.
 //!
 //! **At the pixels.** The same gather, evaluated at the G-buffer's pixels, needs no receiver map and

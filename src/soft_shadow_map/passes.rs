@@ -13,6 +13,8 @@ const BLOCK: u32 = 8;
 const SUPERBLOCK: u32 = 32;
 /// Blended contributions are multiples of 2⁻²⁴, see `patch.frag`.
 const BLEND_STEPS: f32 = 16_777_216.0;
+/// A superblock and its blocks, as they lie together.
+const FAMILY: u64 = 17;
 /// Blocks a group, as in `patch_count.comp`.
 const GROUP: u32 = 64;
 
@@ -47,7 +49,10 @@ pub fn wanted(settings: &Settings) -> Wanted {
 struct Nodes {
     texels: ResourceId,
     blocks: ResourceId,
-    superblocks: ResourceId,
+    /// Moments of any rectangle of a block's texels.
+    sums: ResourceId,
+    /// Superblocks with their blocks.
+    families: ResourceId,
     /// Blocks a row, a multiple of a superblock's.
     block_row: u32,
     superblock_row: u32,
@@ -115,8 +120,9 @@ fn declare_nodes(
     let nodes = Nodes {
         texels: graph.buffer("soft_shadow_map.texels", count(block_row) * texels_a_block * 4),
         blocks: graph.buffer("soft_shadow_map.blocks", count(block_row) * node_bytes),
-        superblocks: graph
-            .buffer("soft_shadow_map.superblocks", count(superblock_row) * node_bytes),
+        sums: graph.buffer("soft_shadow_map.sums", count(block_row) * texels_a_block * 16),
+        families: graph
+            .buffer("soft_shadow_map.families", count(superblock_row) * FAMILY * node_bytes),
         block_row,
         superblock_row,
     };
@@ -135,6 +141,7 @@ fn declare_nodes(
             Use::bound(1, layers.back.unwrap_or(layers.front), Access::SampledCompute),
             Use::bound(2, nodes.texels, Access::BufferWriteCompute),
             Use::bound(3, nodes.blocks, Access::BufferWriteCompute),
+            Use::bound(4, nodes.sums, Access::BufferWriteCompute),
         ],
         inputs.need,
     ));
@@ -146,7 +153,7 @@ fn declare_nodes(
             Push::new(&push::Superblocks { row: superblock_row as i32 }),
             vec![
                 Use::bound(0, nodes.blocks, Access::BufferReadCompute),
-                Use::bound(1, nodes.superblocks, Access::BufferWriteCompute),
+                Use::bound(1, nodes.families, Access::BufferWriteCompute),
             ],
             inputs.need,
         ));
@@ -184,8 +191,8 @@ fn gather_map(
     let size = [settings.receiver_map; 2];
     let map = graph.image(map_name, vk::Format::R32_SFLOAT, size, Owner::Transient);
     let (t_step, t_first) = receiver_grid(view, inputs.occluders);
-    // 8×8 invocations of 4×4 texels.
-    let groups = settings.receiver_map.div_ceil(32);
+    // 8×8 invocations of 2×2 texels.
+    let groups = settings.receiver_map.div_ceil(16);
     graph.push(compute(
         pass_name,
         shaders::GATHER_MAP,
@@ -204,8 +211,8 @@ fn gather_map(
         vec![
             Use::bound(0, receiver_depth, Access::SampledCompute),
             Use::bound(1, nodes.texels, Access::BufferReadCompute),
-            Use::bound(2, nodes.blocks, Access::BufferReadCompute),
-            Use::bound(3, nodes.superblocks, Access::BufferReadCompute),
+            Use::bound(2, nodes.sums, Access::BufferReadCompute),
+            Use::bound(3, nodes.families, Access::BufferReadCompute),
             Use::bound(4, map, Access::ImageWrite),
         ],
         inputs.need,
@@ -366,8 +373,8 @@ fn gather_pixels(
             Use::bound(0, gbuffer.depth, Access::SampledCompute),
             Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
             Use::bound(2, nodes.texels, Access::BufferReadCompute),
-            Use::bound(3, nodes.blocks, Access::BufferReadCompute),
-            Use::bound(4, nodes.superblocks, Access::BufferReadCompute),
+            Use::bound(3, nodes.sums, Access::BufferReadCompute),
+            Use::bound(4, nodes.families, Access::BufferReadCompute),
             Use::bound(5, visibility, Access::ImageWrite),
         ],
         inputs.need,

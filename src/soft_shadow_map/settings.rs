@@ -117,12 +117,12 @@ impl Settings {
     }
 }
 
-/// The largest q with f(q)/(1 − f(q)) ≤ `tolerance`, f(q) = (5q⁴ − 4q⁵)/(1 − q)² (see the module's
-/// derivation): how far a node's texels may spread, as a share of the distance in w to the receiver.
+/// The largest q with g(q)/(1 − g(q)) ≤ `tolerance`, g(q) = (5q⁴ − 4q⁵)(1 + q)²/(1 − q)² (see the
+/// module's derivation): how far a node's texels may spread, as a share of the distance in w to the receiver.
 pub fn spread_of(tolerance: f32) -> f32 {
     let wanted = f64::from(tolerance) / (1.0 + f64::from(tolerance));
-    let rest = |q: f64| (5.0 - 4.0 * q) * q.powi(4) / (1.0 - q).powi(2);
-    // f grows on [0, 1); bisect to more digits than a float has.
+    let rest = |q: f64| (5.0 - 4.0 * q) * q.powi(4) * ((1.0 + q) / (1.0 - q)).powi(2);
+    // g grows on [0, 1); bisect to more digits than a float has.
     let (mut low, mut high) = (0.0, 0.9);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);

@@ -1,0 +1,184 @@
+// The hierarchical gather at four receivers at once, one lane of each vec4 a receiver.
+//
+// The including shader declares the buffers `texels`, `sums` and `nodes`, and what it knows of the
+// receivers' planes:
+//     struct Receivers { vec4 t_x; vec4 t_y; vec4 w; ... };
+//     vec4 occlusion_above(vec2 lo, float w_o, Receivers r, vec4 occlusion)
+//     int plane_side(Node node, vec2 lo, float side, Receivers r)
+
+#ifndef SOFT_SHADOW_MAP_GATHER_GLSL
+#define SOFT_SHADOW_MAP_GATHER_GLSL
+
+#include "soft_shadow_map/node.glsl"
+
+// A receiver that is not there: further than any occluder can be in front of.
+const float NOTHING = 3.0e38;
+
+// Where four receivers lie: least and largest t and w.
+struct Tile {
+    vec2 t_min;
+    vec2 t_max;
+    vec2 w;
+};
+
+// The map's nodes as they are gathered from.
+struct Map {
+    vec2 scale;   // (du/Lx, dv/Ly), 1/m
+    float w_max;  // no occluder is nearer than 1/w_max
+    float spread; // the series' limit, see classify
+    int row;      // superblocks a row
+};
+
+float least(vec4 a)
+{
+    return min(min(a.x, a.y), min(a.z, a.w));
+}
+
+float most(vec4 a)
+{
+    return max(max(a.x, a.y), max(a.z, a.w));
+}
+
+Tile tile_of(Receivers r)
+{
+    bvec4 nothing = equal(r.w, vec4(NOTHING));
+    vec4 near = vec4(NOTHING);
+    vec4 far = vec4(-NOTHING);
+    return Tile(vec2(least(mix(r.t_x, near, nothing)), least(mix(r.t_y, near, nothing))),
+                vec2(most(mix(r.t_x, far, nothing)), most(mix(r.t_y, far, nothing))),
+                vec2(least(r.w), most(mix(r.w, vec4(0.0), nothing))));
+}
+
+// The occlusion of one occluder texel.
+vec4 texel_occlusion(vec2 lo, float w_o, Receivers r, vec2 scale)
+{
+    // Receivers in front of the texel, and those that are not there, get a magnification of 0.
+    vec4 k = mix(vec4(0.0), 1.0 / (w_o - r.w), greaterThan(vec4(w_o), r.w));
+    vec4 m_x = scale.x * k;
+    vec4 m_y = scale.y * k;
+    vec4 a_x = (lo.x - r.t_x) * m_x + 0.5;
+    vec4 a_y = (lo.y - r.t_y) * m_y + 0.5;
+    vec4 x = clamp(a_x + m_x, 0.0, 1.0) - clamp(a_x, 0.0, 1.0);
+    vec4 y = clamp(a_y + m_y, 0.0, 1.0) - clamp(a_y, 0.0, 1.0);
+    return occlusion_above(lo, w_o, r, x * y);
+}
+
+// The sum of k^2 over texels whose w is mean + d, with s = (count, sum d, sum d^2, sum d^3).
+vec4 series(vec4 s, float mean, vec4 w_r)
+{
+    vec4 k = 1.0 / (mean - w_r);
+    return k * k * (s.x + k * (-2.0 * s.y + k * (3.0 * s.z - 4.0 * s.w * k)));
+}
+
+// Moments of the texels [lo, hi) of a block.
+vec4 sums_within(int block, ivec2 lo, ivec2 hi)
+{
+    int last = block * BLOCK_TEXELS - 1 - BLOCK;
+    vec4 s = sums[last + hi.y * BLOCK + hi.x];
+    if (lo.x > 0) {
+        s -= sums[last + hi.y * BLOCK + lo.x];
+    }
+    if (lo.y > 0) {
+        s -= sums[last + lo.y * BLOCK + hi.x];
+        if (lo.x > 0) {
+            s += sums[last + lo.y * BLOCK + lo.x];
+        }
+    }
+    return s;
+}
+
+// A bit for each texel of a block in [lo, hi).
+uvec2 rectangle_mask(ivec2 lo, ivec2 hi)
+{
+    uint columns = ((1u << hi.x) - (1u << lo.x)) * 0x01010101u;
+    // Rows 0 to 3 are in x, 4 to 7 in y; a shift by 32 is undefined.
+    ivec2 from = clamp(lo.y - ivec2(0, 4), 0, 4);
+    ivec2 to = clamp(hi.y - ivec2(0, 4), 0, 4);
+    uvec2 below_from = uvec2(from.x == 4 ? 0xffffffffu : (1u << (8 * from.x)) - 1u,
+                             from.y == 4 ? 0xffffffffu : (1u << (8 * from.y)) - 1u);
+    uvec2 below_to = uvec2(to.x == 4 ? 0xffffffffu : (1u << (8 * to.x)) - 1u,
+                           to.y == 4 ? 0xffffffffu : (1u << (8 * to.y)) - 1u);
+    return columns & below_to & ~below_from;
+}
+
+// The occlusion by one side of the map.
+vec4 gather(Map map, int side, Receivers r, Tile tile)
+{
+    vec4 sum = vec4(0.0);
+    if (tile.w.x >= map.w_max) {
+        return sum;
+    }
+    float cell = map.scale.x * map.scale.y;
+    // The widest window of occluder texels that any occluder could be felt from.
+    vec2 widest = 0.5 * (map.w_max - tile.w.x) / map.scale;
+    float end = float(map.row - 1);
+    ivec2 from = ivec2(clamp(floor((tile.t_min - widest) / float(SUPERBLOCK)), 0.0, end));
+    ivec2 to = ivec2(clamp(floor((tile.t_max + widest) / float(SUPERBLOCK)), 0.0, end));
+    ivec2 at = from;    // the superblock
+    uint children = 0u; // its blocks that are still to be looked at
+    while (at.y <= to.y) {
+        // Walk to the next block that is to be opened. Apart from opening it, so that invocations that
+        // run in step all have one to open.
+        Node node;
+        vec2 lo;
+        int block = 0;
+        int plane = 0;
+        bool open = false;
+        while (!open && at.y <= to.y) {
+            int family = (side * map.row + at.y) * map.row + at.x;
+            bool whole = children == 0u;
+            int child = whole ? 0 : findLSB(int(children));
+            int index = family * FAMILY + (whole ? 0 : 1 + child);
+            ivec2 blocks_at = at * FAN + ivec2(child % FAN, child / FAN);
+            node = unpack_node(nodes[2 * index], nodes[2 * index + 1]);
+            lo = vec2(blocks_at * BLOCK);
+            float extent = float(whole ? SUPERBLOCK : BLOCK);
+            int kind = classify(node, lo, extent, tile.t_min, tile.t_max, tile.w, map.scale, map.spread);
+            plane = kind == OUTSIDE ? -1 : plane_side(node, lo, extent, r);
+            kind = plane < 0 ? OUTSIDE : (kind == INSIDE && plane == 0) ? MIXED : kind;
+            if (kind == INSIDE) {
+                sum += cell * series(vec4(node.count, 0.0, node.s2, node.s3), node.mean, r.w);
+            }
+            children = !whole ? children & (children - 1u) : kind == MIXED ? node.mask.x : 0u;
+            open = kind == MIXED && !whole;
+            block = (side * map.row * FAN + blocks_at.y) * map.row * FAN + blocks_at.x;
+            if (children == 0u) {
+                at = at.x < to.x ? at + ivec2(1, 0) : ivec2(from.x, at.y + 1);
+            }
+        }
+        if (!open) {
+            break;
+        }
+
+        // Its texels from `outer` may be felt; those from `core` wholly, by all receivers.
+        vec2 reach = 0.5 * (node.w_max - tile.w.x) / map.scale;
+        vec2 inner = 0.5 * (node.w_min - tile.w.y) / map.scale;
+        ivec2 outer_lo = ivec2(clamp(floor(tile.t_min - reach - lo), 0.0, float(BLOCK)));
+        ivec2 outer_hi = ivec2(clamp(ceil(tile.t_max + reach - lo), 0.0, float(BLOCK)));
+        uvec2 todo = node.mask & rectangle_mask(outer_lo, outer_hi);
+        float deviation = max(node.w_max - node.mean, node.mean - node.w_min);
+        if (plane > 0 && deviation <= map.spread * (node.mean - tile.w.y)) {
+            ivec2 core_lo = ivec2(clamp(ceil(tile.t_max - inner - lo), 0.0, float(BLOCK)));
+            ivec2 core_hi = ivec2(clamp(floor(tile.t_min + inner - lo), 0.0, float(BLOCK)));
+            if (core_lo.x < core_hi.x && core_lo.y < core_hi.y) {
+                sum += cell * series(sums_within(block, core_lo, core_hi), node.mean, r.w);
+                todo &= ~rectangle_mask(core_lo, core_hi);
+            }
+        }
+        // A block's own sum first: adding few large numbers keeps the low digits.
+        vec4 part = vec4(0.0);
+        while ((todo.x | todo.y) != 0u) {
+            bool first = todo.x != 0u;
+            uint bits = first ? todo.x : todo.y;
+            int n = findLSB(int(bits)) + (first ? 0 : 32);
+            bits &= bits - 1u;
+            todo = first ? uvec2(bits, todo.y) : uvec2(0u, bits);
+            part += texel_occlusion(lo + vec2(n % BLOCK, n / BLOCK), texels[block * BLOCK_TEXELS + n], r,
+                                    map.scale);
+        }
+        sum += part;
+    }
+    return sum;
+}
+
+#endif
