@@ -133,6 +133,29 @@ fn a_scene_far_from_the_origin_looks_the_same() {
     }
 }
 
+/// The largest map is within what every device binds, its blocks without prefix sums included: it and
+/// one of half the side agree but for the texels' size.
+#[test]
+fn the_largest_map_works() {
+    let device = device();
+    let scene = spheres();
+    let setup = Setup::ground(&scene, 2.5, 24);
+    let image = |side: u32| {
+        let mut stage = setup.stage(&device, &format!("receivers=pixels sides=two map={side}"));
+        let plan = stage.plan(&setup.light(), None).unwrap();
+        for resource in plan.plan.graph.resources() {
+            if let antumbra::graph::Shape::Buffer { bytes } = resource.shape {
+                assert!(bytes <= 1 << 27, "{}: {bytes} bytes", resource.name);
+            }
+        }
+        setup.visibility(&mut stage)
+    };
+    let (large, half) = (image(4096), image(2048));
+    let mean =
+        large.iter().zip(&half).map(|(a, b)| (a - b).abs()).sum::<f32>() / large.len() as f32;
+    assert!(mean < 2e-3, "{mean}");
+}
+
 /// Adding up in 16 bits stalls once a sum is 2^11 times a patch: at N = 512 full umbra stays under 0.6
 /// by truncation and by rounding to nearest alike, and 32 bits reach it (Atty 2006 Fig. 14, eq. 4).
 #[test]

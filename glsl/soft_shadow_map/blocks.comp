@@ -74,6 +74,8 @@ void main()
     for (int x = 0; x < BLOCK; ++x) {
         columns[x] = vec4(0.0);
     }
+    // Of maps above 2048 texels a side not all blocks have room; see GUARANTEED_RANGE.
+    bool room = (index + 1) * BLOCK_TEXELS <= sums.length();
     for (int y = 0; y < BLOCK; ++y) {
         vec4 row = vec4(0.0);
         for (int x = 0; x < BLOCK; ++x) {
@@ -81,7 +83,9 @@ void main()
             float d = w[i] - mean;
             row += w[i] > 0.0 ? vec4(1.0, d, d * d, d * d * d) : vec4(0.0);
             columns[x] += row;
-            sums[index * BLOCK_TEXELS + i] = columns[x];
+            if (room) {
+                sums[index * BLOCK_TEXELS + i] = columns[x];
+            }
         }
     }
     vec4 total = columns[BLOCK - 1];

@@ -101,6 +101,20 @@ uvec2 rectangle_mask(ivec2 lo, ivec2 hi)
     return columns & below_to & ~below_from;
 }
 
+// The occlusion of the first texel of a mask, which is taken out of it; 0 where there is none.
+vec4 next_texel(inout uvec2 todo, int block, vec2 lo, Receivers r, vec2 scale)
+{
+    bool first = todo.x != 0u;
+    uint bits = first ? todo.x : todo.y;
+    if (bits == 0u) {
+        return vec4(0.0);
+    }
+    int n = findLSB(int(bits)) + (first ? 0 : 32);
+    bits &= bits - 1u;
+    todo = first ? uvec2(bits, todo.y) : uvec2(0u, bits);
+    return texel_occlusion(lo + vec2(n % BLOCK, n / BLOCK), texels[block * BLOCK_TEXELS + n], r, scale);
+}
+
 // The occlusion by one side of the map.
 vec4 gather(Map map, int side, Receivers r, Tile tile)
 {
@@ -157,7 +171,8 @@ vec4 gather(Map map, int side, Receivers r, Tile tile)
         ivec2 outer_hi = ivec2(clamp(ceil(tile.t_max + reach - lo), 0.0, float(BLOCK)));
         uvec2 todo = node.mask & rectangle_mask(outer_lo, outer_hi);
         float deviation = max(node.w_max - node.mean, node.mean - node.w_min);
-        if (plane > 0 && deviation <= map.spread * (node.mean - tile.w.y)) {
+        bool summed = (block + 1) * BLOCK_TEXELS <= sums.length();
+        if (summed && plane > 0 && deviation <= map.spread * (node.mean - tile.w.y)) {
             ivec2 core_lo = ivec2(clamp(ceil(tile.t_max - inner - lo), 0.0, float(BLOCK)));
             ivec2 core_hi = ivec2(clamp(floor(tile.t_min + inner - lo), 0.0, float(BLOCK)));
             if (core_lo.x < core_hi.x && core_lo.y < core_hi.y) {
@@ -168,13 +183,16 @@ vec4 gather(Map map, int side, Receivers r, Tile tile)
         // A block's own sum first: adding few large numbers keeps the low digits.
         vec4 part = vec4(0.0);
         while ((todo.x | todo.y) != 0u) {
-            bool first = todo.x != 0u;
-            uint bits = first ? todo.x : todo.y;
-            int n = findLSB(int(bits)) + (first ? 0 : 32);
-            bits &= bits - 1u;
-            todo = first ? uvec2(bits, todo.y) : uvec2(0u, bits);
-            part += texel_occlusion(lo + vec2(n % BLOCK, n / BLOCK), texels[block * BLOCK_TEXELS + n], r,
-                                    map.scale);
+            // Eight at a time: Mesa's CPU driver cuts an invocation off, silently, after 65535 turns of
+            // all its loops together.
+            part += next_texel(todo, block, lo, r, map.scale);
+            part += next_texel(todo, block, lo, r, map.scale);
+            part += next_texel(todo, block, lo, r, map.scale);
+            part += next_texel(todo, block, lo, r, map.scale);
+            part += next_texel(todo, block, lo, r, map.scale);
+            part += next_texel(todo, block, lo, r, map.scale);
+            part += next_texel(todo, block, lo, r, map.scale);
+            part += next_texel(todo, block, lo, r, map.scale);
         }
         sum += part;
     }

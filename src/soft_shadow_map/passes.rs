@@ -15,6 +15,9 @@ const SUPERBLOCK: u32 = 32;
 const BLEND_STEPS: f32 = 16_777_216.0;
 /// A superblock and its blocks, as they lie together.
 const FAMILY: u64 = 17;
+/// The largest storage buffer that every device binds (maxStorageBufferRange). Above N = 2048 the
+/// prefix sums are larger; blocks beyond it do without.
+const GUARANTEED_RANGE: u64 = 1 << 27;
 /// Blocks a group, as in `patch_count.comp`.
 const GROUP: u32 = 64;
 
@@ -120,7 +123,10 @@ fn declare_nodes(
     let nodes = Nodes {
         texels: graph.buffer("soft_shadow_map.texels", count(block_row) * texels_a_block * 4),
         blocks: graph.buffer("soft_shadow_map.blocks", count(block_row) * node_bytes),
-        sums: graph.buffer("soft_shadow_map.sums", count(block_row) * texels_a_block * 16),
+        sums: graph.buffer(
+            "soft_shadow_map.sums",
+            (count(block_row) * texels_a_block * 16).min(GUARANTEED_RANGE),
+        ),
         families: graph
             .buffer("soft_shadow_map.families", count(superblock_row) * FAMILY * node_bytes),
         block_row,
