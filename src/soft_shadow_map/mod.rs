@@ -52,8 +52,9 @@
 //!
 //! Mesa's CPU driver (llvmpipe, 22.3) cuts a shader invocation off after 65,535 turns of all its loops
 //! together, and says nothing: light leaks in where the rest of the sum is missing. The gather takes
-//! eight texels a turn for that reason, which is enough up to N = 2048; with N = 4096, two sides and
-//! a light window of half the map, a few pixels of a thousand still lose some umbra there.
+//! eight texels a turn for that reason, which is enough up to N = 2048. With N = 4096 it is enough for
+//! pixels that lie as close as an image's do under one side; coarser pixels or both sides may lose
+//! some umbra there. Other drivers have no such limit.
 
 mod passes;
 pub mod push;
