@@ -1,6 +1,6 @@
 # make demo    real models with soft shadows, in out/
 # make test    every test, on each driver
-# make bench   accuracy against cost, in out/report/
+# make bench   what accuracy costs, in out/bench/
 #
 # ANTUMBRA_DRIVER=<part of a device name> picks the device for all of them.
 
@@ -24,7 +24,8 @@ demo:
 
 bench:
 	@tests/drivers.sh demo
-	$(CARGO) bench --bench accuracy_cost -- --out out/report
+	@benches/fetch_dragon.sh || echo "without the dragon: it could not be fetched"
+	$(CARGO) bench --bench soft_shadow_map -- --out out/bench
 
 # ---------------------------------------------------------------------------------------------
 

@@ -1,0 +1,64 @@
+//! What soft shadow maps cost, and what that buys.
+//!
+//! `cargo bench --bench soft_shadow_map` (`-- --quick` for fewer rounds, `--out DIR` for the rows as
+//! CSV). Everything is measured in one process, the things that are compared in turns, and told as
+//! medians with the quartiles beside them.
+
+// A bench tells what goes wrong by panicking.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod model;
+mod study;
+mod table;
+
+use antumbra::gpu::headless::{HeadlessDevice, HeadlessOptions};
+use std::path::PathBuf;
+use table::Table;
+
+/// How much is measured, and where it goes.
+pub struct Options {
+    /// Rounds of each comparison.
+    pub rounds: usize,
+    /// Leaves out what takes minutes on a CPU.
+    pub quick: bool,
+    /// Where the CSV goes.
+    out: PathBuf,
+}
+
+fn options() -> Options {
+    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+    let mut options = Options { rounds: 5, quick: false, out: root.join("out/bench") };
+    let mut arguments = std::env::args().skip(1);
+    while let Some(argument) = arguments.next() {
+        match argument.as_str() {
+            "--quick" => {
+                options.quick = true;
+                options.rounds = 3;
+            }
+            "--out" => options.out = arguments.next().expect("--out DIR").into(),
+            // What cargo itself passes.
+            "--bench" => {}
+            other => panic!("{other}: the options are --quick and --out DIR"),
+        }
+    }
+    options
+}
+
+fn main() {
+    let options = options();
+    let device = HeadlessDevice::new(&HeadlessOptions::default()).unwrap_or_else(|e| panic!("{e}"));
+    println!("{}\n", device.name());
+    let tables: Vec<Table> = vec![
+        study::gather_and_blend(&device, &options),
+        study::sides(&device, &options),
+        study::pixels_and_map(&device, &options),
+        study::tolerance(&device, &options),
+        study::triangles(&device, &options),
+    ];
+    std::fs::create_dir_all(&options.out).unwrap();
+    for table in tables {
+        let path = options.out.join(format!("{}.csv", table.name));
+        std::fs::write(&path, table.csv(device.name())).unwrap();
+        println!("{}", path.display());
+    }
+}
