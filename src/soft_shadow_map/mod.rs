@@ -39,7 +39,14 @@
 //! (section 7). A plane of light space is linear in (u, v, w), so whether a texel lies above the
 //! pixel's own plane is one multiply-add each: texels that do not are left out, and the part of the
 //! light under the plane, which the pixel's own surface hides, is a closed form. The bias is the
-//! rounding of that test plus how far a raster may shift a vertex; there is nothing to tune.
+//! rounding of that test, how far a raster may shift a vertex, and how far a bent surface of the
+//! pixel's own rises above its plane within a texel (0.15 of its diagonal, measured); there is nothing
+//! to tune.
+//!
+//! **Blending in 32 bits.** Thousands of equal patches added to one float round the same way each time:
+//! 2e-5 of the light at N = 256, growing with N². So contributions are rounded to multiples of 2⁻²⁴
+//! first, up or down by a plane-filling sequence of thresholds; sums of those are exact, and the error
+//! is under 5e-6 at N = 512. In 16 bits nothing helps (appendix A), which `blend-fp16` shows.
 //!
 //! Where we read the paper: "one pass with bottom patches" (Fig. 11b) is not described there. Here
 //! each front texel's patch is put at the distance of the furthest back face behind it, which costs
@@ -48,7 +55,6 @@
 //! **Limits.** Neighbouring patches at different distances overlap or leave gaps (eq. 3); full umbra
 //! sums to 0.89 … 1.13. What the light's centre cannot see casts nothing. A tall box under a large
 //! light is wrong by 6 to 8 % in the mean, at any resolution.
-
 //!
 //! Mesa's CPU driver (llvmpipe, 22.3) cuts a shader invocation off after 65,535 turns of all its loops
 //! together, and says nothing: light leaks in where the rest of the sum is missing. The gather takes
