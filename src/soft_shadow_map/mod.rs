@@ -54,7 +54,7 @@
 //!
 //! **Limits.** Neighbouring patches at different distances overlap or leave gaps (eq. 3); full umbra
 //! sums to 0.89 … 1.13. What the light's centre cannot see casts nothing. A tall box under a large
-//! light is wrong by 6 to 8 % in the mean, at any resolution.
+//! light is wrong by 5 % in the mean, at any resolution.
 //!
 //! Mesa's CPU driver (llvmpipe, 22.3) cuts a shader invocation off after 65,535 turns of all its loops
 //! together, and says nothing: light leaks in where the rest of the sum is missing. The gather takes
