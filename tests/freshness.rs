@@ -75,7 +75,7 @@ fn the_same_text_gives_the_same_words_without_paths() {
                   layout(local_size_x = 1) in;\n\
                   layout(set = 0, binding = 0) buffer B { float x; };\n\
                   void main() { x = overlap(x, 1.0); }\n";
-    let compile = || antumbra_tests::compile::try_compile("made-up.comp", source).unwrap();
+    let compile = || try_compile("made-up.comp", source).unwrap();
     let words = compile();
     assert_eq!(words, compile());
     assert_eq!(words[1], 0x0001_0000, "SPIR-V 1.0");
@@ -85,7 +85,7 @@ fn the_same_text_gives_the_same_words_without_paths() {
 
 #[test]
 fn a_shader_that_does_not_compile_says_where() {
-    let compile = antumbra_tests::compile::try_compile;
+    let compile = try_compile;
     let log = compile("broken.comp", "#version 450\nvoid main() { nonsense; }\n").unwrap_err();
     assert!(log.contains("broken.comp") && log.contains("nonsense"), "{log}");
     let missing = "#version 450\n#extension GL_GOOGLE_include_directive : require\n\

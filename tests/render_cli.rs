@@ -137,7 +137,7 @@ fn wrong_scenes_are_one_sentence() {
     let there = folder("scenes");
     let good = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
     let lamp = json!({
-        "name": "lamp", "translation": [0, 3, 0], "rotation": [-0.7071068, 0, 0, 0.7071068],
+        "name": "lamp", "translation": [0, 3, 0], "rotation": [-0.707_106_77, 0, 0, 0.707_106_77],
         "extras": { "area_light": "rectangle", "width": 1, "height": 1 },
     });
     let mesh = json!({ "name": "floor", "mesh": 0 });

@@ -5,7 +5,6 @@ use crate::device::Gpu;
 use crate::resources::Buffer;
 use crate::world::Object;
 use antumbra::MeshInstance;
-use antumbra::scene::Role;
 use ash::vk;
 use glam::DMat4;
 
