@@ -11,9 +11,6 @@
 
 #include "soft_shadow_map/node.glsl"
 
-// A receiver that is not there: further than any occluder can be in front of.
-const float NOTHING = 3.0e38;
-
 // Where four receivers lie: least and largest t and w.
 struct Tile {
     vec2 t_min;
@@ -116,8 +113,9 @@ vec4 next_texel(inout uvec2 todo, int block, vec2 lo, Receivers r, vec2 scale)
 }
 
 // The occlusion by one side of the map.
-vec4 gather(Map map, int side, Receivers r, Tile tile)
+vec4 gather(Map map, int side, Receivers r)
 {
+    Tile tile = tile_of(r);
     vec4 sum = vec4(0.0);
     if (tile.w.x >= map.w_max) {
         return sum;

@@ -69,7 +69,7 @@ void main()
         r.w[i] = stored > 0.0 ? stored * push.receiver_inv_near : NOTHING;
     }
     Map map = Map(push.scale, push.w_max, push.spread, push.row);
-    vec4 occlusion = gather(map, push.side, r, tile_of(r));
+    vec4 occlusion = gather(map, push.side, r);
     for (int i = 0; i < 4; ++i) {
         ivec2 p = quad + ivec2(i & 1, i >> 1);
         if (p.x < push.receiver_map && p.y < push.receiver_map) {

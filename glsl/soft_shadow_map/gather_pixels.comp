@@ -71,11 +71,11 @@ int plane_side(Node node, vec2 lo, float side, Receivers r)
     vec4 c_far = r.c * node.w_min;
     vec4 least = centre - reach - max(c_near, c_far);
     vec4 most = centre + reach - min(c_near, c_far);
-    bvec4 nothing = equal(r.w, vec4(3.0e38));
-    if (all(lessThanEqual(mix(most, vec4(-3.0e38), nothing), r.bias))) {
+    bvec4 nothing = equal(r.w, vec4(NOTHING));
+    if (all(lessThanEqual(mix(most, vec4(-NOTHING), nothing), r.bias))) {
         return -1;
     }
-    return all(greaterThan(mix(least, vec4(3.0e38), nothing), r.bias)) ? 1 : 0;
+    return all(greaterThan(mix(least, vec4(NOTHING), nothing), r.bias)) ? 1 : 0;
 }
 
 #include "soft_shadow_map/gather.glsl"
@@ -95,14 +95,13 @@ void main()
     vec4 below; // the part of the light under the pixel's own surface, where that blocks
     for (int i = 0; i < 4; ++i) {
         Receiver p = receiver_at(g, quad + ivec2(i & 1, i >> 1));
-        bool there = p.receives && p.position.z > 0.0;
-        float w = there ? 1.0 / p.position.z : 3.0e38;
+        bool there = p.receives && p.position.z > 0.0; // behind the light's plane nothing is to hide
+        float w = there ? 1.0 / p.position.z : 0.0;
         vec2 t = p.position.xy * w * push.texels_per_uv + push.first;
         vec2 n = p.normal.xy / push.texels_per_uv;
         float c = dot(p.normal, p.position);
         r.t_x[i] = t.x;
         r.t_y[i] = t.y;
-        r.w[i] = w;
         r.n_x[i] = n.x;
         r.n_y[i] = n.y;
         r.n_0[i] = p.normal.z - dot(n, push.first);
@@ -111,14 +110,16 @@ void main()
                     push.snap * (abs(n.x) + abs(n.y)) +
                     ROUNDING * (dot(abs(n), abs(t)) + abs(r.n_0[i]) + abs(c) * w);
         below[i] = there && p.blocks ? 1.0 - fraction_above(p.normal.xy * half_light, c) : 0.0;
+        r.w[i] = there ? w : NOTHING;
     }
     Map map = Map(push.scale, push.w_max, push.spread, push.row);
-    Tile tile = tile_of(r);
-    vec4 occlusion = vec4(0.0);
+    vec4 hidden = below;
     for (int side = 0; side <= (push.flags >> 1); ++side) {
-        occlusion = max(occlusion, gather(map, side, r, tile));
+        // Where nothing of the light is left to hide, another side need not be asked.
+        r.w = mix(r.w, vec4(NOTHING), greaterThanEqual(hidden, vec4(1.0)));
+        hidden = max(hidden, below + gather(map, side, r));
     }
-    vec4 v = 1.0 - clamp(occlusion + below, 0.0, 1.0);
+    vec4 v = 1.0 - min(hidden, vec4(1.0));
     for (int i = 0; i < 4; ++i) {
         ivec2 p = quad + ivec2(i & 1, i >> 1);
         if (p.x < push.extent.x && p.y < push.extent.y) {

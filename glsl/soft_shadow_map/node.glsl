@@ -9,6 +9,9 @@ const int FAN = 4;                     // a superblock's side in blocks
 const int SUPERBLOCK = FAN * BLOCK;    // and in texels
 const int FAMILY = 1 + FAN * FAN;      // a superblock and its blocks, which lie together
 
+// w of a receiver that is not there: further than any occluder can be in front of.
+const float NOTHING = 3.0e38;
+
 struct Node {
     float count;  // occupied texels
     float mean;   // mean w of them, 1/m
