@@ -3,13 +3,17 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used)]
 
-use antumbra::soft_shadow_map::twin::{magnification, overlap, patch_occlusion};
-use antumbra::visibility::twin::{fraction_above, plane_normal, unproject};
+use antumbra::soft_shadow_map::twin::{
+    Kind, Node, Tile, classify, magnification, overlap, patch_occlusion, rectangle_mask, series,
+};
+use antumbra::visibility::twin::{
+    dehomogenize, fraction_above, plane_normal, towards_viewer, unproject,
+};
 use antumbra_tests::compare::Tolerance;
 use antumbra_tests::{Function, device};
 use glam::Vec3;
 use num_traits::Float;
-use proptest::prelude::{Strategy, any};
+use proptest::prelude::{Just, Strategy, any};
 
 type Pair = (f32, f32);
 type Triple = (f32, f32, f32);
@@ -127,6 +131,107 @@ fn normals_face_the_viewer() {
     .f32(Tolerance::absolute(4e-6), twin::<f32>)
     .f64(Tolerance::absolute(4e-6), twin::<f64>)
     .check(&device());
+}
+
+#[test]
+fn homogeneous_points_and_the_eye() {
+    Function::new("common/receiver.glsl", "vec3 dehomogenize(vec4 p)")
+        .random(2_000, (-9.0..9.0_f32, -9.0..9.0_f32, -9.0..9.0_f32, 0.1..9.0_f32))
+        .f32(Tolerance::ulps(3), |x| dehomogenize([x[0], x[1], x[2], x[3]]).to_vec())
+        .check(&device());
+    fn twin<T: Float>(x: &[T]) -> Vec<T> {
+        towards_viewer(&x[..16], [x[16], x[17], x[18]], x[19]).to_vec()
+    }
+    let matrix = |w: f32| {
+        let mut m = [0.5; 16];
+        m[8..12].copy_from_slice(&[1.0, 2.0, 3.0, w]);
+        m
+    };
+    let p = (0.25, -0.5, 4.0);
+    Function::new(
+        "common/receiver.glsl",
+        "vec3 towards_viewer(mat4 light_from_ndc, vec3 p, float background)",
+    )
+    .case((matrix(2.0), p, 0.0))
+    .case((matrix(-2.0), p, 1.0))
+    .case((matrix(0.0), p, 0.0))
+    .case((matrix(0.0), p, 1.0))
+    .f32(Tolerance::ulps(3), twin::<f32>)
+    .f64(Tolerance::absolute(1e-6), twin::<f64>)
+    .check(&device());
+}
+
+#[test]
+fn the_series_of_a_node() {
+    fn twin<T: Float>(x: &[T]) -> Vec<T> {
+        (0..4).map(|i| series([x[0], x[1], x[2], x[3]], x[4], x[5 + i])).collect()
+    }
+    let moments = (1.0..64.0_f32, -0.1..0.1_f32, 0.0..0.05_f32, -0.01..0.01_f32);
+    let w_r = (0.1..1.0_f32, 0.1..1.0_f32, 0.1..1.0_f32, 0.1..1.0_f32);
+    Function::new("soft_shadow_map/node.glsl", "vec4 series(vec4 s, float mean, vec4 w_r)")
+        .random(5_000, (moments, 1.5..3.0_f32, w_r))
+        .f32(Tolerance::relative(2e-6), twin::<f32>)
+        .f64(Tolerance::relative(2e-6), twin::<f64>)
+        .check(&device());
+}
+
+#[test]
+fn texels_of_a_rectangle() {
+    let glue = "uvec2 mask_of(uint x0, uint y0, uint x1, uint y1) { \
+                return rectangle_mask(ivec2(x0, y0), ivec2(x1, y1)); }";
+    let prototype = "uvec2 mask_of(uint x0, uint y0, uint x1, uint y1)";
+    let sides = || (0..=8_u32, 0..=8_u32);
+    let corners = (sides(), sides())
+        .prop_map(|(x, y)| (x.0.min(x.1), y.0.min(y.1), x.0.max(x.1), y.0.max(y.1)));
+    Function::new("soft_shadow_map/node.glsl", prototype)
+        .glue(glue)
+        .case((0, 0, 8, 8))
+        .case((3, 4, 3, 8))
+        .random(3_000, corners)
+        .bits(|x| {
+            let mask = rectangle_mask([x[0], x[1]], [x[2], x[3]]);
+            vec![mask as u32, (mask >> 32) as u32]
+        })
+        .check(&device());
+}
+
+#[test]
+fn how_a_node_lies_to_its_receivers() {
+    let glue = "int kind_of(vec4 a, vec2 lo, float side, vec4 t, vec2 w_r, vec2 scale, float spread) \
+                { return classify(Node(a.x, a.y, a.z, a.w, 0.0, 0.0, uvec2(0u)), lo, side, t.xy, \
+                t.zw, w_r, scale, spread); }";
+    let prototype =
+        "int kind_of(vec4 a, vec2 lo, float side, vec4 t, vec2 w_r, vec2 scale, float spread)";
+    fn twin(x: &[f32]) -> Vec<f32> {
+        let node = Node { count: x[0], w: [x[1], x[2], x[3]], lo: [x[4], x[5]], side: x[6] };
+        let tile = Tile { t_min: [x[7], x[8]], t_max: [x[9], x[10]], w: [x[11], x[12]] };
+        let kind = classify(&node, &tile, [x[13], x[14]], x[15]);
+        vec![match kind {
+            Kind::Outside => 0.0,
+            Kind::Inside => 1.0,
+            Kind::Mixed => 2.0,
+        }]
+    }
+    // Nodes 0.8 to 1.2 times as near as a mean of 1/m, receivers behind and beside them; powers of two
+    // keep the comparisons away from the rounding of a division.
+    let node = (0..3_u32, 0.5..1.0_f32, 0.0..0.25_f32).prop_map(|(count, mean, deviation)| {
+        (count as f32 * 8.0, mean, mean - deviation, mean + deviation)
+    });
+    let lo = (0..32_u32, 0..32_u32).prop_map(|(x, y)| (x as f32 * 8.0, y as f32 * 8.0));
+    let tile = (0.0..256.0_f32, 0.0..256.0_f32, 0.0..8.0_f32)
+        .prop_map(|(x, y, size)| (x, y, x + size, y + size));
+    let w_r = (0.1..0.6_f32, 0.0..0.1_f32).prop_map(|(w, more)| (w, w + more));
+    let scale = (0..6_i32, 0..6_i32).prop_map(|(x, y)| (2f32.powi(-x - 6), 2f32.powi(-y - 6)));
+    let cases = (node, lo, Just(8.0_f32), tile, w_r, scale, 0.01..0.5_f32);
+    let test =
+        Function::new("soft_shadow_map/node.glsl", prototype).glue(glue).random(20_000, cases);
+    let device = device();
+    let outputs = test.outputs(&device);
+    for kind in [0.0, 1.0, 2.0] {
+        let count = outputs.iter().filter(|c| c.output[0] == kind).count();
+        assert!(count > 200, "only {count} cases of kind {kind}");
+    }
+    test.f32(Tolerance::exact(), twin).check(&device);
 }
 
 /// A twin that is wrong in one small corner is caught, and the report shows a case of that corner.

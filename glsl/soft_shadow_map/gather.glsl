@@ -60,13 +60,6 @@ vec4 texel_occlusion(vec2 lo, float w_o, Receivers r, vec2 scale)
     return occlusion_above(lo, w_o, r, x * y);
 }
 
-// The sum of k^2 over texels whose w is mean + d, with s = (count, sum d, sum d^2, sum d^3).
-vec4 series(vec4 s, float mean, vec4 w_r)
-{
-    vec4 k = 1.0 / (mean - w_r);
-    return k * k * (s.x + k * (-2.0 * s.y + k * (3.0 * s.z - 4.0 * s.w * k)));
-}
-
 // Moments of the texels [lo, hi) of a block.
 vec4 sums_within(int block, ivec2 lo, ivec2 hi)
 {
@@ -82,20 +75,6 @@ vec4 sums_within(int block, ivec2 lo, ivec2 hi)
         }
     }
     return s;
-}
-
-// A bit for each texel of a block in [lo, hi).
-uvec2 rectangle_mask(ivec2 lo, ivec2 hi)
-{
-    uint columns = ((1u << hi.x) - (1u << lo.x)) * 0x01010101u;
-    // Rows 0 to 3 are in x, 4 to 7 in y; a shift by 32 is undefined.
-    ivec2 from = clamp(lo.y - ivec2(0, 4), 0, 4);
-    ivec2 to = clamp(hi.y - ivec2(0, 4), 0, 4);
-    uvec2 below_from = uvec2(from.x == 4 ? 0xffffffffu : (1u << (8 * from.x)) - 1u,
-                             from.y == 4 ? 0xffffffffu : (1u << (8 * from.y)) - 1u);
-    uvec2 below_to = uvec2(to.x == 4 ? 0xffffffffu : (1u << (8 * to.x)) - 1u,
-                           to.y == 4 ? 0xffffffffu : (1u << (8 * to.y)) - 1u);
-    return columns & below_to & ~below_from;
 }
 
 // The occlusion of the first texel of a mask, which is taken out of it; 0 where there is none.

@@ -22,11 +22,6 @@ struct Node {
     uvec2 mask;   // a bit for each occupied texel of a block, or for each such block of a superblock
 };
 
-Node empty_node()
-{
-    return Node(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, uvec2(0u));
-}
-
 // Two uvec4 a node in buffers.
 Node unpack_node(uvec4 a, uvec4 b)
 {
@@ -34,16 +29,31 @@ Node unpack_node(uvec4 a, uvec4 b)
     return Node(f.x, f.y, f.z, f.w, uintBitsToFloat(b.x), uintBitsToFloat(b.y), b.zw);
 }
 
-// The sum over a node's texels of k^2, all of them back-projected wholly inside the light, as its
-// Taylor series about the mean to the third order. Times scale.x * scale.y it is the occlusion.
-float node_sum(float count, float mean, float s2, float s3, float w_r)
+// The sum of k^2 over texels whose w is mean + d, with s = (count, sum d, sum d^2, sum d^3), all of them
+// back-projected wholly inside the light: the Taylor series of 1/(w - w_r)^2 about the mean to the third
+// order, for four receivers. Times scale.x * scale.y it is the occlusion.
+vec4 series(vec4 s, float mean, vec4 w_r)
 {
-    float r = 1.0 / (mean - w_r);
-    return r * r * (count + r * r * (3.0 * s2 - 4.0 * s3 * r));
+    vec4 k = 1.0 / (mean - w_r);
+    return k * k * (s.x + k * (-2.0 * s.y + k * (3.0 * s.z - 4.0 * s.w * k)));
+}
+
+// A bit for each texel of a block in [lo, hi).
+uvec2 rectangle_mask(ivec2 lo, ivec2 hi)
+{
+    uint columns = ((1u << hi.x) - (1u << lo.x)) * 0x01010101u;
+    // Rows 0 to 3 are in x, 4 to 7 in y; a shift by 32 is undefined.
+    ivec2 from = clamp(lo.y - ivec2(0, 4), 0, 4);
+    ivec2 to = clamp(hi.y - ivec2(0, 4), 0, 4);
+    uvec2 below_from = uvec2(from.x == 4 ? 0xffffffffu : (1u << (8 * from.x)) - 1u,
+                             from.y == 4 ? 0xffffffffu : (1u << (8 * from.y)) - 1u);
+    uvec2 below_to = uvec2(to.x == 4 ? 0xffffffffu : (1u << (8 * to.x)) - 1u,
+                           to.y == 4 ? 0xffffffffu : (1u << (8 * to.y)) - 1u);
+    return columns & below_to & ~below_from;
 }
 
 const int OUTSIDE = 0; // hides nothing of the light from any of the receivers
-const int INSIDE = 1;  // node_sum serves all of the receivers
+const int INSIDE = 1;  // the series serves all of the receivers
 const int MIXED = 2;   // look closer
 
 // How a node lies to receivers with t in [t_min, t_max] and w_r in [w_r.x, w_r.y]; `lo` is its first

@@ -71,12 +71,84 @@ pub fn occlusion(map: &OccluderMap, t: [f32; 2], w_r: f32) -> f64 {
         .sum()
 }
 
-/// The sum of k² over a node of `count` texels with mean w `mean` and central moment sums `s2` and
-/// `s3`, by the series of the module's derivation.
-pub fn node_sum<T: Float>(count: T, mean: T, s2: T, s3: T, w_r: T) -> T {
+/// The sum of k² over texels whose w is `mean` + d, with `s` = (count, Σd, Σd², Σd³), by the series of
+/// the module's derivation.
+pub fn series<T: Float>(s: [T; 4], mean: T, w_r: T) -> T {
     let two = T::one() + T::one();
-    let r = T::one() / (mean - w_r);
-    r * r * (count + r * r * ((two + T::one()) * s2 - two * two * s3 * r))
+    let k = T::one() / (mean - w_r);
+    k * k * (s[0] + k * (k * ((two + T::one()) * s[2] - two * two * s[3] * k) - two * s[1]))
+}
+
+/// How a node lies to a tile of receivers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// It hides nothing of the light from any of them.
+    Outside,
+    /// The series serves all of them.
+    Inside,
+    /// Neither for sure.
+    Mixed,
+}
+
+/// A square node of an occluder map.
+#[derive(Clone, Copy, Debug)]
+pub struct Node<T> {
+    /// Occupied texels.
+    pub count: T,
+    /// Mean, least and largest w of them.
+    pub w: [T; 3],
+    /// Its first texel.
+    pub lo: [T; 2],
+    /// Its side in texels.
+    pub side: T,
+}
+
+/// Receivers with t from `t_min` to `t_max` and w from `w[0]` to `w[1]`.
+#[derive(Clone, Copy, Debug)]
+pub struct Tile<T> {
+    /// Least t.
+    pub t_min: [T; 2],
+    /// Largest t.
+    pub t_max: [T; 2],
+    /// Least and largest w.
+    pub w: [T; 2],
+}
+
+/// The twin of `classify` in `node.glsl`.
+pub fn classify<T: Float>(node: &Node<T>, tile: &Tile<T>, scale: [T; 2], spread: T) -> Kind {
+    let [mean, w_min, w_max] = node.w;
+    if node.count == T::zero() || w_max <= tile.w[0] {
+        return Kind::Outside;
+    }
+    let h = half::<T>();
+    let hi = [0, 1].map(|i| node.lo[i] + node.side);
+    let felt = |i: usize| {
+        let gap = (node.lo[i] - tile.t_max[i]).max(tile.t_min[i] - hi[i]);
+        gap < h * (w_max - tile.w[0]) / scale[i]
+    };
+    if !(felt(0) && felt(1)) {
+        return Kind::Outside;
+    }
+    let within = |i: usize| {
+        let reach = (hi[i] - tile.t_min[i]).max(tile.t_max[i] - node.lo[i]);
+        reach <= h * (w_min - tile.w[1]) / scale[i]
+    };
+    let deviation = (w_max - mean).max(mean - w_min);
+    if within(0) && within(1) && deviation <= spread * (mean - tile.w[1]) {
+        Kind::Inside
+    } else {
+        Kind::Mixed
+    }
+}
+
+/// A bit for each texel of an 8×8 block with lo ≤ (x, y) < hi; bit 8y + x.
+pub fn rectangle_mask(lo: [u32; 2], hi: [u32; 2]) -> u64 {
+    (0..64)
+        .filter(|i| {
+            let at = [i % 8, i / 8];
+            (0..2).all(|axis| (lo[axis]..hi[axis]).contains(&at[axis]))
+        })
+        .fold(0, |mask, i| mask | 1 << i)
 }
 
 #[cfg(test)]
@@ -113,7 +185,7 @@ mod tests {
         let mean = ws.iter().sum::<f64>() / n;
         let moment = |p: i32| ws.iter().map(|w| (w - mean).powi(p)).sum::<f64>();
         let exact: f64 = ws.iter().map(|&w| magnification(w, w_r).powi(2)).sum();
-        let series = node_sum(n, mean, moment(2), moment(3), w_r);
+        let series = series([n, moment(1), moment(2), moment(3)], mean, w_r);
         let q = 0.01 / (mean - w_r) * 1.02;
         assert!((series / exact - 1.0).abs() < 5.0 * q.powi(4) * 1.1);
     }

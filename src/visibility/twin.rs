@@ -38,6 +38,23 @@ pub fn unproject<T: Float>(
     })
 }
 
+/// A homogeneous point as a point.
+pub fn dehomogenize<T: Float>(p: [T; 4]) -> [T; 3] {
+    [0, 1, 2].map(|i| p[i] / p[3])
+}
+
+/// The direction from `p` to the viewer: the eye is the image of clip space's (0, 0, 1, 0), a point
+/// for a perspective camera and a direction for an orthographic one.
+pub fn towards_viewer<T: Float>(light_from_ndc: &[T], p: [T; 3], background: T) -> [T; 3] {
+    let eye = &light_from_ndc[8..12];
+    if eye[3] != T::zero() {
+        [0, 1, 2].map(|i| eye[i] / eye[3] - p[i])
+    } else {
+        let sign = if background == T::zero() { T::one() } else { -T::one() };
+        [0, 1, 2].map(|i| sign * eye[i])
+    }
+}
+
 /// The unit normal of the plane along two steps, on the side that `to_viewer` points to.
 pub fn plane_normal<T: Float>(x: [T; 3], y: [T; 3], to_viewer: [T; 3]) -> [T; 3] {
     let n = [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]];

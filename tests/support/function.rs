@@ -28,6 +28,8 @@ pub struct Function {
     prototype: String,
     file: String,
     signature: Signature,
+    /// GLSL behind the include.
+    glue: String,
     /// The cases' words, one after the other.
     words: Vec<u32>,
     cases: usize,
@@ -65,10 +67,19 @@ impl Function {
             prototype: prototype.into(),
             file: file.into(),
             signature,
+            glue: String::new(),
             words: Vec::new(),
             cases: 0,
             twins: Vec::new(),
         }
+    }
+
+    /// Adds GLSL behind the include, for functions whose types cannot be passed: the prototype is then
+    /// that of a function which takes their parts and calls them.
+    #[must_use]
+    pub fn glue(mut self, glsl: &str) -> Self {
+        self.glue = glsl.into();
+        self
     }
 
     /// Adds one case by hand: a number, a tuple or array of numbers, or nested ones.
@@ -253,6 +264,7 @@ impl Function {
             "#version 450\n\
              #extension GL_GOOGLE_include_directive : require\n\
              #include \"{}\"\n\
+             {}\n\
              layout(local_size_x = {GROUP}) in;\n\
              layout(set = 0, binding = 0, std430) readonly buffer Inputs {{ uint words_in[]; }};\n\
              layout(set = 0, binding = 1, std430) buffer Outputs {{ uint words_out[]; }};\n\
@@ -264,6 +276,7 @@ impl Function {
              \x20   uint at_out = i * {stride_out}u;\n\
              {before}    {result}{name}({});\n{after}}}\n",
             self.file,
+            self.glue,
             arguments.join(", "),
         )
     }
