@@ -75,12 +75,15 @@ pub mod visibility;
 
 pub use ash;
 pub use error::Error;
-pub use frame::{BorderBarriers, Description, Frame, FramePlan, HostImage, MeshInstance};
+pub use frame::{
+    BorderBarriers, Description, Frame, FramePlan, Geometry, HostImage, MeshBuffers, MeshInstance,
+    OccluderMaps, Visibility,
+};
 pub use glam;
-pub use gpu::{Allocator, Host, Requirements, Retired};
-pub use graph::Scope;
+pub use gpu::{Allocator, Host, HostDraw, Requirements, Retired};
+pub use graph::{Layer, Scope};
 pub use light::RectangleLight;
-pub use node::{ShadowNode, VisibilityImage};
+pub use node::{LayerPass, ShadowNode, VisibilityImage};
 pub use scene::Role;
 pub use settings::{Settings, Technique};
 

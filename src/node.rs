@@ -1,11 +1,12 @@
 //! The node: the host's whole view of the crate.
 
-use crate::Error;
-use crate::frame::{self, Description, Frame, FrameGraph, FramePlan, Limits};
-use crate::gpu::{Allocator, Host, NodeObjects, Requirements, Retired};
-use crate::graph::{Owner, Shape};
+use crate::frame::{self, Description, Frame, FrameGraph, FramePlan, Limits, Stamp};
+use crate::gpu::{Allocator, Host, HostDraw, NodeObjects, Requirements, Retired};
+use crate::graph::{Draw, Layer, Owner, Pass, Shape, Work};
 use crate::soft_shadow_map::Accumulate;
+use crate::{Error, depth_layers};
 use ash::vk;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Soft shadows as one node of the host's render graph.
 ///
@@ -19,8 +20,29 @@ pub struct ShadowNode {
     limits: Limits,
     objects: NodeObjects,
     visibility: crate::graph::ResourceId,
-    /// The rows and resources that the objects were made for.
+    /// The rows that the objects were made for.
     rows: Vec<&'static str>,
+    /// What plans for these objects carry.
+    stamp: Stamp,
+}
+
+/// The next [`Stamp`]: no two nodes or sizes share one.
+static STAMPS: AtomicU64 = AtomicU64::new(1);
+
+fn next_stamp() -> Stamp {
+    Stamp(STAMPS.fetch_add(1, Ordering::Relaxed))
+}
+
+/// What a host's own pipeline must fit to draw into a depth layer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LayerPass {
+    /// The render pass: one depth attachment of [`depth_layers::FORMAT`], no color, one sample. It
+    /// stays compatible over every resize and reconfiguration.
+    pub render_pass: vk::RenderPass,
+    /// The layer's size: viewport and scissor.
+    pub extent: vk::Extent2D,
+    /// Culling, clear value and depth test; depth is tested and written.
+    pub raster: depth_layers::Raster,
 }
 
 /// The image that holds the result.
@@ -78,7 +100,7 @@ impl ShadowNode {
         let FrameGraph { graph, visibility, .. } = frame::nominal(&description, limits);
         let objects = NodeObjects::new(&host, allocator, &graph, &description)?;
         let rows = graph.passes().iter().map(|p| p.name).collect();
-        Ok(Self { host, description, limits, objects, visibility, rows })
+        Ok(Self { host, description, limits, objects, visibility, rows, stamp: next_stamp() })
     }
 
     /// What the node was made for.
@@ -91,7 +113,8 @@ impl ShadowNode {
     /// # Errors
     /// See [`frame::plan`].
     pub fn plan(&self, frame: &Frame) -> Result<FramePlan, Error> {
-        frame::plan(&self.description, self.limits, frame)
+        let plan = frame::plan(&self.description, self.limits, frame)?;
+        Ok(plan.stamped(self.stamp, self.objects.image(self.visibility).0))
     }
 
     /// Records a plan into a command buffer of the host's: no submit, no wait, no allocation.
@@ -99,30 +122,59 @@ impl ShadowNode {
     /// What must hold of the command buffer and the plan's slot was promised at [`Host::borrow`].
     ///
     /// # Errors
-    /// [`Error::Frame`] where the plan was made for another node or before a resize; nothing is
-    /// recorded then.
+    /// [`Error::Frame`] where the plan was made by another node, or before a resize, or has meshes
+    /// that the host draws; nothing is recorded then.
     pub fn record(&mut self, cmd: vk::CommandBuffer, plan: &FramePlan) -> Result<(), Error> {
-        let same_rows =
-            plan.plan.graph.passes().iter().map(|p| p.name).eq(self.rows.iter().copied());
-        let same_size =
-            plan.plan.graph.resource(plan.visibility).shape == self.objects.shape(self.visibility);
-        if !same_rows || !same_size || plan.slot >= self.description.frames_in_flight {
+        if plan.has_host_draws() {
             return Err(Error::Frame(
-                "this plan was made for another node, or before a resize; plan the frame again"
+                "some of this plan's meshes are the host's to draw; use record_with".into(),
+            ));
+        }
+        self.record_with(cmd, plan, &mut |_| {})
+    }
+
+    /// As [`Self::record`], with `draw` called for each mesh that the host draws, in each layer that
+    /// shows it, between the node's own draws. [`Self::layer_pass`] says what its pipelines must fit.
+    ///
+    /// # Errors
+    /// [`Error::Frame`] where the plan was made by another node, or before a resize; nothing is
+    /// recorded then.
+    pub fn record_with(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        plan: &FramePlan,
+        draw: &mut dyn FnMut(&HostDraw),
+    ) -> Result<(), Error> {
+        if plan.stamp != self.stamp {
+            return Err(Error::Frame(
+                "this plan was made by another node, or before a resize; plan the frame again"
                     .into(),
             ));
         }
-        self.objects.record(&self.host, cmd, plan);
+        self.objects.record(&self.host, cmd, plan, draw);
         Ok(())
     }
 
-    /// The image that holds the result; another one after each resize.
+    /// What a host's own pipeline must fit to draw into a layer; none where these settings have no
+    /// such layer.
+    pub fn layer_pass(&self, layer: Layer) -> Option<LayerPass> {
+        let FrameGraph { graph, .. } = frame::nominal(&self.description, self.limits);
+        let draws =
+            |p: &Pass| matches!(p.work, Work::Raster { draw: Draw::Layer(l), .. } if l == layer);
+        let row = graph.passes().iter().position(draws)?;
+        let (render_pass, extent) = self.objects.render_pass(row)?;
+        Some(LayerPass { render_pass, extent, raster: depth_layers::raster_of(layer) })
+    }
+
+    /// The node's own image that holds the result, another one after each resize; null handles where
+    /// the host lends it.
     pub fn visibility(&self) -> VisibilityImage {
         let (image, view) = self.objects.image(self.visibility);
         VisibilityImage { image, view, extent: self.description.extent }
     }
 
-    /// Makes everything anew for a G-buffer of another size and gives back what to retire.
+    /// Makes what depends on the G-buffer's size anew and gives back what to retire. Pipelines stay,
+    /// and so do the timings of frames in flight.
     ///
     /// # Errors
     /// As [`Self::new`]; the node then goes on at its old size.
@@ -131,7 +183,16 @@ impl ShadowNode {
         allocator: &mut dyn Allocator,
         extent: [u32; 2],
     ) -> Result<Retired, Error> {
-        self.reconfigure(allocator, Description { extent, ..self.description.clone() })
+        let description = Description { extent, ..self.description.clone() };
+        description.check()?;
+        let FrameGraph { graph, .. } = frame::nominal(&description, self.limits);
+        if !self.objects.keeps_pipelines(&graph) {
+            return self.reconfigure(allocator, description);
+        }
+        let old = self.objects.resize(&self.host, allocator, &graph, description.inspect)?;
+        self.description = description;
+        self.stamp = next_stamp();
+        Ok(Retired::sized(self.host.clone(), old))
     }
 
     /// Makes everything anew for another description and gives back what to retire.
@@ -145,7 +206,7 @@ impl ShadowNode {
     ) -> Result<Retired, Error> {
         let next = Self::new(self.host.clone(), allocator, description)?;
         let old = std::mem::replace(self, next);
-        Ok(Retired::new(old.host, old.objects))
+        Ok(Retired::everything(old.host, old.objects))
     }
 
     /// Name and milliseconds of each pass that `slot` recorded last; none until the host knows that

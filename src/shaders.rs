@@ -40,6 +40,8 @@ macro_rules! module {
 
 /// Positions to clip space, for depth alone.
 pub const DEPTH_VERT: Module = module!("depth_layers/depth.vert");
+/// A host's occluder map to a layer.
+pub const TAKE: Module = module!("depth_layers/take.comp");
 /// Occluder map to blocks of texels with their moments.
 pub const BLOCKS: Module = module!("soft_shadow_map/blocks.comp");
 /// Blocks to superblocks.
@@ -73,6 +75,7 @@ pub const GBUFFER_FRAG: Module = module!("headless/gbuffer.frag");
 /// Every module of the node's passes.
 pub const ALL: &[Module] = &[
     DEPTH_VERT,
+    TAKE,
     BLOCKS,
     SUPERBLOCKS,
     GATHER_MAP,

@@ -31,6 +31,7 @@ layout(push_constant) uniform Push {
     float snap;         // how far a raster moves a vertex, in texels
     int row;            // superblocks a row
     int flags;          // bit 0: masked; bit 1: two sides
+    float depth_error;  // how far off an occluder's w may be beyond its rounding, 1/m
 } push;
 
 struct Receivers {
@@ -107,7 +108,7 @@ void main()
         r.n_0[i] = p.normal.z - dot(n, push.first);
         r.c[i] = c;
         r.bias[i] = OWN_SURFACE * length(1.0 / push.texels_per_uv) +
-                    push.snap * (abs(n.x) + abs(n.y)) +
+                    push.snap * (abs(n.x) + abs(n.y)) + push.depth_error * abs(c) +
                     ROUNDING * (dot(abs(n), abs(t)) + abs(r.n_0[i]) + abs(c) * w);
         below[i] = there && p.blocks ? 1.0 - fraction_above(p.normal.xy * half_light, c) : 0.0;
         r.w[i] = there ? w : NOTHING;

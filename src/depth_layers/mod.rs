@@ -17,13 +17,18 @@
 //! closed solid is a front face anyway, and an open sheet must cast its shadow whichever way it is
 //! turned. The map's window is fitted to the occluders in u and v apart, so it need not have the
 //! light's aspect.
+//!
+//! A host that has depth images of the occluders already lends those instead of meshes; a pass a
+//! layer then brings them into the form above, whatever their depth convention and window.
 
+mod host_maps;
 mod view;
 
-pub use view::{Bounds, MapView, fit_occluders, fit_receivers, is_aside};
+pub(crate) use host_maps::HostMapView;
+pub use view::{MapView, MeshBounds, fit_occluders, fit_receivers, is_aside};
 
 use crate::graph::{
-    Access, Draw, Graph, MeshList, Need, Owner, Pass, Push, ResourceId, Target, Use, Work,
+    Access, Draw, Graph, Layer, Need, Owner, Pass, Push, ResourceId, Target, Use, Work,
 };
 use crate::shaders;
 use ash::vk;
@@ -31,12 +36,35 @@ use ash::vk;
 /// The layers' format; the stored value is near · w.
 pub const FORMAT: vk::Format = vk::Format::D32_SFLOAT;
 
+/// The format of layers that are taken from the host's images: compute shaders write no depth.
+const TAKEN_FORMAT: vk::Format = vk::Format::R32_SFLOAT;
+
 /// The matrix that a mesh draw pushes, column by column.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct DepthPush {
     /// Mesh space to the map's clip space.
     pub clip_from_mesh: [f32; 16],
+}
+
+/// `take.comp`
+#[repr(C)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct TakePush {
+    /// 1 where u or v run against the map's x or y.
+    pub flip: [i32; 2],
+    /// Side of map and layer in texels.
+    pub side: i32,
+    /// near · w = scale · stored + offset.
+    pub scale: f32,
+    /// See [`Self::scale`].
+    pub offset: f32,
+    /// What is stored where the map was cleared.
+    pub empty: f32,
+    /// A layer's value there.
+    pub nothing: f32,
+    /// The largest value of a surface.
+    pub most: f32,
 }
 
 /// Which layers a technique reads, and at which size.
@@ -61,56 +89,125 @@ pub struct DepthLayers {
     pub receivers: Option<ResourceId>,
 }
 
-/// Adds the layers and the passes that draw them; `need` says whether anything can be shadowed.
-pub fn declare(graph: &mut Graph, wanted: Wanted, need: &Need) -> DepthLayers {
-    let mut layer = |name, pass, side, list, cull, clear, compare| {
-        let image = graph.image(name, FORMAT, [side, side], Owner::Transient);
-        graph.push(Pass {
-            name: pass,
-            uses: vec![Use::fixed(image, Access::DepthTarget)],
-            push: Push::NONE,
-            work: Work::Raster {
-                vertex: shaders::DEPTH_VERT,
-                fragment: None,
-                cull,
-                target: Target::Depth { clear, compare },
-                draw: Draw::Meshes(list),
-            },
-            need: need.clone(),
-        });
-        image
+/// Where the occluders come from.
+pub(crate) enum Occluders<'a> {
+    /// The frame's meshes.
+    Meshes,
+    /// Depth images of the host's.
+    Maps { front: ResourceId, back: Option<ResourceId>, camera: &'a HostMapView },
+}
+
+/// Adds the layers and the passes that make them; `need` says whether anything can be shadowed.
+pub(crate) fn declare(
+    graph: &mut Graph,
+    wanted: Wanted,
+    occluders: &Occluders,
+    need: &Need,
+) -> DepthLayers {
+    let map = wanted.map;
+    let (front, back) = match occluders {
+        Occluders::Meshes => {
+            let front = drawn(graph, Layer::Front, map, need);
+            (front, wanted.back.then(|| drawn(graph, Layer::Back, map, need)))
+        }
+        Occluders::Maps { front, back, camera } => {
+            let front = taken(graph, *front, map, camera, Layer::Front, need);
+            let back = back.filter(|_| wanted.back);
+            (front, back.map(|b| taken(graph, b, map, camera, Layer::Back, need)))
+        }
     };
-    use vk::{CompareOp as Op, CullModeFlags as Cull};
-    let front = layer(
-        "depth_layers.front_depth",
-        "depth_layers.front",
-        wanted.map,
-        MeshList::Occluders,
-        Cull::NONE,
-        0.0,
-        Op::GREATER,
-    );
-    let back = wanted.back.then(|| {
-        layer(
-            "depth_layers.back_depth",
-            "depth_layers.back",
-            wanted.map,
-            MeshList::Occluders,
-            Cull::FRONT,
-            1.0,
-            Op::LESS,
-        )
-    });
-    let receivers = wanted.receiver_map.map(|side| {
-        layer(
-            "depth_layers.receiver_depth",
-            "depth_layers.receivers",
-            side,
-            MeshList::Receivers,
-            Cull::NONE,
-            0.0,
-            Op::GREATER,
-        )
-    });
+    let receivers = wanted.receiver_map.map(|side| drawn(graph, Layer::Receivers, side, need));
     DepthLayers { front, back, receivers }
+}
+
+/// How a layer is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Raster {
+    /// Faces left out.
+    pub cull: vk::CullModeFlags,
+    /// What the layer is cleared to.
+    pub clear: f32,
+    /// Which of two depths stays: the new one where new `compare` old.
+    pub compare: vk::CompareOp,
+}
+
+/// How a layer is drawn.
+pub fn raster_of(layer: Layer) -> Raster {
+    use vk::{CompareOp as Op, CullModeFlags as Cull};
+    match layer {
+        Layer::Front | Layer::Receivers => {
+            Raster { cull: Cull::NONE, clear: 0.0, compare: Op::GREATER }
+        }
+        Layer::Back => Raster { cull: Cull::FRONT, clear: 1.0, compare: Op::LESS },
+    }
+}
+
+/// A layer's image and the pass that draws it.
+fn names_of(layer: Layer) -> (&'static str, &'static str) {
+    match layer {
+        Layer::Front => (FRONT, "depth_layers.front"),
+        Layer::Back => (BACK, "depth_layers.back"),
+        Layer::Receivers => ("depth_layers.receiver_depth", "depth_layers.receivers"),
+    }
+}
+
+const FRONT: &str = "depth_layers.front_depth";
+const BACK: &str = "depth_layers.back_depth";
+
+fn drawn(graph: &mut Graph, layer: Layer, side: u32, need: &Need) -> ResourceId {
+    let Raster { cull, clear, compare } = raster_of(layer);
+    let (image, name) = names_of(layer);
+    let image = graph.image(image, FORMAT, [side, side], Owner::Transient);
+    graph.push(Pass {
+        name,
+        uses: vec![Use::fixed(image, Access::DepthTarget)],
+        push: Push::NONE,
+        work: Work::Raster {
+            vertex: shaders::DEPTH_VERT,
+            fragment: None,
+            cull,
+            target: Target::Depth { clear, compare },
+            draw: Draw::Layer(layer),
+        },
+        need: need.clone(),
+    });
+    image
+}
+
+fn taken(
+    graph: &mut Graph,
+    map: ResourceId,
+    side: u32,
+    camera: &HostMapView,
+    layer: Layer,
+    need: &Need,
+) -> ResourceId {
+    let back = layer == Layer::Back;
+    let (image, name) =
+        if back { (BACK, "depth_layers.take_back") } else { (FRONT, "depth_layers.take_front") };
+    let image = graph.image(image, TAKEN_FORMAT, [side, side], Owner::Transient);
+    let near = camera.view.near;
+    graph.push(Pass {
+        name,
+        uses: vec![
+            Use::bound(0, map, Access::SampledCompute),
+            Use::bound(1, image, Access::ImageWrite),
+        ],
+        push: Push::new(&TakePush {
+            flip: camera.flip.map(i32::from),
+            side: side as i32,
+            scale: (camera.scale * near) as f32,
+            offset: (camera.offset * near) as f32,
+            empty: if back { camera.near_value } else { camera.far_value },
+            nothing: if back { 1.0 } else { 0.0 },
+            // A back face on the near plane itself must not read as none.
+            most: if back { 1.0 - f32::EPSILON } else { 1.0 },
+        }),
+        work: Work::Dispatch {
+            shader: shaders::TAKE,
+            groups: [side.div_ceil(8), side.div_ceil(8), 1],
+        },
+        need: need.clone(),
+    });
+    image
 }

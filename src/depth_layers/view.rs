@@ -4,7 +4,7 @@ use crate::RectangleLight;
 use glam::{DMat4, DVec3, DVec4};
 
 /// An axis-aligned box in mesh space: least and largest corner, metres before the transform.
-pub type Bounds = [[f32; 3]; 2];
+pub type MeshBounds = [[f32; 3]; 2];
 
 /// A map looks no further aside than this tangent (84°); occluders beyond it are not seen.
 const MAX_TANGENT: f64 = 10.0;
@@ -63,7 +63,7 @@ impl MapView {
 }
 
 /// A box's corners in light space.
-fn corners(bounds: &Bounds, light_from_mesh: &DMat4) -> [DVec3; 8] {
+fn corners(bounds: &MeshBounds, light_from_mesh: &DMat4) -> [DVec3; 8] {
     std::array::from_fn(|i| {
         let pick = |axis: usize| f64::from(bounds[(i >> axis) & 1][axis]);
         light_from_mesh.transform_point3(DVec3::new(pick(0), pick(1), pick(2)))
@@ -125,8 +125,8 @@ const FLAT: f64 = 1e-6;
 /// spend its texels on it.
 pub fn is_aside(
     light: &RectangleLight,
-    (bounds, world_from_mesh): &(Bounds, DMat4),
-    receivers: &[(Bounds, DMat4)],
+    (bounds, world_from_mesh): &(MeshBounds, DMat4),
+    receivers: &[(MeshBounds, DMat4)],
 ) -> bool {
     let light_from_world = light.light_from_world();
     let extent = |axis: usize| f64::from(bounds[1][axis]) - f64::from(bounds[0][axis]);
@@ -158,7 +158,7 @@ pub fn is_aside(
 /// wants texels to stay where they are while occluders move.
 pub fn fit_occluders(
     light: &RectangleLight,
-    occluders: &[(Bounds, DMat4)],
+    occluders: &[(MeshBounds, DMat4)],
     window: Option<[[f64; 2]; 2]>,
     side: u32,
 ) -> Option<MapView> {
@@ -181,7 +181,7 @@ pub fn fit_occluders(
 /// The view that holds what of the receivers the occluders can shadow; none where that is nothing.
 pub fn fit_receivers(
     light: &RectangleLight,
-    receivers: &[(Bounds, DMat4)],
+    receivers: &[(MeshBounds, DMat4)],
     occluders: &MapView,
     side: u32,
 ) -> Option<MapView> {
@@ -217,7 +217,7 @@ mod tests {
         RectangleLight::new(DVec3::new(0.0, 4.0, 0.0), DVec3::X * 0.5, DVec3::NEG_Z * 0.5).unwrap()
     }
 
-    const UNIT: Bounds = [[-0.5; 3], [0.5; 3]];
+    const UNIT: MeshBounds = [[-0.5; 3], [0.5; 3]];
 
     #[test]
     fn the_window_holds_every_corner_and_little_more() {
@@ -264,10 +264,10 @@ mod tests {
     #[test]
     fn receivers_are_cut_to_what_can_be_shadowed() {
         let light = ceiling();
-        let card: Bounds = [[-0.5, 0.0, -0.5], [0.5, 0.0, 0.5]];
+        let card: MeshBounds = [[-0.5, 0.0, -0.5], [0.5, 0.0, 0.5]];
         let card_at = DMat4::from_translation(DVec3::new(0.0, 2.0, 0.0));
         let occluders = fit_occluders(&light, &[(card, card_at)], None, 64).unwrap();
-        let ground: Bounds = [[-50.0, 0.0, -50.0], [50.0, 0.0, 50.0]];
+        let ground: MeshBounds = [[-50.0, 0.0, -50.0], [50.0, 0.0, 50.0]];
         let view = fit_receivers(&light, &[(ground, DMat4::IDENTITY)], &occluders, 64).unwrap();
         // The penumbra's outer edge: the light's far edge through the card's edge, at x = 1.5.
         let edge = view.max[0] * 62.0 / 64.0 * 4.0;

@@ -1,16 +1,22 @@
 //! What the host says each frame, and the plan that follows from it. No Vulkan calls.
 
+mod accesses;
+mod check;
+mod host;
 mod plan;
 #[cfg(test)]
 mod tests;
 
+pub use accesses::{BufferAccess, HostAccess, ImageBarrier, NodeUse};
+pub use host::{
+    BorderBarriers, Geometry, HostImage, MeshBuffers, MeshInstance, OccluderMaps, Visibility,
+};
 pub use plan::{Faces, FramePlan, Limits, MeshDraw, full_graph, plan};
-pub(crate) use plan::{FrameGraph, nominal};
+pub(crate) use plan::{FrameGraph, Stamp, nominal};
 
-use crate::depth_layers::Bounds;
 use crate::graph::{self, Scope};
 use crate::settings::Settings;
-use crate::{Error, RectangleLight, scene::Role};
+use crate::{Error, RectangleLight};
 use ash::vk;
 use glam::DMat4;
 
@@ -31,6 +37,12 @@ pub struct Description {
     pub inspect: bool,
     /// Every distance between positions, in bytes, that a mesh may have; 12 is tightly packed.
     pub position_strides: Vec<u32>,
+    /// The host lends the visibility image each frame ([`Visibility::Lent`]); otherwise the node has
+    /// one of its own.
+    pub lent_visibility: bool,
+    /// The format of the occluder maps that the host draws itself and lends each frame
+    /// ([`Frame::occluder_maps`]); without, the node draws meshes.
+    pub occluder_maps: Option<vk::Format>,
 }
 
 impl Description {
@@ -45,6 +57,8 @@ impl Description {
             mask_format: None,
             inspect: false,
             position_strides: vec![12],
+            lent_visibility: false,
+            occluder_maps: None,
         }
     }
 
@@ -61,11 +75,13 @@ impl Description {
         if !(1..=8).contains(&self.frames_in_flight) {
             return Err(Error::Frame("frames_in_flight must be 1 to 8".into()));
         }
-        if !graph::is_depth_format(self.depth_format) {
-            return Err(Error::Frame(format!(
-                "the G-buffer's depth format {:?} holds no depth",
-                self.depth_format
-            )));
+        let formats = [Some(self.depth_format), self.occluder_maps];
+        for (format, whose) in
+            formats.into_iter().zip(["the G-buffer's depth", "the occluder maps'"])
+        {
+            if let Some(format) = format.filter(|&f| !graph::is_depth_format(f)) {
+                return Err(Error::Frame(format!("{whose} format {format:?} holds no depth")));
+            }
         }
         match self.position_strides.iter().find(|&&s| s < 12 || s % 4 != 0 || s > 2048) {
             Some(s) => Err(Error::Frame(format!(
@@ -77,71 +93,32 @@ impl Description {
     }
 }
 
-/// One of the host's images, how it was left and how it is wanted back.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct HostImage {
-    /// The image; may be null where the host places barriers itself.
-    pub image: vk::Image,
-    /// A 2D view of it, of the depth aspect for depth.
-    pub view: vk::ImageView,
-    /// Stage, access and layout of the host's last use before the node.
-    pub before: Scope,
-    /// Stage, access and layout of the host's first use after it.
-    pub after: Scope,
-}
-
-/// A mesh as the host keeps it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MeshInstance {
-    /// Positions: three 32-bit floats each, in a buffer with `VERTEX_BUFFER` usage.
-    pub positions: vk::Buffer,
-    /// Where the first position is, in bytes.
-    pub positions_offset: u64,
-    /// Bytes from one position to the next; one of [`Description::position_strides`].
-    pub positions_stride: u32,
-    /// Indices: buffer, offset in bytes, type; none for a list of triangles without.
-    pub indices: Option<(vk::Buffer, u64, vk::IndexType)>,
-    /// How many indices, or vertices where there are none.
-    pub count: u32,
-    /// Mesh space to world space.
-    pub world_from_mesh: DMat4,
-    /// A box around the positions, in mesh space.
-    pub bounds: Bounds,
-    /// Occluder, receiver or both.
-    pub role: Role,
-    /// Both sides of each triangle are front faces.
-    pub double_sided: bool,
-}
-
-/// Who places the barriers at the node's border.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum BorderBarriers {
-    /// The node, from what the host says of its images.
-    #[default]
-    Node,
-    /// The host, from [`FramePlan::accesses`].
-    Host,
-}
-
-/// One frame, as the host sees it.
+/// One frame, as the host sees it; [`Frame::new`] fills in what most frames leave out.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<'a> {
     /// The light.
     pub light: RectangleLight,
     /// Normalized device coordinates and depth to world space: the inverse of view and projection.
+    ///
+    /// The first row of pixels lies at y = −1, as Vulkan has it; where a host's y runs up (wgpu, or a
+    /// viewport of negative height), scale by (1, −1, 1) first. "World" is whatever space the light
+    /// and the meshes' transforms are in: a host that keeps its numbers relative to the camera gives
+    /// all of them so.
     pub world_from_ndc: DMat4,
     /// The depth of pixels that show no surface: 0 with reversed depth, else 1.
     pub background: f32,
     /// Everything that blocks light or shows shadows.
     pub meshes: &'a [MeshInstance],
-    /// The G-buffer's depth.
+    /// The G-buffer's depth, with SAMPLED usage.
     pub depth: HostImage,
-    /// Roles by pixel: red 1 blocks and receives, ½ receives only, 0 receives nothing.
+    /// Roles by pixel: red 1 blocks and receives, ½ receives only, 0 receives nothing. With SAMPLED
+    /// usage.
     pub mask: Option<HostImage>,
-    /// How the visibility image was last used, and how it will be used next.
-    pub visibility_before: Scope,
-    /// See [`Self::visibility_before`].
-    pub visibility_after: Scope,
+    /// Where the result goes.
+    pub visibility: Visibility,
+    /// The host's own depth images of the occluders, exactly where the description has a format for
+    /// them. [`Self::meshes`] then only says where receivers are.
+    pub occluder_maps: Option<OccluderMaps>,
     /// Least and largest tangent (u, v) of the occluder map; none fits it to the occluders.
     pub window: Option<[[f64; 2]; 2]>,
     /// Which of the frames in flight this is, 0 and up. The frame that last had the same number
@@ -149,4 +126,33 @@ pub struct Frame<'a> {
     pub slot: u32,
     /// Who places the barriers at the border.
     pub border_barriers: BorderBarriers,
+}
+
+impl<'a> Frame<'a> {
+    /// A frame with reversed depth, no mask, the node's own visibility image sampled by fragment and
+    /// compute shaders, a fitted window, slot 0, and barriers placed by the node.
+    pub fn new(
+        light: RectangleLight,
+        world_from_ndc: DMat4,
+        meshes: &'a [MeshInstance],
+        depth: HostImage,
+    ) -> Self {
+        let sampled = Scope {
+            stage: vk::PipelineStageFlags::FRAGMENT_SHADER | vk::PipelineStageFlags::COMPUTE_SHADER,
+            ..Scope::FRAGMENT_SAMPLED
+        };
+        Self {
+            light,
+            world_from_ndc,
+            background: 0.0,
+            meshes,
+            depth,
+            mask: None,
+            visibility: Visibility::Own { before: sampled, after: sampled },
+            occluder_maps: None,
+            window: None,
+            slot: 0,
+            border_barriers: BorderBarriers::Node,
+        }
+    }
 }

@@ -1,27 +1,39 @@
 use super::*;
+use crate::depth_layers::{MapView, MeshBounds};
 use crate::graph::{MeshList, Need};
-use crate::scene::generate;
+use crate::scene::{Role, generate};
+use ash::vk::Handle;
 use glam::DVec3;
 
-const UNUSED: Scope = Scope {
-    stage: vk::PipelineStageFlags::FRAGMENT_SHADER,
-    access: vk::AccessFlags::SHADER_READ,
-    layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
-};
-const IMAGE: HostImage = HostImage {
-    image: vk::Image::null(),
-    view: vk::ImageView::null(),
-    before: UNUSED,
-    after: UNUSED,
-};
+fn image(format: vk::Format, extent: [u32; 2], usage: vk::ImageUsageFlags) -> HostImage {
+    HostImage {
+        image: vk::Image::from_raw(1),
+        view: vk::ImageView::from_raw(2),
+        format,
+        extent,
+        usage,
+        before: Scope::FRAGMENT_SAMPLED,
+        after: Scope::FRAGMENT_SAMPLED,
+    }
+}
 
-fn mesh(bounds: Bounds, at: DVec3, role: Role) -> MeshInstance {
+fn depth() -> HostImage {
+    image(vk::Format::D32_SFLOAT, [64, 48], vk::ImageUsageFlags::SAMPLED)
+}
+
+fn target() -> HostImage {
+    image(vk::Format::R32_SFLOAT, [64, 48], vk::ImageUsageFlags::STORAGE)
+}
+
+fn mesh(bounds: MeshBounds, at: DVec3, role: Role) -> MeshInstance {
     MeshInstance {
-        positions: vk::Buffer::null(),
-        positions_offset: 0,
-        positions_stride: 12,
-        indices: None,
-        count: 36,
+        geometry: Geometry::Buffers(MeshBuffers {
+            positions: vk::Buffer::from_raw(3),
+            positions_offset: 0,
+            positions_stride: 12,
+            indices: None,
+            count: 36,
+        }),
         world_from_mesh: DMat4::from_translation(at),
         bounds,
         role,
@@ -29,27 +41,15 @@ fn mesh(bounds: Bounds, at: DVec3, role: Role) -> MeshInstance {
     }
 }
 
-const GROUND: Bounds = [[-4.0, 0.0, -4.0], [4.0, 0.0, 4.0]];
-const CUBE: Bounds = [[-0.5; 3], [0.5; 3]];
+const GROUND: MeshBounds = [[-4.0, 0.0, -4.0], [4.0, 0.0, 4.0]];
+const CUBE: MeshBounds = [[-0.5; 3], [0.5; 3]];
 
 fn meshes() -> Vec<MeshInstance> {
     vec![mesh(GROUND, DVec3::ZERO, Role::Both), mesh(CUBE, DVec3::new(0.0, 1.5, 0.0), Role::Both)]
 }
 
 fn frame(meshes: &[MeshInstance]) -> Frame<'_> {
-    Frame {
-        light: generate::square_light(0.5).unwrap(),
-        world_from_ndc: DMat4::IDENTITY,
-        background: 0.0,
-        meshes,
-        depth: IMAGE,
-        mask: None,
-        visibility_before: UNUSED,
-        visibility_after: UNUSED,
-        window: None,
-        slot: 0,
-        border_barriers: BorderBarriers::Node,
-    }
+    Frame::new(generate::square_light(0.5).unwrap(), DMat4::IDENTITY, meshes, depth())
 }
 
 fn description(words: &[(&str, &str)]) -> Description {
@@ -132,14 +132,15 @@ fn every_bad_frame_is_one_sentence() {
     };
     let f = frame(&good);
     assert!(refuse(&Frame { slot: 2, ..f }).contains("2 frames in flight"));
-    assert!(refuse(&Frame { mask: Some(IMAGE), ..f }).contains("mask"));
+    assert!(refuse(&Frame { mask: Some(depth()), ..f }).contains("mask"));
     let nan = DMat4::from_scale(DVec3::NAN);
     assert!(refuse(&Frame { world_from_ndc: nan, ..f }).contains("finite"));
     assert!(refuse(&Frame { world_from_ndc: DMat4::ZERO, ..f }).contains("invertible"));
     let window = Some([[0.5; 2], [0.5; 2]]);
     assert!(refuse(&Frame { window, ..f }).contains("least first"));
     let mut stride = good.clone();
-    stride[1].positions_stride = 20;
+    let Geometry::Buffers(buffers) = &mut stride[1].geometry else { unreachable!() };
+    buffers.positions_stride = 20;
     assert!(refuse(&frame(&stride)).contains("stride of 20"));
     let mut bounds = good.clone();
     bounds[1].bounds[0][1] = f32::NAN;
@@ -162,21 +163,148 @@ fn every_bad_description_is_one_sentence() {
     assert!(refuse(|d| d.settings.soft_shadow_map.map = 7).contains("16 to 4096"));
 }
 
+/// What a host may get wrong of an image, each named by the image, what it is and what it should be.
 #[test]
-fn the_hosts_images_are_listed_with_stage_access_and_layout() {
+fn every_bad_image_is_one_sentence() {
+    let meshes = meshes();
+    let d = description(&[]);
+    let f = frame(&meshes);
+    let refuse = |depth: HostImage| {
+        plan(&d, Limits::default(), &Frame { depth, ..f }).map(|p| ran(&p)).unwrap_err().to_string()
+    };
+    let undefined = Scope::DEPTH_DRAWN.forgotten();
+    for (wrong, words) in [
+        (HostImage { extent: [64, 40], ..depth() }, ["64×40", "64×48"]),
+        (HostImage { format: vk::Format::D16_UNORM, ..depth() }, ["D16_UNORM", "D32_SFLOAT"]),
+        (
+            HostImage { usage: vk::ImageUsageFlags::STORAGE, ..depth() },
+            ["without SAMPLED", "STORAGE"],
+        ),
+        (HostImage { before: undefined, ..depth() }, ["UNDEFINED", "which layout"]),
+        (
+            HostImage { before: Scope::COLOR_DRAWN, ..depth() },
+            ["COLOR_ATTACHMENT", "layout of color"],
+        ),
+        (HostImage { view: vk::ImageView::null(), ..depth() }, ["view", "null"]),
+    ] {
+        let sentence = refuse(wrong);
+        let named = sentence.starts_with("gbuffer.depth");
+        assert!(named && words.iter().all(|w| sentence.contains(w)), "{words:?}: {sentence}");
+    }
+}
+
+#[test]
+fn what_is_lent_must_be_what_was_described() {
+    let meshes = meshes();
+    let f = frame(&meshes);
+    let refuse = |d: &Description, frame: Frame| {
+        plan(d, Limits::default(), &frame).map(|p| ran(&p)).unwrap_err().to_string()
+    };
+    let visibility = Visibility::Lent(target());
+    let lent = Description { lent_visibility: true, ..description(&[]) };
+    make(&lent, &Frame { visibility, ..f });
+    assert!(refuse(&lent, f).contains("lent_visibility"));
+    assert!(refuse(&description(&[]), Frame { visibility, ..f }).contains("lent_visibility"));
+    let dry = HostImage { usage: vk::ImageUsageFlags::SAMPLED, ..target() };
+    let visibility = Visibility::Lent(dry);
+    assert!(
+        refuse(&lent, Frame { visibility, ..f }).contains("visibility was created without STORAGE")
+    );
+
+    let d16 = Some(vk::Format::D16_UNORM);
+    let maps = Description { occluder_maps: d16, ..description(&[("map", "32")]) };
+    let map = image(vk::Format::D16_UNORM, [32; 2], vk::ImageUsageFlags::SAMPLED);
+    let view = MapView { min: [-1.0; 2], max: [1.0; 2], near: 0.5, far: 9.0, side: 32 };
+    let clip_from_world = view.clip_from_light() * f.light.light_from_world();
+    let both = OccluderMaps { front: map, back: Some(map), clip_from_world };
+    let with = |maps| Frame { occluder_maps: Some(maps), ..f };
+    assert_eq!(
+        ran(&make(&maps, &with(both)))[..2],
+        ["depth_layers.take_front", "depth_layers.take_back"]
+    );
+    assert!(refuse(&maps, f).contains("occluder maps"));
+    assert!(refuse(&description(&[]), with(both)).contains("occluder maps"));
+    assert!(refuse(&maps, with(OccluderMaps { back: None, ..both })).contains("set sides=one"));
+    let small = HostImage { extent: [16; 2], ..map };
+    assert!(refuse(&maps, with(OccluderMaps { front: small, ..both })).contains("16×16"));
+    let window = Some([[-1.0; 2], [1.0; 2]]);
+    assert!(refuse(&maps, Frame { window, ..with(both) }).contains("window of their own"));
+    let aside = OccluderMaps { clip_from_world: DMat4::IDENTITY, ..both };
+    assert!(refuse(&maps, with(aside)).contains("clip_from_world"));
+    // One side asks for no back, and an own window counts no occluder meshes.
+    let one = Description { occluder_maps: d16, ..description(&[("map", "32"), ("sides", "one")]) };
+    let plan = make(&one, &with(OccluderMaps { back: None, ..both }));
+    assert!(plan.meshes(MeshList::Occluders).is_empty());
+    assert!(plan.plan.table().contains("the host's maps may shadow"), "{}", plan.plan.table());
+}
+
+#[test]
+fn the_border_is_listed_with_stage_access_and_layout() {
     let meshes = meshes();
     let mut asked = frame(&meshes);
     asked.border_barriers = BorderBarriers::Host;
     let plan = make(&description(&[]), &asked);
     let names: Vec<_> = plan.accesses().iter().map(|a| a.name).collect();
     assert_eq!(names, ["gbuffer.depth", "visibility"]);
-    let depth = plan.accesses()[0];
+    let depth = plan.accesses()[0].node.unwrap();
     assert!(!depth.writes && depth.entry.stage == vk::PipelineStageFlags::COMPUTE_SHADER);
-    assert_eq!(depth.entry.layout, UNUSED.layout, "fetched where the host keeps it");
-    let result = plan.accesses()[1];
+    assert_eq!(depth.entry.layout, asked.depth.before.layout, "fetched where the host keeps it");
+    let result = plan.accesses()[1].node.unwrap();
     assert!(result.writes);
-    assert_eq!(result.exit.layout, vk::ImageLayout::GENERAL);
+    assert_eq!(result.exit, Scope::COMPUTE_WRITTEN);
     assert!(plan.plan.handover.is_empty());
+    // Depth was not written here, but its readers behind the node were not waited for before it.
+    let exits: Vec<_> = plan.exit_barriers().collect();
+    assert_eq!(exits.len(), 2);
+    assert_eq!(exits[1].before, Scope::COMPUTE_WRITTEN);
+    let entries: Vec<_> = plan.entry_barriers().collect();
+    assert_eq!(entries[1].before.layout, vk::ImageLayout::UNDEFINED, "written whole");
+
+    // Where the node places them, what is behind it is what the host asked for.
+    let plan = make(&description(&[]), &frame(&meshes));
+    let result = plan.accesses()[1];
+    assert_eq!(result.node.unwrap().exit, result.after);
+}
+
+#[test]
+fn what_a_frame_leaves_alone_goes_straight_to_its_next_use() {
+    let border_barriers = BorderBarriers::Host;
+    let lent = HostImage { before: Scope::DEPTH_DRAWN, ..depth() };
+    let alone = Frame { depth: lent, border_barriers, ..frame(&[]) };
+    let plan = make(&description(&[]), &alone);
+    let depth = plan.accesses()[0];
+    assert_eq!(depth.node, None);
+    assert_eq!(depth.entry_barrier(), None);
+    let exit = depth.exit_barrier().unwrap();
+    assert_eq!((exit.before, exit.after), (Scope::DEPTH_DRAWN, Scope::FRAGMENT_SAMPLED));
+    // Read where the node reads it, in the same layout: nothing to wait for.
+    let meshes = meshes();
+    let same = HostImage { after: Scope::COMPUTE_SAMPLED, ..lent };
+    let plan = make(&description(&[]), &Frame { depth: same, border_barriers, ..frame(&meshes) });
+    assert_eq!(plan.accesses()[0].exit_barrier(), None);
+}
+
+#[test]
+fn every_buffer_that_is_read_is_listed_once() {
+    let mut meshes = meshes();
+    let Geometry::Buffers(buffers) = &mut meshes[1].geometry else { unreachable!() };
+    buffers.indices = Some((buffers.positions, 64, vk::IndexType::UINT16));
+    let mut other = meshes[1];
+    let Geometry::Buffers(buffers) = &mut other.geometry else { unreachable!() };
+    buffers.positions = vk::Buffer::from_raw(9);
+    meshes.push(other);
+    meshes.push(MeshInstance { geometry: Geometry::HostDrawn(7), ..other });
+    let plan = make(&description(&[]), &frame(&meshes));
+    assert!(plan.has_host_draws());
+    let found: Vec<_> = plan.buffer_accesses().iter().map(|a| (a.buffer, a.scope.access)).collect();
+    use vk::AccessFlags as A;
+    assert_eq!(
+        found,
+        [
+            (vk::Buffer::from_raw(3), A::VERTEX_ATTRIBUTE_READ | A::INDEX_READ),
+            (vk::Buffer::from_raw(9), A::VERTEX_ATTRIBUTE_READ)
+        ]
+    );
 }
 
 #[test]

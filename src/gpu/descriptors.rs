@@ -1,27 +1,22 @@
-//! Descriptor sets: one a row and frame slot, written when what they point at changes.
+//! Descriptor sets: one a row and frame slot, written each time they are recorded.
+//!
+//! Remembering what they point at would save a microsecond, and be wrong where the host destroys a
+//! view and gets the same handle for its next one.
 
 use super::host::Host;
 use super::objects::Object;
 use super::pipeline::RowPipeline;
 use crate::Error;
 use crate::graph::{Graph, Pass};
-use ash::vk::{self, Handle};
+use ash::vk;
 
 /// No row binds more than this.
 const MAX_BINDINGS: usize = 8;
 
-/// What a binding points at: a view or buffer handle, and an image's layout.
-type Written = [(u64, vk::ImageLayout); MAX_BINDINGS];
-
-struct Set {
-    set: vk::DescriptorSet,
-    written: Written,
-}
-
 /// The sets of all rows, slot by slot.
 pub(crate) struct Descriptors {
     pool: vk::DescriptorPool,
-    sets: Vec<Set>,
+    sets: Vec<vk::DescriptorSet>,
     rows: usize,
 }
 
@@ -67,8 +62,7 @@ impl Descriptors {
         // SAFETY: the pool was sized for exactly these sets, and the layouts are alive.
         match unsafe { host.device.allocate_descriptor_sets(&allocate) } {
             Ok(sets) => {
-                let empty = [(0, vk::ImageLayout::UNDEFINED); MAX_BINDINGS];
-                made.sets = sets.into_iter().map(|set| Set { set, written: empty }).collect();
+                made.sets = sets;
                 Ok(made)
             }
             Err(e) => {
@@ -78,10 +72,9 @@ impl Descriptors {
         }
     }
 
-    /// The set of a row in a slot, pointing at what `object` and `layout` say; none for rows that
-    /// bind nothing.
+    /// The set of a row in a slot, pointing at what `look_up` says; none for rows that bind nothing.
     pub fn set(
-        &mut self,
+        &self,
         host: &Host,
         pass: &Pass,
         row: usize,
@@ -89,49 +82,42 @@ impl Descriptors {
         look_up: impl Fn(&crate::graph::Use) -> (Object, vk::ImageLayout),
     ) -> Option<vk::DescriptorSet> {
         bound(pass).next()?;
-        let set = self.sets.get_mut(slot as usize * self.rows + row)?;
+        let set = *self.sets.get(slot as usize * self.rows + row)?;
         let mut images = [vk::DescriptorImageInfo::default(); MAX_BINDINGS];
         let mut buffers = [vk::DescriptorBufferInfo::default(); MAX_BINDINGS];
-        let mut wanted = set.written;
         for u in &pass.uses {
             let Some(binding) = u.binding.map(|b| b as usize) else { continue };
-            let (object, layout) = look_up(u);
-            wanted[binding] = match object {
-                Object::Image { view, .. } => {
+            match look_up(u) {
+                (Object::Image { view, .. }, layout) => {
                     images[binding] =
                         vk::DescriptorImageInfo::default().image_view(view).image_layout(layout);
-                    (view.as_raw(), layout)
                 }
-                Object::Buffer(buffer) => {
+                (Object::Buffer(buffer), _) => {
                     buffers[binding] =
                         vk::DescriptorBufferInfo::default().buffer(buffer).range(vk::WHOLE_SIZE);
-                    (buffer.as_raw(), vk::ImageLayout::UNDEFINED)
                 }
-                Object::None => (0, vk::ImageLayout::UNDEFINED),
-            };
-        }
-        if wanted != set.written {
-            let mut writes = [vk::WriteDescriptorSet::default(); MAX_BINDINGS];
-            let mut count = 0;
-            for (binding, kind) in bound(pass) {
-                let at = binding as usize;
-                let write = vk::WriteDescriptorSet::default()
-                    .dst_set(set.set)
-                    .dst_binding(binding)
-                    .descriptor_type(kind);
-                writes[count] = if kind == vk::DescriptorType::STORAGE_BUFFER {
-                    write.buffer_info(std::slice::from_ref(&buffers[at]))
-                } else {
-                    write.image_info(std::slice::from_ref(&images[at]))
-                };
-                count += 1;
+                (Object::None, _) => {}
             }
-            // SAFETY: Host::borrow's promise: the slot's earlier commands are done, so no command
-            // uses this set; views and buffers are alive.
-            unsafe { host.device.update_descriptor_sets(&writes[..count], &[]) };
-            set.written = wanted;
         }
-        Some(set.set)
+        let mut writes = [vk::WriteDescriptorSet::default(); MAX_BINDINGS];
+        let mut count = 0;
+        for (binding, kind) in bound(pass) {
+            let at = binding as usize;
+            let write = vk::WriteDescriptorSet::default()
+                .dst_set(set)
+                .dst_binding(binding)
+                .descriptor_type(kind);
+            writes[count] = if kind == vk::DescriptorType::STORAGE_BUFFER {
+                write.buffer_info(std::slice::from_ref(&buffers[at]))
+            } else {
+                write.image_info(std::slice::from_ref(&images[at]))
+            };
+            count += 1;
+        }
+        // SAFETY: Host::borrow's promise: the slot's earlier commands are done, so no command uses
+        // this set; views and buffers are alive.
+        unsafe { host.device.update_descriptor_sets(&writes[..count], &[]) };
+        Some(set)
     }
 
     /// Destroys the sets; no command may use them any more.

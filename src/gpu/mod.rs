@@ -17,6 +17,7 @@ pub use host::{Host, Requirements};
 pub use memory::{Allocator, MemoryBlock, MemoryRequest};
 pub(crate) use node_objects::NodeObjects;
 pub use node_objects::Retired;
+pub use record::HostDraw;
 
 #[cfg(feature = "headless")]
 pub mod headless;

@@ -5,11 +5,11 @@ use super::host::Host;
 use super::memory::Allocator;
 use super::objects::{Object, Objects};
 use super::pipeline::RowPipeline;
-use super::record::Recorder;
+use super::record::{HostDraw, Recorder};
 use super::timing::Timing;
 use crate::Error;
 use crate::frame::{Description, FramePlan};
-use crate::graph::{Graph, ResourceId, Shape};
+use crate::graph::{Graph, Pass, ResourceId, Shape, Work};
 use ash::vk;
 use std::ffi::CString;
 
@@ -71,9 +71,32 @@ impl NodeObjects {
         }
     }
 
-    /// The shape that a resource was made with.
-    pub fn shape(&self, id: ResourceId) -> Shape {
-        self.shapes[id.index()]
+    /// Whether everything but images and buffers can stay for `graph`, which has the same rows: no
+    /// target of a raster has another shape.
+    pub fn keeps_pipelines(&self, graph: &Graph) -> bool {
+        let rasters = graph.passes().iter().filter(|p| matches!(p.work, Work::Raster { .. }));
+        rasters.flat_map(Pass::writes).all(|id| !self.changed(graph, id))
+    }
+
+    fn changed(&self, graph: &Graph, id: ResourceId) -> bool {
+        self.shapes[id.index()] != graph.resource(id).shape
+    }
+
+    /// Makes images and buffers anew whose shape is another in `graph`, and gives back the old ones;
+    /// nothing is changed where that fails.
+    pub fn resize(
+        &mut self,
+        host: &Host,
+        allocator: &mut dyn Allocator,
+        graph: &Graph,
+        inspect: bool,
+    ) -> Result<Objects, Error> {
+        let changed: Vec<_> =
+            (0..self.shapes.len()).map(|i| self.changed(graph, graph.id(i))).collect();
+        let changed = |id: ResourceId| changed[id.index()];
+        let old = self.objects.remake(host, allocator, graph, changed, inspect)?;
+        self.shapes = graph.resources().iter().map(|r| r.shape).collect();
+        Ok(old)
     }
 
     /// The image behind a resource; null handles for what is no image.
@@ -85,17 +108,30 @@ impl NodeObjects {
     }
 
     /// Records a plan whose rows are the ones these objects were made for.
-    pub fn record(&mut self, host: &Host, cmd: vk::CommandBuffer, plan: &FramePlan) {
+    pub fn record(
+        &mut self,
+        host: &Host,
+        cmd: vk::CommandBuffer,
+        plan: &FramePlan,
+        draw: &mut dyn FnMut(&HostDraw),
+    ) {
         Recorder {
             host,
             objects: &self.objects,
             rows: &self.rows,
             labels: &self.labels,
-            descriptors: &mut self.descriptors,
+            descriptors: &self.descriptors,
             timing: self.timing.as_mut(),
+            draw,
             cmd,
         }
         .record(plan);
+    }
+
+    /// The render pass of a row and the size of its target; none for rows that draw nothing.
+    pub fn render_pass(&self, row: usize) -> Option<(vk::RenderPass, vk::Extent2D)> {
+        let row = self.rows.get(row).filter(|r| r.render_pass != vk::RenderPass::null())?;
+        Some((row.render_pass, row.extent))
     }
 
     /// Row and milliseconds of what a slot recorded last.
@@ -139,16 +175,28 @@ fn label(name: &str) -> CString {
 #[must_use = "destroy it once the frames recorded before are done, or its memory is lost"]
 pub struct Retired {
     host: Host,
-    objects: NodeObjects,
+    parts: Parts,
+}
+
+enum Parts {
+    Everything(NodeObjects),
+    Sized(Objects),
 }
 
 impl Retired {
-    pub(crate) fn new(host: Host, objects: NodeObjects) -> Self {
-        Self { host, objects }
+    pub(crate) fn everything(host: Host, objects: NodeObjects) -> Self {
+        Self { host, parts: Parts::Everything(objects) }
+    }
+
+    pub(crate) fn sized(host: Host, objects: Objects) -> Self {
+        Self { host, parts: Parts::Sized(objects) }
     }
 
     /// Destroys it; the device must be done with every frame recorded before the replacement.
     pub fn destroy(self, allocator: &mut dyn Allocator) {
-        self.objects.destroy(&self.host, allocator);
+        match self.parts {
+            Parts::Everything(objects) => objects.destroy(&self.host, allocator),
+            Parts::Sized(objects) => objects.destroy(&self.host, allocator),
+        }
     }
 }

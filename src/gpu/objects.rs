@@ -62,7 +62,7 @@ impl Objects {
         let resource = graph.resource(id);
         let touched = graph.uses_of(id).next().is_some();
         let mut owned = Owned { object: Object::None, block: None, name: resource.name, bytes: 0 };
-        if resource.owner == Owner::Imported || !touched {
+        if matches!(resource.owner, Owner::Imported | Owner::Lent) || !touched {
             return Ok(owned);
         }
         let result = match resource.shape {
@@ -76,6 +76,33 @@ impl Objects {
                 Err(e)
             }
         }
+    }
+
+    /// Makes anew what has another shape in `graph`, and gives back what it replaced; nothing is
+    /// changed where that fails.
+    pub fn remake(
+        &mut self,
+        host: &Host,
+        allocator: &mut dyn Allocator,
+        graph: &Graph,
+        changed: impl Fn(ResourceId) -> bool,
+        inspect: bool,
+    ) -> Result<Self, Error> {
+        let mut made = Self(Vec::new());
+        let places: Vec<_> = (0..self.0.len()).filter(|&i| changed(graph.id(i))).collect();
+        for &index in &places {
+            match Self::make(host, allocator, graph, index, inspect) {
+                Ok(owned) => made.0.push(owned),
+                Err(e) => {
+                    made.destroy(host, allocator);
+                    return Err(e);
+                }
+            }
+        }
+        for (&index, new) in places.iter().zip(&mut made.0) {
+            std::mem::swap(&mut self.0[index], new);
+        }
+        Ok(made)
     }
 
     /// The object of a resource.

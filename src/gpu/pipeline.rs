@@ -76,7 +76,7 @@ impl RowPipeline {
 
         let (stages, push_bytes) = match pass.work {
             Work::Dispatch { .. } => (vk::ShaderStageFlags::COMPUTE, pass.push.bytes().len()),
-            Work::Raster { draw: Draw::Meshes(_), .. } => {
+            Work::Raster { draw: Draw::Layer(_), .. } => {
                 (vk::ShaderStageFlags::VERTEX, size_of::<DepthPush>())
             }
             Work::Raster { .. } => (
@@ -184,7 +184,7 @@ impl RowPipeline {
         let variants: Vec<(Option<u32>, vk::CullModeFlags, vk::FrontFace)> = match draw {
             Draw::Indirect { .. } => vec![(None, cull, vk::FrontFace::COUNTER_CLOCKWISE)],
             // In the order of `variant`.
-            Draw::Meshes(_) => strides
+            Draw::Layer(_) => strides
                 .iter()
                 .flat_map(|&s| {
                     [

@@ -7,13 +7,29 @@ use super::host::Host;
 use super::objects::{Object, Objects, whole};
 use super::pipeline::{RowPipeline, variant};
 use super::timing::Timing;
-use crate::frame::{FramePlan, MeshDraw};
-use crate::graph::{self, Draw, Pass, ResourceBarrier, ResourceId, Target, Use, Work};
+use crate::frame::{Faces, FramePlan, Geometry, MeshBuffers, MeshDraw};
+use crate::graph::{self, Draw, Layer, Pass, ResourceBarrier, ResourceId, Target, Use, Work};
 use ash::vk;
 use std::ffi::CString;
 
 /// Barriers recorded by one call; longer lists take several.
 const BATCH: usize = 16;
+
+/// A mesh that the host draws with a pipeline of its own, inside a pass of the node's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HostDraw {
+    /// The command buffer, inside the layer's render pass. The callback binds what it needs and
+    /// draws; it neither ends the render pass nor leaves queries open.
+    pub cmd: vk::CommandBuffer,
+    /// The number that [`Geometry::HostDrawn`] gave the mesh.
+    pub mesh: u64,
+    /// Which layer is drawn.
+    pub layer: Layer,
+    /// Mesh space to the layer's clip space, by column.
+    pub clip_from_mesh: [f32; 16],
+    /// Which way round fronts are wound in that clip space, as for the node's own draws.
+    pub faces: Faces,
+}
 
 /// What recording needs of a node.
 pub(crate) struct Recorder<'a> {
@@ -21,8 +37,9 @@ pub(crate) struct Recorder<'a> {
     pub objects: &'a Objects,
     pub rows: &'a [RowPipeline],
     pub labels: &'a [CString],
-    pub descriptors: &'a mut Descriptors,
+    pub descriptors: &'a Descriptors,
     pub timing: Option<&'a mut Timing>,
+    pub draw: &'a mut dyn FnMut(&HostDraw),
     pub cmd: vk::CommandBuffer,
 }
 
@@ -76,8 +93,13 @@ impl Recorder<'_> {
             Work::Raster { target, draw, .. } => {
                 self.begin_render_pass(row, target);
                 match draw {
-                    Draw::Meshes(list) => {
-                        frame.meshes(list).iter().for_each(|draw| self.mesh(row, draw));
+                    Draw::Layer(layer) => {
+                        for draw in frame.meshes(layer.meshes()) {
+                            match &draw.mesh.geometry {
+                                Geometry::Buffers(buffers) => self.mesh(row, draw, buffers),
+                                &Geometry::HostDrawn(mesh) => self.host_mesh(layer, draw, mesh),
+                            }
+                        }
                     }
                     Draw::Indirect { arguments } => self.indirect(row, arguments),
                 }
@@ -106,8 +128,18 @@ impl Recorder<'_> {
         }
     }
 
-    fn mesh(&self, row: &RowPipeline, draw: &MeshDraw) {
-        let (device, cmd, mesh) = (&self.host.device, self.cmd, &draw.mesh);
+    fn host_mesh(&mut self, layer: Layer, draw: &MeshDraw, mesh: u64) {
+        (self.draw)(&HostDraw {
+            cmd: self.cmd,
+            mesh,
+            layer,
+            clip_from_mesh: draw.clip_from_mesh,
+            faces: draw.faces,
+        });
+    }
+
+    fn mesh(&self, row: &RowPipeline, draw: &MeshDraw, mesh: &MeshBuffers) {
+        let (device, cmd) = (&self.host.device, self.cmd);
         let matrix: &[u8] = bytemuck::cast_slice(&draw.clip_from_mesh);
         let pipeline = row.pipelines[variant(draw.stride, draw.faces)];
         // SAFETY: inside the row's render pass, with a pipeline made for it.

@@ -2,6 +2,16 @@
 
 use ash::vk;
 
+/// The access bits that write.
+pub(super) const WRITES: vk::AccessFlags = vk::AccessFlags::from_raw(
+    vk::AccessFlags::SHADER_WRITE.as_raw()
+        | vk::AccessFlags::COLOR_ATTACHMENT_WRITE.as_raw()
+        | vk::AccessFlags::DEPTH_STENCIL_ATTACHMENT_WRITE.as_raw()
+        | vk::AccessFlags::TRANSFER_WRITE.as_raw()
+        | vk::AccessFlags::HOST_WRITE.as_raw()
+        | vk::AccessFlags::MEMORY_WRITE.as_raw(),
+);
+
 /// One way of touching a resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Access {
@@ -34,6 +44,77 @@ pub struct Scope {
     pub access: vk::AccessFlags,
     /// The layout for images; `UNDEFINED` for buffers.
     pub layout: vk::ImageLayout,
+}
+
+/// The uses that hosts have most; others are written out.
+impl Scope {
+    const fn of(
+        stage: vk::PipelineStageFlags,
+        access: vk::AccessFlags,
+        layout: vk::ImageLayout,
+    ) -> Self {
+        Self { stage, access, layout }
+    }
+
+    /// Never used: a new image, whose content is undefined.
+    pub const UNUSED: Self = Self::of(
+        vk::PipelineStageFlags::TOP_OF_PIPE,
+        vk::AccessFlags::empty(),
+        vk::ImageLayout::UNDEFINED,
+    );
+    /// A depth attachment that was drawn to.
+    pub const DEPTH_DRAWN: Self = Self::of(
+        vk::PipelineStageFlags::LATE_FRAGMENT_TESTS,
+        vk::AccessFlags::DEPTH_STENCIL_ATTACHMENT_WRITE,
+        vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
+    );
+    /// A color attachment that was drawn to.
+    pub const COLOR_DRAWN: Self = Self::of(
+        vk::PipelineStageFlags::COLOR_ATTACHMENT_OUTPUT,
+        vk::AccessFlags::COLOR_ATTACHMENT_WRITE,
+        vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
+    );
+    /// Sampled or fetched by fragment shaders.
+    pub const FRAGMENT_SAMPLED: Self = Self::of(
+        vk::PipelineStageFlags::FRAGMENT_SHADER,
+        vk::AccessFlags::SHADER_READ,
+        vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
+    );
+    /// Sampled or fetched by compute shaders.
+    pub const COMPUTE_SAMPLED: Self = Self::of(
+        vk::PipelineStageFlags::COMPUTE_SHADER,
+        vk::AccessFlags::SHADER_READ,
+        vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
+    );
+    /// A storage image that compute shaders wrote.
+    pub const COMPUTE_WRITTEN: Self = Self::of(
+        vk::PipelineStageFlags::COMPUTE_SHADER,
+        vk::AccessFlags::SHADER_WRITE,
+        vk::ImageLayout::GENERAL,
+    );
+    /// The source of a copy.
+    pub const COPIED_FROM: Self = Self::of(
+        vk::PipelineStageFlags::TRANSFER,
+        vk::AccessFlags::TRANSFER_READ,
+        vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
+    );
+
+    /// Whether any of its accesses writes.
+    pub fn writes(&self) -> bool {
+        self.access.intersects(WRITES)
+    }
+
+    /// The same use in another layout.
+    #[must_use]
+    pub const fn in_layout(self, layout: vk::ImageLayout) -> Self {
+        Self { layout, ..self }
+    }
+
+    /// The same use of content that is not wanted any more, in whatever layout it is.
+    #[must_use]
+    pub const fn forgotten(self) -> Self {
+        self.in_layout(vk::ImageLayout::UNDEFINED)
+    }
 }
 
 impl Access {

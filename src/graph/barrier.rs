@@ -13,7 +13,7 @@
 //!
 //! and any change of layout needs a barrier whatever the use.
 
-use super::access::Scope;
+use super::access::{Scope, WRITES};
 use ash::vk;
 
 /// One dependency for one resource.
@@ -32,16 +32,6 @@ pub struct Barrier {
     /// The image's layout after; as before where nothing changes.
     pub new_layout: vk::ImageLayout,
 }
-
-/// The access bits that write.
-const WRITES: vk::AccessFlags = vk::AccessFlags::from_raw(
-    vk::AccessFlags::SHADER_WRITE.as_raw()
-        | vk::AccessFlags::COLOR_ATTACHMENT_WRITE.as_raw()
-        | vk::AccessFlags::DEPTH_STENCIL_ATTACHMENT_WRITE.as_raw()
-        | vk::AccessFlags::TRANSFER_WRITE.as_raw()
-        | vk::AccessFlags::HOST_WRITE.as_raw()
-        | vk::AccessFlags::MEMORY_WRITE.as_raw(),
-);
 
 /// What has happened to a resource so far.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

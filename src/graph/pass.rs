@@ -73,13 +73,34 @@ pub enum Target {
 /// What is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Draw {
-    /// The frame's meshes that this list holds, positions at location 0, one matrix pushed each.
-    Meshes(MeshList),
+    /// The meshes of a depth layer, positions at location 0, one matrix pushed each.
+    Layer(Layer),
     /// Vertices without a vertex buffer, their count read from a `VkDrawIndirectCommand`.
     Indirect {
         /// The buffer that holds the command, at offset 0.
         arguments: ResourceId,
     },
+}
+
+/// A depth layer that meshes are drawn into.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Layer {
+    /// Occluders' nearest faces.
+    Front,
+    /// Occluders' furthest back faces.
+    Back,
+    /// Receivers' nearest faces.
+    Receivers,
+}
+
+impl Layer {
+    /// The meshes that it shows.
+    pub fn meshes(self) -> MeshList {
+        match self {
+            Self::Front | Self::Back => MeshList::Occluders,
+            Self::Receivers => MeshList::Receivers,
+        }
+    }
 }
 
 /// Which of the frame's meshes a draw takes.

@@ -25,7 +25,8 @@ pub struct BoundaryUse {
     /// Stages and accesses of the node's first use (of all its uses, where it only reads), and the
     /// layout it must be in by then.
     pub entry: Scope,
-    /// Stages and accesses of the node's last uses, and the layout it is left in.
+    /// Who touched it last behind the node's commands, and the layout it is left in: the node's own
+    /// last uses, or, where the node places the barriers at the border, what it was handed over to.
     pub exit: Scope,
     /// Whether the node writes it.
     pub writes: bool,
@@ -89,7 +90,7 @@ pub fn compile(graph: Graph, borders: &[Border], place_borders: bool) -> Result<
         let touched = kept.iter().any(|&p| graph.passes()[p].uses.iter().any(|u| u.resource == id));
         states.push(match resource.owner {
             Owner::Transient => State::forgotten(everything(&graph, id)),
-            Owner::Imported | Owner::Exported => {
+            Owner::Imported | Owner::Exported | Owner::Lent => {
                 let border = borders.iter().find(|b| b.resource == id);
                 match border {
                     Some(border) => State::left_in(border.before),
@@ -139,7 +140,7 @@ pub fn compile(graph: Graph, borders: &[Border], place_borders: bool) -> Result<
                 if !place_borders {
                     // The host's own barrier has made it ready for exactly this.
                     states[u.resource.index()] = State::left_in(entry);
-                } else if resource.owner == Owner::Exported {
+                } else if resource.owner.is_result() {
                     // Written whole: what it held may be forgotten, in whatever layout.
                     let before = border.map_or(scope, |b| b.before);
                     states[u.resource.index()] = State::forgotten(before);
@@ -165,8 +166,12 @@ pub fn compile(graph: Graph, borders: &[Border], place_borders: bool) -> Result<
     if place_borders {
         // What no row of this frame touches is handed over too: its next user counts on it.
         for &Border { resource, after, .. } in borders {
-            let barrier = states[resource.index()].touch(after, writes(after.access));
+            let state = &mut states[resource.index()];
+            let barrier = state.touch(after, after.writes());
             handover.extend(barrier.map(|barrier| ResourceBarrier { resource, barrier }));
+            if let Some(b) = boundary.iter_mut().find(|b| b.resource == resource) {
+                b.exit = after.in_layout(state.layout());
+            }
         }
     }
     Ok(Plan { graph, steps, handover, skipped, boundary })
@@ -176,8 +181,7 @@ pub fn compile(graph: Graph, borders: &[Border], place_borders: bool) -> Result<
 fn select(graph: &Graph) -> Result<(Vec<usize>, Vec<Skipped>), Error> {
     let mut written: Vec<bool> =
         graph.resources().iter().map(|r| r.owner == Owner::Imported).collect();
-    let mut wanted: Vec<bool> =
-        graph.resources().iter().map(|r| r.owner == Owner::Exported).collect();
+    let mut wanted: Vec<bool> = graph.resources().iter().map(|r| r.owner.is_result()).collect();
     let mut skipped = Vec::new();
     let mut candidates = Vec::new();
     for (index, pass) in graph.passes().iter().enumerate() {
@@ -259,16 +263,6 @@ fn is_fetchable(layout: vk::ImageLayout) -> bool {
             | vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL
             | vk::ImageLayout::DEPTH_READ_ONLY_STENCIL_ATTACHMENT_OPTIMAL
             | vk::ImageLayout::DEPTH_ATTACHMENT_STENCIL_READ_ONLY_OPTIMAL
-    )
-}
-
-fn writes(access: vk::AccessFlags) -> bool {
-    access.intersects(
-        vk::AccessFlags::SHADER_WRITE
-            | vk::AccessFlags::COLOR_ATTACHMENT_WRITE
-            | vk::AccessFlags::DEPTH_STENCIL_ATTACHMENT_WRITE
-            | vk::AccessFlags::TRANSFER_WRITE
-            | vk::AccessFlags::MEMORY_WRITE,
     )
 }
 

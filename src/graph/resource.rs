@@ -22,6 +22,15 @@ pub enum Owner {
     Imported,
     /// The node's; read by the host after the frame's last pass.
     Exported,
+    /// The host's; written whole by the node, read by the host after the frame's last pass.
+    Lent,
+}
+
+impl Owner {
+    /// Whether the host reads it behind the node.
+    pub fn is_result(self) -> bool {
+        matches!(self, Self::Exported | Self::Lent)
+    }
 }
 
 /// The shape of a resource's memory.

@@ -66,8 +66,8 @@ impl Plan {
 fn work_of(graph: &Graph, work: &Work) -> String {
     match work {
         Work::Dispatch { groups: [x, y, z], .. } => format!("dispatch {x}×{y}×{z}"),
-        Work::Raster { draw: super::Draw::Meshes(list), .. } => {
-            format!("draw {list:?}").to_lowercase()
+        Work::Raster { draw: super::Draw::Layer(layer), .. } => {
+            format!("draw {:?}", layer.meshes()).to_lowercase()
         }
         Work::Raster { draw: super::Draw::Indirect { arguments }, .. } => {
             format!("draw by {}", graph.resource(*arguments).name)

@@ -4,6 +4,7 @@
 //! (feature `gltf`, `from_gltf`) or from the generators in [`generate`]; a host with its own
 //! scene needs none of this.
 
+use crate::depth_layers::MeshBounds;
 use crate::{Error, RectangleLight};
 use glam::{DMat3, DMat4, DVec3};
 use std::fmt;
@@ -90,6 +91,16 @@ pub struct Mesh {
     pub indices: Vec<u32>,
     /// Both sides of each triangle are front faces.
     pub double_sided: bool,
+}
+
+impl Mesh {
+    /// The box around its positions, least and largest corner; inverted where there are none.
+    pub fn bounds(&self) -> MeshBounds {
+        let extreme = |pick: fn(f32, f32) -> f32, start: f32| {
+            self.positions.iter().fold([start; 3], |m, p| [0, 1, 2].map(|i| pick(m[i], p[i])))
+        };
+        [extreme(f32::min, f32::INFINITY), extreme(f32::max, f32::NEG_INFINITY)]
+    }
 }
 
 /// A mesh placed in the world.

@@ -34,6 +34,8 @@ pub struct Inputs<'a> {
     pub gbuffer: &'a GBuffer,
     /// 2^−(sub-pixel bits): how far the device's rasters move a vertex, in texels.
     pub snap: f32,
+    /// How far off the w of an occluder may be beyond its rounding, 1/m.
+    pub depth_error: f64,
     /// Whether anything can be shadowed.
     pub need: &'a Need,
 }
@@ -372,6 +374,7 @@ fn gather_pixels(
             w_max: (1.0 / occluders.near) as f32,
             spread: spread_of(settings.tolerance),
             snap: inputs.snap,
+            depth_error: inputs.depth_error as f32,
             row: nodes.superblock_row as i32,
             flags: i32::from(gbuffer.mask.is_some()) | two << 1,
         }),

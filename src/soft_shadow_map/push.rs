@@ -74,6 +74,8 @@ pub struct GatherPixels {
     pub row: i32,
     /// Bit 0: the mask is there; bit 1: two sides.
     pub flags: i32,
+    /// How far off an occluder's w may be beyond its rounding, 1/m.
+    pub depth_error: f32,
 }
 
 /// `patch_count.comp`

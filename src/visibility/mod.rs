@@ -71,9 +71,10 @@ pub struct Resolve<'a> {
     pub maps: [ResourceId; 2],
 }
 
-/// Declares the exported visibility image.
-pub fn declare(graph: &mut Graph, extent: [u32; 2]) -> ResourceId {
-    graph.image("visibility", FORMAT, extent, Owner::Exported)
+/// Declares the visibility image: the node's own, or `lent` by the host.
+pub fn declare(graph: &mut Graph, extent: [u32; 2], lent: bool) -> ResourceId {
+    let owner = if lent { Owner::Lent } else { Owner::Exported };
+    graph.image("visibility", FORMAT, extent, owner)
 }
 
 fn grid(extent: [u32; 2]) -> [u32; 3] {

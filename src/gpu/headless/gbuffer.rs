@@ -28,6 +28,11 @@ pub struct GBuffer {
     pub mask: OwnedImage,
 }
 
+/// Lends an image, and takes it back to be copied out in the layout that it is kept in.
+fn lend(image: &OwnedImage, before: Scope) -> HostImage {
+    image.lend(before, Scope::COPIED_FROM.in_layout(before.layout))
+}
+
 impl GBuffer {
     /// Images of a size, not yet painted.
     ///
@@ -47,31 +52,12 @@ impl GBuffer {
 
     /// The depth image as the node takes it, left by the G-buffer's render pass.
     pub fn depth_for_node(&self) -> HostImage {
-        let before = Scope {
-            stage: vk::PipelineStageFlags::LATE_FRAGMENT_TESTS,
-            access: vk::AccessFlags::DEPTH_STENCIL_ATTACHMENT_WRITE,
-            layout: DEPTH_LAYOUT,
-        };
-        self.lend(&self.depth, before)
+        lend(&self.depth, Scope::DEPTH_DRAWN.in_layout(DEPTH_LAYOUT))
     }
 
     /// The mask as the node takes it.
     pub fn mask_for_node(&self) -> HostImage {
-        let before = Scope {
-            stage: vk::PipelineStageFlags::COLOR_ATTACHMENT_OUTPUT,
-            access: vk::AccessFlags::COLOR_ATTACHMENT_WRITE,
-            layout: COLOR_LAYOUT,
-        };
-        self.lend(&self.mask, before)
-    }
-
-    fn lend(&self, image: &OwnedImage, before: Scope) -> HostImage {
-        let after = Scope {
-            stage: vk::PipelineStageFlags::TRANSFER,
-            access: vk::AccessFlags::TRANSFER_READ,
-            layout: before.layout,
-        };
-        HostImage { image: image.raw(), view: image.view(), before, after }
+        lend(&self.mask, Scope::COLOR_DRAWN.in_layout(COLOR_LAYOUT))
     }
 
     /// Reads world positions, row by row.

@@ -2,7 +2,8 @@
 
 use super::buffer::{allocate, free};
 use super::{HeadlessDevice, HostBuffer};
-use crate::Error;
+use crate::graph::Scope;
+use crate::{Error, HostImage};
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::Allocation;
@@ -23,6 +24,7 @@ pub struct ImageSource {
 pub struct OwnedImage {
     device: HeadlessDevice,
     source: ImageSource,
+    usage: vk::ImageUsageFlags,
     view: vk::ImageView,
     /// `None` only until `new` is done and while it is dropped.
     allocation: Option<Allocation>,
@@ -65,6 +67,7 @@ impl OwnedImage {
         let mut new = Self {
             device: device.clone(),
             source: ImageSource { image, format, extent },
+            usage: info.usage,
             view: vk::ImageView::null(),
             allocation: None,
         };
@@ -106,6 +109,12 @@ impl OwnedImage {
     /// Width and height in texels.
     pub fn extent(&self) -> [u32; 2] {
         self.source.extent
+    }
+
+    /// The image as the node takes it.
+    pub fn lend(&self, before: Scope, after: Scope) -> HostImage {
+        let ImageSource { image, format, extent } = self.source;
+        HostImage { image, view: self.view, format, extent, usage: self.usage, before, after }
     }
 
     /// Image, format and extent together.

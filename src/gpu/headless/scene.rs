@@ -1,22 +1,23 @@
 //! A scene's meshes in buffers.
 
 use super::{HeadlessDevice, HostBuffer};
+use crate::depth_layers::MeshBounds;
 use crate::scene::Scene;
-use crate::{Error, MeshInstance};
+use crate::{Error, Geometry, MeshBuffers, MeshInstance};
 use ash::vk;
 
 /// The buffers of one mesh.
-struct MeshBuffers {
+struct OwnedMesh {
     positions: HostBuffer,
     normals: HostBuffer,
     indices: HostBuffer,
     count: u32,
-    bounds: [[f32; 3]; 2],
+    bounds: MeshBounds,
 }
 
 /// A scene as the device sees it.
 pub struct SceneBuffers {
-    meshes: Vec<Option<MeshBuffers>>,
+    meshes: Vec<Option<OwnedMesh>>,
 }
 
 impl SceneBuffers {
@@ -30,17 +31,10 @@ impl SceneBuffers {
             if mesh.indices.len() < 3 {
                 return Ok(None);
             }
-            let mut bounds = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
-            for p in &mesh.positions {
-                for axis in 0..3 {
-                    bounds[0][axis] = bounds[0][axis].min(p[axis]);
-                    bounds[1][axis] = bounds[1][axis].max(p[axis]);
-                }
-            }
             let vertices = |name, data| {
                 HostBuffer::with_data::<[f32; 3]>(device, name, data, Usage::VERTEX_BUFFER)
             };
-            Ok(Some(MeshBuffers {
+            Ok(Some(OwnedMesh {
                 positions: vertices("positions", &mesh.positions)?,
                 normals: vertices("normals", &mesh.normals)?,
                 indices: HostBuffer::with_data(
@@ -50,7 +44,7 @@ impl SceneBuffers {
                     Usage::INDEX_BUFFER,
                 )?,
                 count: mesh.indices.len() as u32,
-                bounds,
+                bounds: mesh.bounds(),
             }))
         };
         let meshes = scene.meshes.iter().map(upload).collect::<Result<_, Error>>()?;
@@ -62,11 +56,13 @@ impl SceneBuffers {
         let instance = |i: &crate::scene::Instance| {
             let mesh = self.meshes.get(i.mesh)?.as_ref()?;
             Some(MeshInstance {
-                positions: mesh.positions.raw(),
-                positions_offset: 0,
-                positions_stride: 12,
-                indices: Some((mesh.indices.raw(), 0, vk::IndexType::UINT32)),
-                count: mesh.count,
+                geometry: Geometry::Buffers(MeshBuffers {
+                    positions: mesh.positions.raw(),
+                    positions_offset: 0,
+                    positions_stride: 12,
+                    indices: Some((mesh.indices.raw(), 0, vk::IndexType::UINT32)),
+                    count: mesh.count,
+                }),
                 world_from_mesh: i.world_from_mesh,
                 bounds: mesh.bounds,
                 role: i.role,

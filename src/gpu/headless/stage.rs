@@ -5,10 +5,9 @@ use super::{GBuffer, GBufferPainter, HeadlessDevice, ImageSource, SceneBuffers, 
 use crate::graph::Scope;
 use crate::scene::{Instance, Scene};
 use crate::{
-    BorderBarriers, Description, Error, Frame, FramePlan, Host, MeshInstance, RectangleLight,
-    Settings, ShadowNode, visibility,
+    Description, Error, Frame, FramePlan, Host, MeshInstance, RectangleLight, Settings, ShadowNode,
+    Visibility, visibility,
 };
-use ash::vk;
 use std::sync::PoisonError;
 use std::time::{Duration, Instant};
 
@@ -37,11 +36,7 @@ pub struct Stage {
 }
 
 /// The layout that the visibility image is handed back in.
-const RESULT: Scope = Scope {
-    stage: vk::PipelineStageFlags::TRANSFER,
-    access: vk::AccessFlags::TRANSFER_READ,
-    layout: vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
-};
+const RESULT: Scope = Scope::COPIED_FROM;
 
 impl Stage {
     /// Uploads the scene, paints the G-buffer with the instances that `keep` accepts, and makes the
@@ -126,18 +121,13 @@ impl Stage {
         light: &RectangleLight,
         window: Option<[[f64; 2]; 2]>,
     ) -> Result<FramePlan, Error> {
+        let world_from_ndc = self.view.clip_from_world.inverse();
+        let depth = self.gbuffer.depth_for_node();
         let frame = Frame {
-            light: *light,
-            world_from_ndc: self.view.clip_from_world.inverse(),
-            background: 0.0,
-            meshes: &self.instances,
-            depth: self.gbuffer.depth_for_node(),
             mask: Some(self.gbuffer.mask_for_node()),
-            visibility_before: RESULT,
-            visibility_after: RESULT,
+            visibility: Visibility::Own { before: RESULT, after: RESULT },
             window,
-            slot: 0,
-            border_barriers: BorderBarriers::Node,
+            ..Frame::new(*light, world_from_ndc, &self.instances, depth)
         };
         let node =
             self.node.as_ref().ok_or_else(|| Error::Frame("the stage has no node".into()))?;

@@ -1,0 +1,164 @@
+//! What a frame's numbers and images must be, each refusal a sentence in the host's words.
+
+use super::{Description, Frame, HostImage, Visibility};
+use crate::graph::is_depth_format;
+use crate::soft_shadow_map::Sides;
+use crate::{Error, visibility};
+use ash::vk::{self, ImageLayout as Layout, ImageUsageFlags as Usage};
+
+fn bad<T>(what: impl Into<String>) -> Result<T, Error> {
+    Err(Error::Frame(what.into()))
+}
+
+/// What one of the host's images must be.
+struct Wanted {
+    name: &'static str,
+    format: vk::Format,
+    extent: [u32; 2],
+    usage: Usage,
+    /// Its content is read.
+    read: bool,
+}
+
+impl Frame<'_> {
+    pub(super) fn check(&self, description: &Description) -> Result<(), Error> {
+        if self.slot >= description.frames_in_flight {
+            return bad(format!(
+                "frame slot {} does not exist; the description has {} frames in flight",
+                self.slot, description.frames_in_flight
+            ));
+        }
+        if !self.world_from_ndc.is_finite() || self.world_from_ndc.determinant() == 0.0 {
+            return bad("world_from_ndc must be finite and invertible");
+        }
+        if let Some([min, max]) = self.window {
+            let good = (0..2).all(|i| min[i].is_finite() && max[i].is_finite() && min[i] < max[i]);
+            if !good {
+                return bad("the occluder map's window must have finite tangents, least first");
+            }
+        }
+        for (index, mesh) in self.meshes.iter().enumerate() {
+            let bounds = mesh.bounds.iter().flatten();
+            if !mesh.world_from_mesh.is_finite() || bounds.into_iter().any(|b| !b.is_finite()) {
+                return bad(format!(
+                    "mesh {index}: its transform and bounds must be finite numbers"
+                ));
+            }
+        }
+        self.check_images(description)
+    }
+
+    fn check_images(&self, description: &Description) -> Result<(), Error> {
+        let Description { extent, depth_format, mask_format, .. } = *description;
+        let read = |name, format, extent| Wanted {
+            name,
+            format,
+            extent,
+            usage: Usage::SAMPLED,
+            read: true,
+        };
+        check_image(&self.depth, &read("gbuffer.depth", depth_format, extent))?;
+        match (&self.mask, mask_format) {
+            (Some(mask), Some(format)) => check_image(mask, &read("gbuffer.mask", format, extent))?,
+            (None, None) => {}
+            _ => {
+                return bad("a mask must be given each frame exactly where the description has one");
+            }
+        }
+        let written = Wanted {
+            name: "visibility",
+            format: visibility::FORMAT,
+            extent,
+            usage: Usage::STORAGE,
+            read: false,
+        };
+        match (&self.visibility, description.lent_visibility) {
+            (Visibility::Lent(image), true) => check_image(image, &written)?,
+            (Visibility::Own { .. }, false) => {}
+            _ => {
+                return bad(
+                    "a visibility image must be lent each frame exactly where the description says \
+                     lent_visibility",
+                );
+            }
+        }
+        let (maps, format) = match (&self.occluder_maps, description.occluder_maps) {
+            (Some(maps), Some(format)) => (maps, format),
+            (None, None) => return Ok(()),
+            _ => {
+                return bad(
+                    "occluder maps must be lent each frame exactly where the description has a \
+                     format for them",
+                );
+            }
+        };
+        if self.window.is_some() {
+            return bad("the occluder maps have a window of their own; give no other");
+        }
+        let settings = &description.settings.soft_shadow_map;
+        let sides = [settings.map; 2];
+        check_image(&maps.front, &read("occluder_maps.front", format, sides))?;
+        match &maps.back {
+            Some(back) => check_image(back, &read("occluder_maps.back", format, sides)),
+            None if settings.sides == Sides::One => Ok(()),
+            None => bad("occluder_maps.back is missing; lend it, or set sides=one"),
+        }
+    }
+}
+
+fn check_image(image: &HostImage, wanted: &Wanted) -> Result<(), Error> {
+    let Wanted { name, format, extent: [w, h], usage, read } = *wanted;
+    if image.image == vk::Image::null() || image.view == vk::ImageView::null() {
+        return bad(format!("{name}: its image or view is a null handle"));
+    }
+    if image.extent != [w, h] {
+        let [iw, ih] = image.extent;
+        return bad(format!(
+            "{name} is {iw}×{ih}, where this node is made for {w}×{h}; resize the node, or lend an \
+             image of its size"
+        ));
+    }
+    if image.format != format {
+        return bad(format!(
+            "{name} has the format {:?}, where {format:?} was described",
+            image.format
+        ));
+    }
+    if !image.usage.contains(usage) {
+        return bad(format!(
+            "{name} was created without {usage:?} usage ({:?}), which the node needs of it",
+            image.usage
+        ));
+    }
+    let before = image.before.layout;
+    if read && matches!(before, Layout::UNDEFINED | Layout::PREINITIALIZED) {
+        return bad(format!(
+            "{name}: nothing is in an image whose layout before the node is {before:?}; say which \
+             layout the host's last pass leaves it in"
+        ));
+    }
+    for layout in [before, image.after.layout] {
+        if let Some(other) = foreign(layout, is_depth_format(format)) {
+            return bad(format!("{name}: {layout:?} is a layout of {other}, which it is not"));
+        }
+    }
+    Ok(())
+}
+
+/// What kind of image a layout is for, where that is another than this one.
+fn foreign(layout: Layout, depth: bool) -> Option<&'static str> {
+    match layout {
+        Layout::COLOR_ATTACHMENT_OPTIMAL if depth => Some("color attachments"),
+        Layout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL
+        | Layout::DEPTH_STENCIL_READ_ONLY_OPTIMAL
+        | Layout::DEPTH_ATTACHMENT_OPTIMAL
+        | Layout::DEPTH_READ_ONLY_OPTIMAL
+        | Layout::DEPTH_READ_ONLY_STENCIL_ATTACHMENT_OPTIMAL
+        | Layout::DEPTH_ATTACHMENT_STENCIL_READ_ONLY_OPTIMAL
+            if !depth =>
+        {
+            Some("depth images")
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,118 @@
+//! What the host lends for a frame: images, meshes, ready-made occluder maps.
+
+use crate::depth_layers::MeshBounds;
+use crate::graph::Scope;
+use crate::scene::Role;
+use ash::vk;
+use glam::DMat4;
+
+/// One of the host's images, how it was left and how it is wanted back.
+///
+/// Format, extent and usage are what the image was created with; [`ShadowNode::plan`] holds them
+/// against what the node needs, because Vulkan does not tell them of a handle.
+///
+/// [`ShadowNode::plan`]: crate::ShadowNode::plan
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HostImage {
+    /// The image: one sample, and the view's mip level and array layer its only ones.
+    pub image: vk::Image,
+    /// A 2D view of it, of the depth aspect for depth.
+    pub view: vk::ImageView,
+    /// The format of image and view.
+    pub format: vk::Format,
+    /// Width and height in texels.
+    pub extent: [u32; 2],
+    /// What the image was created for.
+    pub usage: vk::ImageUsageFlags,
+    /// Stage, access and layout of the host's last use before the node. A host that places the
+    /// barriers itself says here in which layout the node will find an image that it reads.
+    pub before: Scope,
+    /// Stage, access and layout of the host's first use after it; `UNDEFINED` leaves the layout.
+    pub after: Scope,
+}
+
+/// Whose image the result is written to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Visibility {
+    /// The node's own, [`ShadowNode::visibility`](crate::ShadowNode::visibility).
+    Own {
+        /// The host's last use of it.
+        before: Scope,
+        /// The host's first use of what this frame writes.
+        after: Scope,
+    },
+    /// The host's: R32_SFLOAT, as large as the G-buffer, with STORAGE usage. Every pixel of it is
+    /// written, so what it held need not be kept.
+    Lent(HostImage),
+}
+
+/// A mesh's triangles in buffers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MeshBuffers {
+    /// Positions: three 32-bit floats each, in a buffer with `VERTEX_BUFFER` usage.
+    pub positions: vk::Buffer,
+    /// Where the first position is, in bytes.
+    pub positions_offset: u64,
+    /// Bytes from one position to the next; one of
+    /// [`Description::position_strides`](super::Description::position_strides).
+    pub positions_stride: u32,
+    /// Indices: buffer, offset in bytes, type; none for a list of triangles without.
+    pub indices: Option<(vk::Buffer, u64, vk::IndexType)>,
+    /// How many indices, or vertices where there are none.
+    pub count: u32,
+}
+
+/// How a mesh's triangles come into the depth layers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Geometry {
+    /// The node draws them.
+    Buffers(MeshBuffers),
+    /// The host draws them with a pipeline of its own (skinned, displaced, generated), when
+    /// [`ShadowNode::record_with`](crate::ShadowNode::record_with) asks for this number.
+    HostDrawn(u64),
+}
+
+/// A mesh as the host keeps it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeshInstance {
+    /// Its triangles.
+    pub geometry: Geometry,
+    /// Mesh space to world space.
+    pub world_from_mesh: DMat4,
+    /// A box around the positions, in mesh space; what reaches beyond it may cast nothing.
+    pub bounds: MeshBounds,
+    /// Occluder, receiver or both.
+    pub role: Role,
+    /// Both sides of each triangle are front faces.
+    pub double_sided: bool,
+}
+
+/// Depth images of the occluders that the host drew itself, from the light.
+///
+/// Their camera is a perspective that stands at the light's centre, looks along its emission and has
+/// its x and y along the light's half-axes, either way round. Depth may be standard or reversed, the
+/// far plane finite or infinite: window and distances are worked out from the matrix. The images are
+/// square, [`map`](crate::soft_shadow_map::Settings::map) texels a side, of the format that
+/// [`Description::occluder_maps`](super::Description::occluder_maps) says, cleared to the far plane.
+///
+/// Leave out what lies behind everything, such as a ground: as an occluder it only costs accuracy.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OccluderMaps {
+    /// The nearest faces, of either orientation.
+    pub front: HostImage,
+    /// The furthest back faces: front faces culled, the furthest kept, cleared to the near plane.
+    /// Needed unless `sides` is `one`.
+    pub back: Option<HostImage>,
+    /// World space to the clip space of both.
+    pub clip_from_world: DMat4,
+}
+
+/// Who places the barriers at the node's border.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BorderBarriers {
+    /// The node, from what the host says of its images.
+    #[default]
+    Node,
+    /// The host, from [`FramePlan::accesses`](super::FramePlan::accesses).
+    Host,
+}
