@@ -45,6 +45,15 @@ pub enum Error {
         /// The driver's answer.
         result: ash::vk::Result,
     },
+    /// The device is gone, and with it everything made from it.
+    #[error(
+        "the device was lost while {doing}; destroy the node with all else that is the device's, \
+         and start anew with another"
+    )]
+    DeviceLost {
+        /// What was being done when that showed.
+        doing: String,
+    },
     /// Memory that could not be had.
     #[error("no memory for {resource} ({bytes} bytes): {problem}")]
     Memory {
@@ -64,6 +73,9 @@ impl Error {
     /// Wraps a Vulkan result code; `doing` reads as in "creating the pipeline of {pass}".
     pub(crate) fn vulkan(doing: impl Into<String>) -> impl FnOnce(ash::vk::Result) -> Self {
         let doing = doing.into();
-        move |result| Self::Vulkan { doing, result }
+        move |result| match result {
+            ash::vk::Result::ERROR_DEVICE_LOST => Self::DeviceLost { doing },
+            result => Self::Vulkan { doing, result },
+        }
     }
 }

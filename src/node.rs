@@ -76,8 +76,8 @@ impl ShadowNode {
     ///
     /// # Errors
     /// [`Error::Device`] with every gap of the device; [`Error::Setting`] or [`Error::Frame`] for a
-    /// description that cannot work; [`Error::Vulkan`] or [`Error::Memory`] where the driver or the
-    /// allocator refuses. Nothing is left behind.
+    /// description that cannot work; [`Error::DeviceLost`], [`Error::Vulkan`] or [`Error::Memory`]
+    /// where the driver or the allocator refuses. Nothing is left behind.
     pub fn new(
         host: Host,
         allocator: &mut dyn Allocator,
@@ -210,7 +210,8 @@ impl ShadowNode {
     }
 
     /// Name and milliseconds of each pass that `slot` recorded last; none until the host knows that
-    /// its commands are done, or where the queue family has no timestamps. Never waits.
+    /// its commands are done, where the queue family has no timestamps, or when the device is lost.
+    /// Never waits.
     pub fn timings(&self, slot: u32) -> Option<Vec<(&'static str, f64)>> {
         let rows = self.objects.timings(&self.host, slot)?;
         Some(rows.into_iter().map(|(row, ms)| (self.rows[row], ms)).collect())

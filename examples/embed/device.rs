@@ -1,6 +1,7 @@
 //! The engine's device: Vulkan 1.1, one queue, one allocator, no extension of the device.
 
 use crate::Outcome;
+use antumbra::frame::ImageBarrier;
 use ash::{Entry, ext, vk};
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use std::ffi::{CStr, c_void};
@@ -86,8 +87,22 @@ impl Gpu {
         Ok(unsafe { self.device.create_shader_module(&create, None) }?)
     }
 
-    /// Destroys the device; all that came from it must be gone.
-    pub fn destroy(self) {
+    /// Records a barrier that a plan asks for.
+    pub fn place(&self, cmd: vk::CommandBuffer, barrier: &ImageBarrier) {
+        let (before, after) = (barrier.before.stage, barrier.after.stage);
+        let none = vk::DependencyFlags::empty();
+        let barrier = [barrier.vk()];
+        // SAFETY: `cmd` is recording outside a render pass; the image is in the layout that the plan
+        // was told.
+        unsafe {
+            self.device.cmd_pipeline_barrier(cmd, before, after, none, &[], &[], &barrier);
+        }
+    }
+
+    /// Destroys the device, from which everything must be gone, and says how many bytes of its memory
+    /// nobody gave back.
+    pub fn destroy(self) -> u64 {
+        let lost = self.allocator.generate_report().total_allocated_bytes;
         // The allocator gives its memory back first.
         drop(self.allocator);
         // SAFETY: the caller waited for the device and destroyed everything made from it.
@@ -99,6 +114,7 @@ impl Gpu {
             }
             self.instance.destroy_instance(None);
         }
+        lost
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::Outcome;
 use crate::device::Gpu;
-use crate::resources::{Buffer, Image};
+use crate::resources::Buffer;
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 use std::time::Duration;
@@ -29,6 +29,11 @@ struct Slot {
     done: vk::Fence,
     pixels: Option<Buffer>,
     running: Option<FrameNotes>,
+}
+
+/// Bytes of an image of a size, 4 a pixel.
+fn bytes_of([width, height]: [u32; 2]) -> usize {
+    width as usize * height as usize * 4
 }
 
 /// The frames in flight.
@@ -69,20 +74,24 @@ impl Frames {
         Ok(Some(notes))
     }
 
-    /// The picture of the frame that [`Self::wait`] gave back last for this slot.
-    pub fn pixels(&self, slot: usize) -> Outcome<&[u8]> {
-        self.0[slot].pixels.as_ref().ok_or("the slot has no picture yet")?.read()
+    /// A copy of the frame that [`Self::wait`] gave back last for this slot: the picture first.
+    pub fn copy(&self, slot: usize, notes: &FrameNotes, number: usize) -> Outcome<&[u8]> {
+        let all = self.0[slot].pixels.as_ref().ok_or("the slot has no picture yet")?.read()?;
+        let bytes = bytes_of(notes.extent);
+        Ok(&all[number * bytes..(number + 1) * bytes])
     }
 
-    /// Begins a command buffer for pictures of a size; the slot must have been waited for.
+    /// Begins a command buffer for `copies` images of a size to be copied out; the slot must have
+    /// been waited for.
     pub fn begin(
         &mut self,
         gpu: &mut Gpu,
         slot: usize,
         extent: [u32; 2],
+        copies: usize,
     ) -> Outcome<vk::CommandBuffer> {
         let slot = &mut self.0[slot];
-        let bytes = extent.iter().map(|&e| e as usize).product::<usize>() * 4;
+        let bytes = bytes_of(extent) * copies;
         let fits = slot.pixels.as_ref().is_some_and(|b| b.read().is_ok_and(|p| p.len() >= bytes));
         if !fits {
             if let Some(old) = slot.pixels.take() {
@@ -102,24 +111,27 @@ impl Frames {
         Ok(slot.cmd)
     }
 
-    /// Copies the picture out for the processor and submits; nothing waits.
+    /// Copies images out for the processor, 4 bytes a pixel, and submits; nothing waits.
     pub fn submit(
         &mut self,
         gpu: &Gpu,
         slot: usize,
-        picture: &Image,
+        images: &[(vk::Image, vk::ImageAspectFlags)],
         notes: FrameNotes,
     ) -> Outcome<()> {
         let slot = &mut self.0[slot];
         let pixels = slot.pixels.as_ref().ok_or("the slot was not begun")?;
-        let [width, height] = picture.extent;
-        let copy = [vk::BufferImageCopy::default()
-            .image_subresource(vk::ImageSubresourceLayers {
-                aspect_mask: vk::ImageAspectFlags::COLOR,
-                layer_count: 1,
-                ..Default::default()
-            })
-            .image_extent(vk::Extent3D { width, height, depth: 1 })];
+        let [width, height] = notes.extent;
+        let copy = |number: usize, aspect_mask| {
+            [vk::BufferImageCopy::default()
+                .buffer_offset((number * bytes_of(notes.extent)) as u64)
+                .image_subresource(vk::ImageSubresourceLayers {
+                    aspect_mask,
+                    layer_count: 1,
+                    ..Default::default()
+                })
+                .image_extent(vk::Extent3D { width, height, depth: 1 })]
+        };
         let to_host = [vk::BufferMemoryBarrier::default()
             .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
             .dst_access_mask(vk::AccessFlags::HOST_READ)
@@ -131,11 +143,18 @@ impl Frames {
         let submit = [vk::SubmitInfo::default().command_buffers(&cmds)];
         let none = vk::DependencyFlags::empty();
         use vk::PipelineStageFlags as Stage;
-        // SAFETY: the picture is in the layout to be copied from and the buffer holds all of it;
-        // the fence is not signalled; this is the only thread that submits.
-        unsafe {
+        for (number, &(image, aspect)) in images.iter().enumerate() {
             let layout = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
-            gpu.device.cmd_copy_image_to_buffer(slot.cmd, picture.raw, layout, pixels.raw, &copy);
+            let copy = copy(number, aspect);
+            // SAFETY: the images are in the layout to be copied from and the buffer holds all of
+            // them.
+            unsafe {
+                gpu.device.cmd_copy_image_to_buffer(slot.cmd, image, layout, pixels.raw, &copy);
+            }
+        }
+        // SAFETY: `cmd` is recording; the fence is not signalled; this is the only thread that
+        // submits.
+        unsafe {
             gpu.device.cmd_pipeline_barrier(
                 slot.cmd,
                 Stage::TRANSFER,

@@ -10,28 +10,38 @@ use crate::device::Gpu;
 use crate::geometry::{Model, STRIDE};
 use crate::resources::{COLOR_DRAWN, DEPTH_DRAWN, Image};
 use ash::vk;
-use glam::{DMat3, DMat4};
+use glam::DMat4;
 
 pub const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 pub const MASK: vk::Format = vk::Format::R8_UNORM;
 const ALBEDO: vk::Format = vk::Format::R8G8B8A8_UNORM;
 const NORMAL: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 
+/// Who reads the push constants.
+const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
+    vk::ShaderStageFlags::VERTEX.as_raw() | vk::ShaderStageFlags::FRAGMENT.as_raw(),
+);
+
 /// `gbuffer.vert` and `gbuffer.frag`
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct Push {
-    clip_from_mesh: [f32; 16],
+pub struct Push {
+    pub clip_from_mesh: [f32; 16],
     /// Three columns, 16 bytes apart.
-    world_from_normal: [[f32; 4]; 3],
-    albedo_role: [u8; 4],
+    pub world_from_normal: [[f32; 4]; 3],
+    pub albedo_role: [u8; 4],
+    /// How far a jelly swells, in metres, and where it is in its swing.
+    pub swell: f32,
+    pub phase: f32,
+    pub unused: f32,
 }
 
 /// What is the same at any size.
 pub struct GBufferPass {
     render_pass: vk::RenderPass,
     layout: vk::PipelineLayout,
-    pipeline: vk::Pipeline,
+    /// Fronts counter-clockwise, fronts clockwise (a mirrored mesh), both sides.
+    pipelines: [vk::Pipeline; 3],
 }
 
 /// The images of one size.
@@ -46,23 +56,23 @@ pub struct GBuffer {
 impl GBufferPass {
     pub fn new(gpu: &Gpu) -> Outcome<Self> {
         let render_pass = make_render_pass(gpu)?;
-        let ranges = [vk::PushConstantRange {
-            stage_flags: vk::ShaderStageFlags::VERTEX | vk::ShaderStageFlags::FRAGMENT,
-            offset: 0,
-            size: size_of::<Push>() as u32,
-        }];
-        let create = vk::PipelineLayoutCreateInfo::default().push_constant_ranges(&ranges);
-        // SAFETY: the device lives; every device has 128 bytes of push constants.
-        let layout = unsafe { gpu.device.create_pipeline_layout(&create, None) }?;
+        let layout = make_layout(gpu)?;
         let vertex = gpu.shader(include_bytes!("shaders/gbuffer.vert.spv"))?;
         let fragment = gpu.shader(include_bytes!("shaders/gbuffer.frag.spv"))?;
-        let pipeline = make_pipeline(gpu, render_pass, layout, vertex, fragment)?;
+        let make =
+            |cull, front| make_pipeline(gpu, render_pass, layout, [vertex, fragment], cull, front);
+        use vk::{CullModeFlags as Cull, FrontFace as Front};
+        let pipelines = [
+            make(Cull::BACK, Front::COUNTER_CLOCKWISE)?,
+            make(Cull::BACK, Front::CLOCKWISE)?,
+            make(Cull::NONE, Front::COUNTER_CLOCKWISE)?,
+        ];
         // SAFETY: a pipeline does not need its modules once it is made.
         unsafe {
             gpu.device.destroy_shader_module(vertex, None);
             gpu.device.destroy_shader_module(fragment, None);
         }
-        Ok(Self { render_pass, layout, pipeline })
+        Ok(Self { render_pass, layout, pipelines })
     }
 
     /// Images for pictures of a size.
@@ -70,7 +80,7 @@ impl GBufferPass {
         use vk::ImageUsageFlags as Usage;
         let color = Usage::COLOR_ATTACHMENT | Usage::SAMPLED;
         // The node samples depth and mask, so both say SAMPLED.
-        let depth = Usage::DEPTH_STENCIL_ATTACHMENT | Usage::SAMPLED;
+        let depth = Usage::DEPTH_STENCIL_ATTACHMENT | Usage::SAMPLED | Usage::TRANSFER_SRC;
         let depth = Image::new(gpu, "depth", DEPTH, extent, depth)?;
         let albedo = Image::new(gpu, "albedo", ALBEDO, extent, color)?;
         let normal = Image::new(gpu, "normal", NORMAL, extent, color)?;
@@ -117,29 +127,26 @@ impl GBufferPass {
         // one.
         unsafe {
             device.cmd_begin_render_pass(cmd, &begin, vk::SubpassContents::INLINE);
-            device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::GRAPHICS, self.pipeline);
             device.cmd_set_viewport(cmd, 0, &[viewport]);
             device.cmd_set_scissor(cmd, 0, &[area]);
         }
         for model in models {
             let world_from_mesh = model.world_from_mesh(seconds);
-            // Objects here are turned and moved, not scaled: normals turn with them.
-            let turn = DMat3::from_mat4(world_from_mesh).as_mat3();
-            let push = Push {
-                clip_from_mesh: (*clip_from_world * world_from_mesh).as_mat4().to_cols_array(),
-                world_from_normal: [turn.x_axis, turn.y_axis, turn.z_axis]
-                    .map(|c| c.extend(0.0).to_array()),
-                albedo_role: model.albedo_role,
-            };
-            let stages = vk::ShaderStageFlags::VERTEX | vk::ShaderStageFlags::FRAGMENT;
-            // SAFETY: inside the render pass; the model's buffers outlive the frame, and its
-            // indices are within its vertices.
-            unsafe {
-                device.cmd_push_constants(cmd, self.layout, stages, 0, bytemuck::bytes_of(&push));
-                device.cmd_bind_vertex_buffers(cmd, 0, &[model.vertices.raw], &[0]);
-                device.cmd_bind_index_buffer(cmd, model.indices.raw, 0, vk::IndexType::UINT32);
-                device.cmd_draw_indexed(cmd, model.count, 1, 0, 0, 0);
-            }
+            let clip_from_mesh = (*clip_from_world * world_from_mesh).as_mat4().to_cols_array();
+            let mirrored = world_from_mesh.determinant() < 0.0;
+            let pipeline = self.pipelines[match (model.double_sided, mirrored) {
+                (true, _) => 2,
+                (false, mirrored) => usize::from(mirrored),
+            }];
+            // SAFETY: inside the render pass that the pipeline was made for.
+            unsafe { device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::GRAPHICS, pipeline) };
+            draw_model(
+                gpu,
+                cmd,
+                self.layout,
+                model,
+                &Push { clip_from_mesh, ..model.push(seconds) },
+            );
         }
         // SAFETY: the render pass was begun above.
         unsafe { device.cmd_end_render_pass(cmd) };
@@ -149,7 +156,7 @@ impl GBufferPass {
     pub fn destroy(self, gpu: &Gpu) {
         // SAFETY: the caller waited for every frame that uses it.
         unsafe {
-            gpu.device.destroy_pipeline(self.pipeline, None);
+            self.pipelines.iter().for_each(|&p| gpu.device.destroy_pipeline(p, None));
             gpu.device.destroy_pipeline_layout(self.layout, None);
             gpu.device.destroy_render_pass(self.render_pass, None);
         }
@@ -165,6 +172,51 @@ impl GBuffer {
             image.destroy(gpu);
         }
     }
+}
+
+/// Draws a model with the bound pipeline; viewport, scissor and render pass are the caller's.
+pub fn draw_model(
+    gpu: &Gpu,
+    cmd: vk::CommandBuffer,
+    layout: vk::PipelineLayout,
+    model: &Model,
+    push: &Push,
+) {
+    let device = &gpu.device;
+    // SAFETY: inside a render pass with a pipeline of this layout bound; the model's buffers outlive
+    // the frame, and its indices are within its vertices.
+    unsafe {
+        device.cmd_push_constants(cmd, layout, STAGES, 0, bytemuck::bytes_of(push));
+        device.cmd_bind_vertex_buffers(cmd, 0, &[model.vertices.raw], &[0]);
+        device.cmd_bind_index_buffer(cmd, model.indices.raw, 0, vk::IndexType::UINT32);
+        device.cmd_draw_indexed(cmd, model.count, 1, 0, 0, 0);
+    }
+}
+
+/// The layout of everything that draws models.
+pub fn make_layout(gpu: &Gpu) -> Outcome<vk::PipelineLayout> {
+    let ranges =
+        [vk::PushConstantRange { stage_flags: STAGES, offset: 0, size: size_of::<Push>() as u32 }];
+    let create = vk::PipelineLayoutCreateInfo::default().push_constant_ranges(&ranges);
+    // SAFETY: the device lives; every device has 128 bytes of push constants.
+    Ok(unsafe { gpu.device.create_pipeline_layout(&create, None) }?)
+}
+
+/// Positions and normals, as the vertex shader takes them.
+pub fn vertex_input()
+-> ([vk::VertexInputBindingDescription; 1], [vk::VertexInputAttributeDescription; 2]) {
+    let binding = vk::VertexInputBindingDescription {
+        binding: 0,
+        stride: STRIDE,
+        input_rate: vk::VertexInputRate::VERTEX,
+    };
+    let attributes = [0, 1].map(|location| vk::VertexInputAttributeDescription {
+        location,
+        binding: 0,
+        format: vk::Format::R32G32B32_SFLOAT,
+        offset: location * 12,
+    });
+    ([binding], attributes)
 }
 
 fn make_render_pass(gpu: &Gpu) -> Outcome<vk::RenderPass> {
@@ -216,8 +268,9 @@ fn make_pipeline(
     gpu: &Gpu,
     render_pass: vk::RenderPass,
     layout: vk::PipelineLayout,
-    vertex: vk::ShaderModule,
-    fragment: vk::ShaderModule,
+    [vertex, fragment]: [vk::ShaderModule; 2],
+    cull: vk::CullModeFlags,
+    front: vk::FrontFace,
 ) -> Outcome<vk::Pipeline> {
     let stage = |stage, module| {
         vk::PipelineShaderStageCreateInfo::default().stage(stage).module(module).name(c"main")
@@ -226,17 +279,7 @@ fn make_pipeline(
         stage(vk::ShaderStageFlags::VERTEX, vertex),
         stage(vk::ShaderStageFlags::FRAGMENT, fragment),
     ];
-    let bindings = [vk::VertexInputBindingDescription {
-        binding: 0,
-        stride: STRIDE,
-        input_rate: vk::VertexInputRate::VERTEX,
-    }];
-    let attributes = [0, 1].map(|location| vk::VertexInputAttributeDescription {
-        location,
-        binding: 0,
-        format: vk::Format::R32G32B32_SFLOAT,
-        offset: location * 12,
-    });
+    let (bindings, attributes) = vertex_input();
     let input = vk::PipelineVertexInputStateCreateInfo::default()
         .vertex_binding_descriptions(&bindings)
         .vertex_attribute_descriptions(&attributes);
@@ -245,8 +288,8 @@ fn make_pipeline(
     let viewport =
         vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
     let raster = vk::PipelineRasterizationStateCreateInfo::default()
-        .cull_mode(vk::CullModeFlags::BACK)
-        .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
+        .cull_mode(cull)
+        .front_face(front)
         .line_width(1.0);
     let samples = vk::PipelineMultisampleStateCreateInfo::default()
         .rasterization_samples(vk::SampleCountFlags::TYPE_1);

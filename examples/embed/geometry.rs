@@ -2,11 +2,13 @@
 
 use crate::Outcome;
 use crate::device::Gpu;
+use crate::gbuffer::Push;
 use crate::resources::Buffer;
 use crate::world::Object;
-use antumbra::MeshInstance;
+use antumbra::depth_layers::MeshBounds;
+use antumbra::{Geometry, MeshBuffers, MeshInstance};
 use ash::vk;
-use glam::DMat4;
+use glam::{DMat3, DMat4};
 
 /// One vertex: what the G-buffer's pipeline reads. The node reads the positions alone, by stride.
 #[repr(C)]
@@ -26,9 +28,9 @@ pub struct Model {
     pub count: u32,
     /// Red, green, blue and the role, as the mask stores it.
     pub albedo_role: [u8; 4],
-    /// Least and largest corner of the mesh.
-    bounds: [[f32; 3]; 2],
-    double_sided: bool,
+    pub double_sided: bool,
+    /// Least and largest corner of the mesh, the jelly's swing included.
+    bounds: MeshBounds,
     object: Object,
 }
 
@@ -42,9 +44,8 @@ impl Model {
             .zip(&mesh.normals)
             .map(|(&position, &normal)| Vertex { position, normal })
             .collect();
-        let extreme = |pick: fn(f32, f32) -> f32, start: f32| {
-            mesh.positions.iter().fold([start; 3], |m, p| [0, 1, 2].map(|i| pick(m[i], p[i])))
-        };
+        let swell = object.jelly.unwrap_or(0.0);
+        let [least, largest] = mesh.bounds();
         let role = object.role.mask();
         let [r, g, b] = object.albedo;
         use vk::BufferUsageFlags as Usage;
@@ -53,7 +54,7 @@ impl Model {
             indices: Buffer::with(gpu, "indices", &mesh.indices, Usage::INDEX_BUFFER)?,
             count: mesh.indices.len() as u32,
             albedo_role: [r, g, b, role],
-            bounds: [extreme(f32::min, f32::INFINITY), extreme(f32::max, f32::NEG_INFINITY)],
+            bounds: [least.map(|x| x - swell), largest.map(|x| x + swell)],
             double_sided: mesh.double_sided,
             object,
         })
@@ -64,14 +65,35 @@ impl Model {
         self.object.world_from_mesh(seconds)
     }
 
-    /// The same buffers as the node takes them.
-    pub fn for_node(&self, seconds: f64) -> MeshInstance {
-        MeshInstance {
+    /// Its push constants but for the camera's.
+    pub fn push(&self, seconds: f64) -> Push {
+        let normals = DMat3::from_mat4(self.world_from_mesh(seconds)).inverse().transpose();
+        let columns = [normals.x_axis, normals.y_axis, normals.z_axis];
+        Push {
+            clip_from_mesh: [0.0; 16],
+            world_from_normal: columns.map(|c| c.as_vec3().extend(0.0).to_array()),
+            albedo_role: self.albedo_role,
+            swell: self.object.jelly.unwrap_or(0.0),
+            phase: (seconds * 8.0) as f32,
+            unused: 0.0,
+        }
+    }
+
+    /// The same triangles as the node takes them: its buffers, or, for a jelly, the number under which
+    /// it is asked for.
+    pub fn for_node(&self, number: u64, seconds: f64) -> MeshInstance {
+        let buffers = MeshBuffers {
             positions: self.vertices.raw,
             positions_offset: 0,
             positions_stride: STRIDE,
             indices: Some((self.indices.raw, 0, vk::IndexType::UINT32)),
             count: self.count,
+        };
+        MeshInstance {
+            geometry: match self.object.jelly {
+                Some(_) => Geometry::HostDrawn(number),
+                None => Geometry::Buffers(buffers),
+            },
             world_from_mesh: self.world_from_mesh(seconds),
             bounds: self.bounds,
             role: self.object.role,

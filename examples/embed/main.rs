@@ -3,30 +3,32 @@
 //! `cargo run --release --example embed -- --out out/embed`
 //!
 //! No window: twelve frames of a light that goes round, resized half way, a few of them written as
-//! PNG. This file is the story, in order; the other files are the engine around it, in raw ash, and
-//! would be there without shadows too:
+//! PNG. This file is the engine's story, in order; `shadows` is all that it does for its soft shadows;
+//! the rest is an engine in raw ash, and would be there without shadows too:
 //!
 //! ```text
 //!   device     instance, device, queue, allocator      world      objects, light, camera
 //!   resources  images, buffers, barriers               geometry   vertex and index buffers
-//!   gbuffer    draws depth, albedo, normal, mask       frames     two frames in flight
-//!   compose    visibility × unshadowed irradiance      border     --host-barriers
+//!   gbuffer    draws depth, albedo, normal, mask       jelly      a mesh that moves in its shader
+//!   compose    visibility × unshadowed irradiance      frames     two frames in flight
 //! ```
 
 #![allow(unsafe_code, reason = "an engine calls Vulkan")]
 
-mod border;
 mod compose;
 mod device;
+mod files;
 mod frames;
 mod gbuffer;
 mod geometry;
+mod jelly;
+#[cfg(test)]
+mod refusals;
 mod resources;
+mod shadows;
 mod world;
 
-use antumbra::{
-    BorderBarriers, Description, Frame, Host, HostImage, Requirements, Retired, ShadowNode,
-};
+use antumbra::{BorderBarriers, Retired};
 use ash::vk;
 use clap::Parser;
 use compose::ComposePass;
@@ -34,11 +36,12 @@ use device::Gpu;
 use frames::{FRAMES_IN_FLIGHT, FrameNotes, Frames};
 use gbuffer::{GBuffer, GBufferPass};
 use geometry::Model;
-use resources::{COLOR_DRAWN, COMPOSE_READS, COMPOSE_WRITES, COPY_READS, DEPTH_DRAWN, Image};
-use resources::{barrier, forget};
+use resources::{COLOR_DRAWN, COMPOSE_READS, COMPOSE_WRITES, COPY_READS, Image, barrier};
+use shadows::{Seen, Shadows};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
+use world::World;
 
 /// What goes wrong in an example is told and ends it.
 type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
@@ -47,18 +50,34 @@ type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
 #[derive(Parser)]
 #[command(name = "embed")]
 struct Options {
-    /// The folder for the pictures; made where it does not exist
+    /// A glTF scene with an area light, instead of the world that this example brings
+    #[arg(long, value_name = "FILE")]
+    scene: Option<PathBuf>,
+    /// The folder for the pictures, and visibility.exr and depth.exr of the last frame
     #[arg(long, value_name = "DIR", default_value = "out/embed")]
     out: PathBuf,
+    /// Width and height
+    #[arg(long, value_name = "WxH", default_value = "640x480", value_parser = parse_size)]
+    size: [u32; 2],
     /// How many frames
     #[arg(long, value_name = "N", default_value_t = 12)]
     frames: u64,
+    /// How many times everything is resized on the way; with more than one, the last is back to --size
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    resizes: u64,
     /// Place the barriers at the node's border here, from what its plan says
     #[arg(long)]
     host_barriers: bool,
     /// Run under the validation layer with synchronization checks; any message fails the run
     #[arg(long)]
     validate: bool,
+}
+
+fn parse_size(text: &str) -> Result<[u32; 2], String> {
+    let parsed = text.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
+    parsed
+        .filter(|s| s.iter().all(|&e| (1..=16384).contains(&e)))
+        .ok_or_else(|| "write width and height as in 640x480, each 1 to 16384".into())
 }
 
 /// Everything of the window's size, had there been a window.
@@ -92,67 +111,49 @@ fn run(options: &Options) -> Outcome<()> {
     std::fs::create_dir_all(&options.out)?;
 
     // ---- Set up -----------------------------------------------------------------------------
-    // The engine first: it would look like this without shadows too.
+    let mut world = match &options.scene {
+        Some(path) => World::from_file(path, options.size)?,
+        None => World::built_in(),
+    };
     let mut gpu = Gpu::new(options.validate)?;
     let gbuffer_pass = GBufferPass::new(&gpu)?;
     let compose_pass = ComposePass::new(&gpu)?;
     let mut frames = Frames::new(&gpu)?;
-    let models = world::objects()
+    let models = std::mem::take(&mut world.objects)
         .into_iter()
         .map(|object| Model::new(&mut gpu, object))
         .collect::<Outcome<Vec<_>>>()?;
-    let mut extent = [640, 480];
+    let mut extent = options.size;
     let mut targets = make_targets(&gbuffer_pass, &mut gpu, extent)?;
-
-    // Lend the device. The node never creates or submits anything behind the engine's back.
-    // SAFETY: the handles belong together and live until `gpu.destroy` below, behind the node; what
-    // each frame lends is alive, in the said state, until the frame's fence is signalled; a slot is
-    // recorded, and replaced objects are destroyed, only behind that fence.
-    let mut host = unsafe {
-        Host::borrow(
-            gpu.instance.clone(),
-            gpu.physical_device,
-            gpu.device.clone(),
-            gpu.queue_family,
-        )
-    }
-    .with_pipeline_cache(gpu.pipeline_cache);
-    if let Some(debug_utils) = &gpu.debug_utils {
-        host = host.with_debug_utils(debug_utils.clone());
-    }
-    // One sentence with everything that is missing; on a device of Vulkan 1.1, nothing is.
-    Requirements::of(&host).met()?;
-
-    // The node. Its memory comes from the engine's allocator.
-    let description = Description {
-        frames_in_flight: FRAMES_IN_FLIGHT as u32,
-        depth_format: gbuffer::DEPTH,
-        mask_format: Some(gbuffer::MASK),
-        position_strides: vec![geometry::STRIDE],
-        ..Description::new(extent)
-    };
-    let mut node = ShadowNode::new(host.clone(), &mut gpu.allocator, description)?;
+    let border_barriers =
+        if options.host_barriers { BorderBarriers::Host } else { BorderBarriers::Node };
+    let mut shadows = Shadows::new(&mut gpu, extent, border_barriers)?;
 
     println!("{}", gpu.name);
     println!("frame  size      plan µs  record µs  passes  GPU ms  node MB");
     let mut replaced: Vec<Replaced> = Vec::new();
+    let mut resizes = 0;
     for number in 0..options.frames {
         // ---- Wait for the slot --------------------------------------------------------------
         // The frame before last had it; what that one was the last to use can go.
         let slot = (number % FRAMES_IN_FLIGHT as u64) as usize;
         if let Some(done) = frames.wait(&gpu, slot)? {
-            tell(options, &node, &frames, slot, &done)?;
+            tell(options, &shadows, &frames, slot, &done)?;
             destroy_replaced(&mut replaced, &mut gpu, done.number);
         }
 
         // ---- Resize -------------------------------------------------------------------------
         // The frame before this one may still run on the old images: they wait until it is done.
-        if number > 0 && number == options.frames / 2 {
-            extent = [800, 600];
+        while number > 0 && resizes < resizes_due(options, number) {
+            resizes += 1;
+            extent = size_after(options, resizes);
             let new = make_targets(&gbuffer_pass, &mut gpu, extent)?;
             let started = Instant::now();
-            let retired = node.resize(&mut gpu.allocator, extent)?;
-            println!("resize to 800×600: {:.1} ms", started.elapsed().as_secs_f64() * 1e3);
+            let retired = shadows.resize(&mut gpu, extent)?;
+            if options.resizes < 10 {
+                let ms = started.elapsed().as_secs_f64() * 1e3;
+                println!("resize to {}×{}: {ms:.1} ms", extent[0], extent[1]);
+            }
             replaced.push(Replaced {
                 last_frame: number - 1,
                 targets: std::mem::replace(&mut targets, new),
@@ -161,65 +162,47 @@ fn run(options: &Options) -> Outcome<()> {
         }
 
         // ---- Plan ---------------------------------------------------------------------------
-        // Pure: what the node will do this frame, from what the engine says of it.
         let seconds = number as f64 / 12.0;
+        let last = number + 1 == options.frames;
         // In the last frame the light looks at the sky: the plan is one pass then.
-        let light = world::light(seconds, number > 0 && number + 1 == options.frames)?;
-        let clip_from_world = world::clip_from_world(extent);
-        let world_from_ndc = clip_from_world.inverse();
-        let meshes: Vec<_> = models.iter().map(|model| model.for_node(seconds)).collect();
-        let lend = |image: &Image, before| HostImage {
-            image: image.raw,
-            view: image.view,
-            before,
-            after: COMPOSE_READS,
-        };
-        let frame = Frame {
-            light,
-            world_from_ndc,
-            background: 0.0, // reversed depth
-            meshes: &meshes,
-            depth: lend(&targets.gbuffer.depth, DEPTH_DRAWN),
-            mask: Some(lend(&targets.gbuffer.mask, COLOR_DRAWN)),
-            visibility_before: forget(COMPOSE_READS),
-            visibility_after: COMPOSE_READS,
-            window: None,
-            slot: slot as u32,
-            border_barriers: if options.host_barriers {
-                BorderBarriers::Host
-            } else {
-                BorderBarriers::Node
-            },
+        let light = world.light(seconds, number > 0 && last)?;
+        let clip_from_world = world.clip_from_world(extent);
+        let Targets { gbuffer, picture } = &targets;
+        let seen = Seen {
+            light: &light,
+            clip_from_world: &clip_from_world,
+            models: &models,
+            gbuffer,
+            seconds,
+            slot,
         };
         let started = Instant::now();
-        let plan = node.plan(&frame)?;
+        let plan = shadows.plan(&seen)?;
         let plan_time = started.elapsed();
 
         // ---- Record -------------------------------------------------------------------------
-        let cmd = frames.begin(&mut gpu, slot, extent)?;
-        let Targets { gbuffer, picture } = &targets;
+        let copies = if last { 3 } else { 1 };
+        let cmd = frames.begin(&mut gpu, slot, extent, copies)?;
         gbuffer_pass.record(&gpu, cmd, gbuffer, &models, &clip_from_world, seconds);
-
-        // The node: between the G-buffer and whoever reads visibility.
         let started = Instant::now();
-        let visibility = node.visibility();
-        if options.host_barriers {
-            border::around(&gpu, cmd, &frame, &plan, &visibility, || node.record(cmd, &plan))?;
-        } else {
-            node.record(cmd, &plan)?;
-        }
+        shadows.record(&gpu, cmd, &plan, &seen)?;
         let record_time = started.elapsed();
 
-        // Depth and visibility are ready to be fetched: the frame said so. The rest is the engine's.
-        let color = vk::ImageAspectFlags::COLOR;
+        // Depth and visibility are ready to be fetched: the plan was told so. The rest is the engine's.
         for image in [&gbuffer.albedo, &gbuffer.normal] {
-            barrier(&gpu, cmd, image.raw, color, COLOR_DRAWN, COMPOSE_READS);
+            barrier(&gpu, cmd, image, COLOR_DRAWN, COMPOSE_READS);
         }
-        barrier(&gpu, cmd, picture.raw, color, forget(COPY_READS), COMPOSE_WRITES);
-        let push = compose::Push::new(&world_from_ndc, &light, world::RADIANCE);
+        barrier(&gpu, cmd, picture, COPY_READS.forgotten(), COMPOSE_WRITES);
+        let visibility = shadows.node.visibility();
+        let push = compose::Push::new(&clip_from_world.inverse(), &light, world::RADIANCE);
         compose_pass.record(&gpu, cmd, slot, (gbuffer, &visibility), picture, &push);
-        barrier(&gpu, cmd, picture.raw, color, COMPOSE_WRITES, COPY_READS);
-
+        barrier(&gpu, cmd, picture, COMPOSE_WRITES, COPY_READS);
+        let (color, depth) = (vk::ImageAspectFlags::COLOR, vk::ImageAspectFlags::DEPTH);
+        let out = [(picture.raw, color), (visibility.image, color), (gbuffer.depth.raw, depth)];
+        for &(image, aspect) in &out[1..copies] {
+            let (before, after) = (COMPOSE_READS, COPY_READS);
+            gpu.place(cmd, &antumbra::frame::ImageBarrier { image, aspect, before, after });
+        }
         let notes = FrameNotes {
             number,
             extent,
@@ -227,7 +210,7 @@ fn run(options: &Options) -> Outcome<()> {
             record: record_time,
             passes: plan.plan.steps.len(),
         };
-        frames.submit(&gpu, slot, picture, notes)?;
+        frames.submit(&gpu, slot, &out[..copies], notes)?;
     }
 
     // ---- Tear down --------------------------------------------------------------------------
@@ -236,22 +219,40 @@ fn run(options: &Options) -> Outcome<()> {
     for number in options.frames..options.frames + FRAMES_IN_FLIGHT as u64 {
         let slot = (number % FRAMES_IN_FLIGHT as u64) as usize;
         if let Some(done) = frames.wait(&gpu, slot)? {
-            tell(options, &node, &frames, slot, &done)?;
+            tell(options, &shadows, &frames, slot, &done)?;
             destroy_replaced(&mut replaced, &mut gpu, done.number);
         }
     }
-    println!("the node in memory:");
-    for (name, bytes) in node.memory() {
+    println!("the node: {} Vulkan objects, and in memory:", shadows.node.object_count());
+    for (name, bytes) in shadows.node.memory() {
         println!("  {name:<32} {:>9.1} kB", bytes as f64 / 1e3);
     }
-    node.destroy(&mut gpu.allocator);
+    shadows.destroy(&mut gpu);
     targets.destroy(&mut gpu);
     models.into_iter().for_each(|model| model.destroy(&mut gpu));
     frames.destroy(&mut gpu);
     compose_pass.destroy(&gpu);
     gbuffer_pass.destroy(&gpu);
-    gpu.destroy();
+    match gpu.destroy() {
+        0 => println!("{resizes} resizes; all memory was given back"),
+        bytes => return Err(format!("{bytes} bytes were never given back").into()),
+    }
     Ok(())
+}
+
+/// How many resizes come before a frame: they are spread over the run.
+fn resizes_due(options: &Options, number: u64) -> u64 {
+    let steps = (options.frames - 1).max(1);
+    (options.resizes * number + steps / 2) / steps
+}
+
+/// The size behind the n-th resize.
+fn size_after(options: &Options, n: u64) -> [u32; 2] {
+    if options.resizes > 1 && n == options.resizes {
+        return options.size;
+    }
+    let factor = [1.25, 0.5, 0.8][(n - 1) as usize % 3];
+    options.size.map(|e| ((f64::from(e) * factor) as u32).max(1))
 }
 
 fn make_targets(pass: &GBufferPass, gpu: &mut Gpu, extent: [u32; 2]) -> Outcome<Targets> {
@@ -278,13 +279,13 @@ fn destroy_replaced(replaced: &mut Vec<Replaced>, gpu: &mut Gpu, done: u64) {
 /// One line about a frame that is done, and its picture where it is one of a few.
 fn tell(
     options: &Options,
-    node: &ShadowNode,
+    shadows: &Shadows,
     frames: &Frames,
     slot: usize,
     done: &FrameNotes,
 ) -> Outcome<()> {
-    let [width, height] = done.extent;
-    // None where the device has no timestamps, or the node was resized since.
+    let node = &shadows.node;
+    // None where the device has no timestamps.
     let gpu_ms = node.timings(slot as u32).map_or_else(
         || "-".into(),
         |rows| format!("{:.1}", rows.iter().map(|(_, ms)| ms).sum::<f64>()),
@@ -292,17 +293,21 @@ fn tell(
     println!(
         "{:>5}  {:<8}  {:>7.1}  {:>9.1}  {:>6}  {gpu_ms:>6}  {:>7.2}",
         done.number,
-        format!("{width}×{height}"),
+        format!("{}×{}", done.extent[0], done.extent[1]),
         done.plan.as_secs_f64() * 1e6,
         done.record.as_secs_f64() * 1e6,
         done.passes,
         node.memory().iter().map(|(_, bytes)| bytes).sum::<u64>() as f64 / 1e6,
     );
-    if done.number.is_multiple_of(3) || done.number + 1 == options.frames {
+    let last = done.number + 1 == options.frames;
+    if done.number.is_multiple_of(3) || last {
         let path = options.out.join(format!("frame_{:02}.png", done.number));
-        let bytes = width as usize * height as usize * 4;
-        let pixels = &frames.pixels(slot)?[..bytes];
-        image::save_buffer(path, pixels, width, height, image::ColorType::Rgba8)?;
+        files::png(&path, frames.copy(slot, done, 0)?, done.extent)?;
+    }
+    if last {
+        for (number, name) in [(1, "visibility.exr"), (2, "depth.exr")] {
+            files::exr(&options.out.join(name), frames.copy(slot, done, number)?, done.extent)?;
+        }
     }
     Ok(())
 }

@@ -2,71 +2,34 @@
 
 use crate::Outcome;
 use crate::device::Gpu;
+use antumbra::frame::ImageBarrier;
 use antumbra::graph::Scope;
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
-use vk::{AccessFlags as Access, ImageLayout as Layout, PipelineStageFlags as Stage};
 
 /// As the G-buffer's render pass leaves depth.
-pub const DEPTH_DRAWN: Scope = Scope {
-    stage: Stage::LATE_FRAGMENT_TESTS,
-    access: Access::DEPTH_STENCIL_ATTACHMENT_WRITE,
-    layout: Layout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
-};
-
+pub const DEPTH_DRAWN: Scope = Scope::DEPTH_DRAWN;
 /// As the G-buffer's render pass leaves colors.
-pub const COLOR_DRAWN: Scope = Scope {
-    stage: Stage::COLOR_ATTACHMENT_OUTPUT,
-    access: Access::COLOR_ATTACHMENT_WRITE,
-    layout: Layout::COLOR_ATTACHMENT_OPTIMAL,
-};
-
+pub const COLOR_DRAWN: Scope = Scope::COLOR_DRAWN;
 /// As the compose pass fetches its inputs.
-pub const COMPOSE_READS: Scope = Scope {
-    stage: Stage::COMPUTE_SHADER,
-    access: Access::SHADER_READ,
-    layout: Layout::SHADER_READ_ONLY_OPTIMAL,
-};
-
+pub const COMPOSE_READS: Scope = Scope::COMPUTE_SAMPLED;
 /// As the compose pass writes the picture.
-pub const COMPOSE_WRITES: Scope =
-    Scope { stage: Stage::COMPUTE_SHADER, access: Access::SHADER_WRITE, layout: Layout::GENERAL };
-
-/// As the picture is copied out.
-pub const COPY_READS: Scope = Scope {
-    stage: Stage::TRANSFER,
-    access: Access::TRANSFER_READ,
-    layout: Layout::TRANSFER_SRC_OPTIMAL,
-};
-
-/// The same, but what the image holds is not wanted any more, whatever its layout.
-pub const fn forget(scope: Scope) -> Scope {
-    Scope { layout: Layout::UNDEFINED, ..scope }
-}
+pub const COMPOSE_WRITES: Scope = Scope::COMPUTE_WRITTEN;
+/// As pictures are copied out.
+pub const COPY_READS: Scope = Scope::COPIED_FROM;
 
 /// Moves an image on from one use to the next.
-pub fn barrier(
-    gpu: &Gpu,
-    cmd: vk::CommandBuffer,
-    image: vk::Image,
-    aspect: vk::ImageAspectFlags,
-    before: Scope,
-    after: Scope,
-) {
-    let barrier = [vk::ImageMemoryBarrier::default()
-        .src_access_mask(before.access)
-        .dst_access_mask(after.access)
-        .old_layout(before.layout)
-        .new_layout(after.layout)
-        .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-        .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-        .image(image)
-        .subresource_range(whole(aspect))];
-    let none = vk::DependencyFlags::empty();
-    // SAFETY: `cmd` is recording outside a render pass; callers say the layouts as they are.
-    unsafe {
-        gpu.device.cmd_pipeline_barrier(cmd, before.stage, after.stage, none, &[], &[], &barrier);
+pub fn barrier(gpu: &Gpu, cmd: vk::CommandBuffer, image: &Image, before: Scope, after: Scope) {
+    let aspect = aspect_of(image.format);
+    gpu.place(cmd, &ImageBarrier { image: image.raw, aspect, before, after });
+}
+
+fn aspect_of(format: vk::Format) -> vk::ImageAspectFlags {
+    if format == vk::Format::D32_SFLOAT {
+        vk::ImageAspectFlags::DEPTH
+    } else {
+        vk::ImageAspectFlags::COLOR
     }
 }
 
@@ -83,7 +46,9 @@ fn whole(aspect: vk::ImageAspectFlags) -> vk::ImageSubresourceRange {
 pub struct Image {
     pub raw: vk::Image,
     pub view: vk::ImageView,
+    pub format: vk::Format,
     pub extent: [u32; 2],
+    pub usage: vk::ImageUsageFlags,
     allocation: Allocation,
 }
 
@@ -111,11 +76,7 @@ impl Image {
         // SAFETY: the image was just made.
         let requirements = unsafe { gpu.device.get_image_memory_requirements(raw) };
         let allocation = allocate(gpu, name, requirements, MemoryLocation::GpuOnly, false)?;
-        let aspect = if format == vk::Format::D32_SFLOAT {
-            vk::ImageAspectFlags::DEPTH
-        } else {
-            vk::ImageAspectFlags::COLOR
-        };
+        let aspect = aspect_of(format);
         let view = vk::ImageViewCreateInfo::default()
             .image(raw)
             .view_type(vk::ImageViewType::TYPE_2D)
@@ -126,7 +87,7 @@ impl Image {
             gpu.device.bind_image_memory(raw, allocation.memory(), allocation.offset())?;
             gpu.device.create_image_view(&view, None)
         }?;
-        Ok(Self { raw, view, extent, allocation })
+        Ok(Self { raw, view, format, extent, usage, allocation })
     }
 
     /// Destroys it; no frame may use it any more.

@@ -1,54 +1,108 @@
-//! What there is to see: a few objects, a light that goes round, a camera that stands still.
+//! What there is to see: a few objects under a light that goes round, or a scene from a file.
 
+use crate::Outcome;
 use antumbra::RectangleLight;
-use antumbra::scene::{Mesh, Role, generate};
-use glam::{DMat3, DMat4, DQuat, DVec3, DVec4};
+use antumbra::scene::{Camera, Mesh, Role, Scene, from_gltf, generate};
+use glam::{DMat3, DMat4, DVec3, DVec4};
 use std::f64::consts::TAU;
+use std::path::Path;
 
 /// An object of the world.
 pub struct Object {
     pub mesh: Mesh,
-    /// The object that stands still, or turns with `turns` turns a second round its y axis.
-    pub position: DVec3,
+    /// Where it stands; it turns with `turns` turns a second round its y axis.
+    pub stand: DMat4,
     pub turns: f64,
+    /// How far it swells and shrinks along its normals, in metres, where it is a jelly.
+    pub jelly: Option<f32>,
     pub role: Role,
     pub albedo: [u8; 3],
 }
 
 impl Object {
-    /// Where it stands at a time.
+    /// Where it is at a time.
     pub fn world_from_mesh(&self, seconds: f64) -> DMat4 {
-        let turn = DQuat::from_rotation_y(self.turns * TAU * seconds);
-        DMat4::from_rotation_translation(turn, self.position)
+        self.stand * DMat4::from_rotation_y(self.turns * TAU * seconds)
+    }
+}
+
+/// Objects, light and camera.
+pub struct World {
+    pub objects: Vec<Object>,
+    /// A file's light and camera; without, the light goes round and the camera stands still.
+    fixed: Option<(RectangleLight, Camera)>,
+}
+
+impl World {
+    /// The world that this example brings.
+    pub fn built_in() -> Self {
+        Self { objects: objects(), fixed: None }
+    }
+
+    /// A glTF scene under its first area light, through its camera or one that frames it.
+    pub fn from_file(path: &Path, [width, height]: [u32; 2]) -> Outcome<Self> {
+        let scene = from_gltf(path)?;
+        let light = scene.light(None)?.light;
+        let aspect = f64::from(width) / f64::from(height);
+        let camera = scene.camera.unwrap_or_else(|| Camera::framing(&scene, aspect));
+        let Scene { meshes, instances, .. } = scene;
+        let objects = instances.into_iter().map(|i| Object {
+            mesh: meshes[i.mesh].clone(),
+            stand: i.world_from_mesh,
+            turns: 0.0,
+            jelly: None,
+            role: i.role,
+            albedo: [200, 196, 190],
+        });
+        let objects = objects.filter(|o| !o.mesh.indices.is_empty()).collect();
+        Ok(Self { objects, fixed: Some((light, camera)) })
+    }
+
+    /// The light at a time; to the sky if asked, where it can go there.
+    pub fn light(&self, seconds: f64, to_the_sky: bool) -> Outcome<RectangleLight> {
+        match self.fixed {
+            Some((light, _)) => Ok(light),
+            None => Ok(light(seconds, to_the_sky)?),
+        }
+    }
+
+    /// World space to clip space, by a perspective with reversed depth and no far plane.
+    pub fn clip_from_world(&self, [width, height]: [u32; 2]) -> DMat4 {
+        let camera = self.fixed.map_or_else(camera, |(_, camera)| camera);
+        let aspect = f64::from(width) / f64::from(height);
+        let scale = 1.0 / (0.5 * camera.yfov).tan();
+        let clip_from_view = DMat4::from_cols(
+            DVec4::new(scale / aspect, 0.0, 0.0, 0.0),
+            DVec4::new(0.0, -scale, 0.0, 0.0), // Vulkan's y runs down the image
+            DVec4::new(0.0, 0.0, 0.0, -1.0),
+            DVec4::new(0.0, 0.0, camera.near, 0.0),
+        );
+        clip_from_view * camera.world_from_view.inverse()
     }
 }
 
 /// Every object. Each role is there: the ground only receives, the blade overhead only blocks, the
-/// rest does both and so shadows itself and each other.
-pub fn objects() -> Vec<Object> {
-    let still = |mesh, position, role, albedo| Object { mesh, position, turns: 0.0, role, albedo };
+/// rest does both and so shadows itself and each other. The sphere is a jelly.
+fn objects() -> Vec<Object> {
+    let still = |mesh, at, role, albedo| {
+        let stand = DMat4::from_translation(at);
+        Object { mesh, stand, turns: 0.0, jelly: None, role, albedo }
+    };
     let pillar = |x, z, height: f64| {
         let mesh = generate::cuboid(DVec3::new(0.35, height, 0.35));
         still(mesh, DVec3::new(x, 0.5 * height, z), Role::Both, [196, 170, 140])
     };
+    let sphere = generate::uv_sphere(0.45, 96, 48);
+    let sphere = still(sphere, DVec3::new(-0.1, 0.45, 0.35), Role::Both, [186, 96, 84]);
+    let blade = generate::cuboid(DVec3::new(1.8, 0.05, 0.18));
+    let blade = still(blade, DVec3::new(-0.3, 1.5, 0.6), Role::Occluder, [96, 130, 176]);
     vec![
         still(generate::ground(8.0), DVec3::ZERO, Role::Receiver, [205, 205, 200]),
         pillar(-1.1, -0.7, 1.5),
         pillar(0.2, -1.3, 1.0),
         pillar(1.3, -0.4, 1.8),
-        still(
-            generate::uv_sphere(0.45, 48, 24),
-            DVec3::new(-0.1, 0.45, 0.35),
-            Role::Both,
-            [186, 96, 84],
-        ),
-        Object {
-            mesh: generate::cuboid(DVec3::new(1.8, 0.05, 0.18)),
-            position: DVec3::new(-0.3, 1.5, 0.6),
-            turns: 0.4,
-            role: Role::Occluder,
-            albedo: [96, 130, 176],
-        },
+        Object { jelly: Some(0.07), ..sphere },
+        Object { turns: 0.4, ..blade },
     ]
 }
 
@@ -57,7 +111,7 @@ pub const RADIANCE: f32 = 40.0;
 
 /// The light at a time: 0.9 × 0.6 m, on a circle over the objects, turned towards them, or towards
 /// the sky.
-pub fn light(seconds: f64, to_the_sky: bool) -> Result<RectangleLight, antumbra::Error> {
+fn light(seconds: f64, to_the_sky: bool) -> Result<RectangleLight, antumbra::Error> {
     let angle = 0.9 + 0.25 * TAU * seconds;
     let center = DVec3::new(1.6 * angle.cos(), 3.2, 1.6 * angle.sin());
     let target = if to_the_sky { center * 2.0 } else { DVec3::new(0.0, 0.3, 0.0) };
@@ -67,20 +121,12 @@ pub fn light(seconds: f64, to_the_sky: bool) -> Result<RectangleLight, antumbra:
     RectangleLight::new(center, u * 0.45, v * 0.3)
 }
 
-/// World space to clip space, by a perspective with reversed depth and no far plane.
-pub fn clip_from_world([width, height]: [u32; 2]) -> DMat4 {
+/// The camera that stands still.
+fn camera() -> Camera {
     let (eye, target) = (DVec3::new(2.3, 2.6, 4.2), DVec3::new(0.1, 0.45, 0.0));
     let back = (eye - target).normalize(); // the camera looks along its -z
     let right = DVec3::Y.cross(back).normalize();
     let axes = DMat3::from_cols(right, back.cross(right), back);
-    let view_from_world = (DMat4::from_translation(eye) * DMat4::from_mat3(axes)).inverse();
-    let (near, scale) = (0.1, 1.0 / 0.4_f64.tan());
-    let aspect = f64::from(width) / f64::from(height);
-    let clip_from_view = DMat4::from_cols(
-        DVec4::new(scale / aspect, 0.0, 0.0, 0.0),
-        DVec4::new(0.0, -scale, 0.0, 0.0), // Vulkan's y runs down the image
-        DVec4::new(0.0, 0.0, 0.0, -1.0),
-        DVec4::new(0.0, 0.0, near, 0.0),
-    );
-    clip_from_view * view_from_world
+    let world_from_view = DMat4::from_translation(eye) * DMat4::from_mat3(axes);
+    Camera { world_from_view, yfov: 0.8, near: 0.1 }
 }

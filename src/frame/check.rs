@@ -62,7 +62,9 @@ impl Frame<'_> {
             (Some(mask), Some(format)) => check_image(mask, &read("gbuffer.mask", format, extent))?,
             (None, None) => {}
             _ => {
-                return bad("a mask must be given each frame exactly where the description has one");
+                return bad(
+                    "a mask must be given each frame exactly where the description has one",
+                );
             }
         }
         let written = Wanted {

@@ -6,6 +6,8 @@ layout(location = 1) in vec3 normal;
 layout(push_constant) uniform Push {
     mat4 clip_from_mesh;
     mat3 world_from_normal;
+    layout(offset = 116) float swell; // of a jelly, in metres
+    layout(offset = 120) float phase; // and where it is in its swing
 } push;
 
 layout(location = 0) out vec3 normal_ws;
@@ -13,5 +15,6 @@ layout(location = 0) out vec3 normal_ws;
 void main()
 {
     normal_ws = push.world_from_normal * normal;
-    gl_Position = push.clip_from_mesh * vec4(position, 1.0);
+    vec3 moved = position + normal * (push.swell * sin(push.phase + 9.0 * position.y));
+    gl_Position = push.clip_from_mesh * vec4(moved, 1.0);
 }
