@@ -23,10 +23,20 @@ fn descriptions() -> Vec<(String, Description)> {
         "receivers=map accumulate=blend sides=two map=17 receiver_map=16",
         "receivers=map accumulate=blend-fp16 sides=one",
     ] {
-        for mask_format in [None, Some(vk::Format::R8_UNORM)] {
-            let settings = settings(words);
-            let description = Description { settings, mask_format, ..Description::new([641, 479]) };
-            all.push((format!("{words}, mask {mask_format:?}"), description));
+        for (mask_format, occluder_maps) in
+            [(None, None), (Some(vk::Format::R8_UNORM), None), (None, Some(vk::Format::D32_SFLOAT))]
+        {
+            let description = Description {
+                settings: settings(words),
+                mask_format,
+                occluder_maps,
+                lent_visibility: occluder_maps.is_some(),
+                ..Description::new([641, 479])
+            };
+            all.push((
+                format!("{words}, mask {mask_format:?}, maps {occluder_maps:?}"),
+                description,
+            ));
         }
     }
     all
@@ -52,7 +62,7 @@ fn disagreements(graph: &Graph, pass: &Pass) -> Vec<String> {
     let mut found = Vec::new();
     let mut seen = BTreeSet::new();
     let pushed = match pass.work {
-        Work::Raster { draw: Draw::Meshes(_), .. } => size_of::<DepthPush>(),
+        Work::Raster { draw: Draw::Layer(_), .. } => size_of::<DepthPush>(),
         _ => pass.push.bytes().len(),
     };
     for module in modules(pass) {

@@ -86,17 +86,35 @@ impl Stage {
     /// # Errors
     /// As [`ShadowNode::new`]; the stage then has no node until settings that work are given.
     pub fn configure(&mut self, settings: Settings) -> Result<(), Error> {
+        self.configure_with(settings, |_| {})
+    }
+
+    /// As [`Self::configure`], with what `change` makes of the description.
+    ///
+    /// # Errors
+    /// As [`ShadowNode::new`]; the stage then has no node until settings that work are given.
+    pub fn configure_with(
+        &mut self,
+        settings: Settings,
+        change: impl FnOnce(&mut Description),
+    ) -> Result<(), Error> {
         self.drop_node();
-        let description = Description {
+        let mut description = Description {
             settings,
             frames_in_flight: 1,
             mask_format: Some(MASK),
             inspect: true,
             ..Description::new(self.gbuffer.depth.extent())
         };
+        change(&mut description);
         let mut allocator = self.device.allocator().lock().unwrap_or_else(PoisonError::into_inner);
         self.node = Some(ShadowNode::new(self.host.clone(), &mut *allocator, description)?);
         Ok(())
+    }
+
+    /// The meshes as the node takes them.
+    pub fn instances(&self) -> &[MeshInstance] {
+        &self.instances
     }
 
     /// The G-buffer.
@@ -121,14 +139,26 @@ impl Stage {
         light: &RectangleLight,
         window: Option<[[f64; 2]; 2]>,
     ) -> Result<FramePlan, Error> {
+        self.plan_with(light, |frame| frame.window = window)
+    }
+
+    /// Plans what `change` makes of a frame.
+    ///
+    /// # Errors
+    /// As [`ShadowNode::plan`].
+    pub fn plan_with(
+        &mut self,
+        light: &RectangleLight,
+        change: impl FnOnce(&mut Frame),
+    ) -> Result<FramePlan, Error> {
         let world_from_ndc = self.view.clip_from_world.inverse();
         let depth = self.gbuffer.depth_for_node();
-        let frame = Frame {
+        let mut frame = Frame {
             mask: Some(self.gbuffer.mask_for_node()),
             visibility: Visibility::Own { before: RESULT, after: RESULT },
-            window,
             ..Frame::new(*light, world_from_ndc, &self.instances, depth)
         };
+        change(&mut frame);
         let node =
             self.node.as_ref().ok_or_else(|| Error::Frame("the stage has no node".into()))?;
         node.plan(&frame)
