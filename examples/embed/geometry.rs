@@ -82,13 +82,7 @@ impl Model {
     /// The same triangles as the node takes them: its buffers, or, for a jelly, the number under which
     /// it is asked for.
     pub fn for_node(&self, number: u64, seconds: f64) -> MeshInstance {
-        let buffers = MeshBuffers {
-            positions: self.vertices.raw,
-            positions_offset: 0,
-            positions_stride: STRIDE,
-            indices: Some((self.indices.raw, 0, vk::IndexType::UINT32)),
-            count: self.count,
-        };
+        let buffers = MeshBuffers::indexed(self.vertices.raw, STRIDE, self.indices.raw, self.count);
         MeshInstance {
             geometry: match self.object.jelly {
                 Some(_) => Geometry::HostDrawn(number),

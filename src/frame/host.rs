@@ -62,6 +62,20 @@ pub struct MeshBuffers {
     pub count: u32,
 }
 
+impl MeshBuffers {
+    /// `count` 32-bit indices from a buffer's start into positions from a buffer's start, which lie
+    /// `stride` bytes apart.
+    pub fn indexed(positions: vk::Buffer, stride: u32, indices: vk::Buffer, count: u32) -> Self {
+        Self {
+            positions,
+            positions_offset: 0,
+            positions_stride: stride,
+            indices: Some((indices, 0, vk::IndexType::UINT32)),
+            count,
+        }
+    }
+}
+
 /// How a mesh's triangles come into the depth layers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Geometry {

@@ -47,6 +47,29 @@ impl Host {
         }
     }
 
+    /// An allocator on the host's device, for hosts that have none of their own to lend. Its memory
+    /// is the caller's: it must be dropped before the device is destroyed.
+    ///
+    /// # Errors
+    /// [`Error::Memory`] where it cannot be made.
+    #[cfg(feature = "gpu-allocator")]
+    pub fn new_allocator(&self) -> Result<gpu_allocator::vulkan::Allocator, Error> {
+        use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
+        Allocator::new(&AllocatorCreateDesc {
+            instance: self.instance.clone(),
+            device: self.device.clone(),
+            physical_device: self.physical_device,
+            debug_settings: gpu_allocator::AllocatorDebugSettings::default(),
+            buffer_device_address: false,
+            allocation_sizes: gpu_allocator::AllocationSizes::default(),
+        })
+        .map_err(|e| Error::Memory {
+            resource: "the allocator".into(),
+            bytes: 0,
+            problem: e.to_string(),
+        })
+    }
+
     /// Makes pipelines through the host's cache.
     #[must_use]
     pub fn with_pipeline_cache(mut self, cache: vk::PipelineCache) -> Self {

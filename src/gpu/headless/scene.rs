@@ -56,13 +56,12 @@ impl SceneBuffers {
         let instance = |i: &crate::scene::Instance| {
             let mesh = self.meshes.get(i.mesh)?.as_ref()?;
             Some(MeshInstance {
-                geometry: Geometry::Buffers(MeshBuffers {
-                    positions: mesh.positions.raw(),
-                    positions_offset: 0,
-                    positions_stride: 12,
-                    indices: Some((mesh.indices.raw(), 0, vk::IndexType::UINT32)),
-                    count: mesh.count,
-                }),
+                geometry: Geometry::Buffers(MeshBuffers::indexed(
+                    mesh.positions.raw(),
+                    12,
+                    mesh.indices.raw(),
+                    mesh.count,
+                )),
                 world_from_mesh: i.world_from_mesh,
                 bounds: mesh.bounds,
                 role: i.role,
