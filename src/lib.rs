@@ -46,11 +46,11 @@
 //! # Ok(())
 //! # }
 //! ```
-//! `examples/embed` is this in a whole engine.
+//! `examples/embed`, `examples/embed_vk_graph` and `examples/embed_wgpu` are this in whole engines.
 //!
 //! | to … | read |
 //! |---|---|
-//! | host the node | [`node`], [`frame`], [`gpu::Host`], [`gpu::Allocator`], [`light`] |
+//! | host the node | [`embedding`], then [`node`], [`frame`], [`gpu::Host`], [`gpu::Allocator`], [`light`] |
 //! | turn its knobs | [`settings`] |
 //! | follow a technique | its module: the idea, the paper's sections, where it departs, its limits |
 //! | see what a frame does | [`graph`], [`graph::Plan::table`], [`graph::Plan::graphviz`] |
@@ -59,6 +59,8 @@
 //! | run without a window | `gpu::headless` (feature `headless`) |
 
 pub mod depth_layers;
+#[doc = include_str!("../docs/embedding.md")]
+pub mod embedding {}
 pub mod error;
 pub mod frame;
 pub mod gpu;

@@ -260,3 +260,9 @@ impl ShadowNode {
         self.objects.destroy(&self.host, allocator);
     }
 }
+
+/// A node may be planned on one thread and recorded on another.
+const _: () = {
+    const fn sent<T: Send>() {}
+    sent::<ShadowNode>();
+};
