@@ -1,0 +1,112 @@
+//! The scene's triangles in vertex and index buffers.
+
+use crate::Outcome;
+use crate::device::Gpu;
+use antumbra::scene::{Instance, Mesh, Scene};
+use ash::vk;
+use std::sync::Arc;
+use vk_graph::Graph;
+use vk_graph::driver::buffer::Buffer;
+use vk_graph::node::BufferNode;
+
+/// One vertex: what the G-buffer's pipeline reads. The node reads the positions alone, by stride.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct Vertex {
+    position: [f32; 3],
+    normal: [f32; 3],
+}
+
+/// Bytes from one vertex to the next.
+pub const STRIDE: u32 = size_of::<Vertex>() as u32;
+
+/// One object of the scene: its mesh in buffers, and where it stands.
+pub struct Model {
+    pub vertices: Arc<Buffer>,
+    pub indices: Arc<Buffer>,
+    pub count: u32,
+    /// Least and largest corner of the mesh.
+    pub bounds: [[f32; 3]; 2],
+    pub double_sided: bool,
+    pub instance: Instance,
+}
+
+/// A model's buffers as one graph knows them.
+#[derive(Clone, Copy)]
+pub struct ModelNodes {
+    pub vertices: BufferNode,
+    pub indices: BufferNode,
+}
+
+impl Model {
+    /// Binds the buffers to a graph, which keeps them alive until its commands are done.
+    pub fn bind(&self, graph: &mut Graph) -> ModelNodes {
+        ModelNodes {
+            vertices: graph.bind_resource(&self.vertices),
+            indices: graph.bind_resource(&self.indices),
+        }
+    }
+}
+
+/// Uploads the scene. A mesh that stands in several places has its buffers once.
+pub fn upload(gpu: &Gpu, scene: &Scene) -> Outcome<Vec<Model>> {
+    let meshes = scene.meshes.iter().map(|mesh| Uploaded::new(gpu, mesh));
+    let meshes = meshes.collect::<Outcome<Vec<_>>>()?;
+    let model = |instance: &Instance| {
+        let mesh = meshes[instance.mesh].as_ref()?;
+        Some(Model {
+            vertices: mesh.vertices.clone(),
+            indices: mesh.indices.clone(),
+            count: mesh.count,
+            bounds: mesh.bounds,
+            double_sided: scene.meshes[instance.mesh].double_sided,
+            instance: instance.clone(),
+        })
+    };
+    Ok(scene.instances.iter().filter_map(model).collect())
+}
+
+struct Uploaded {
+    vertices: Arc<Buffer>,
+    indices: Arc<Buffer>,
+    count: u32,
+    bounds: [[f32; 3]; 2],
+}
+
+impl Uploaded {
+    /// None for a mesh without triangles. (An engine would stage its geometry into device memory;
+    /// the node does not mind either way.)
+    fn new(gpu: &Gpu, mesh: &Mesh) -> Outcome<Option<Self>> {
+        if mesh.indices.len() < 3 {
+            return Ok(None);
+        }
+        let vertices: Vec<Vertex> = mesh
+            .positions
+            .iter()
+            .zip(&mesh.normals)
+            .map(|(&position, &normal)| Vertex { position, normal })
+            .collect();
+        let buffer = |usage, bytes: &[u8]| {
+            Ok::<_, vk_graph::driver::DriverError>(Arc::new(Buffer::create_from_slice(
+                &gpu.device,
+                usage,
+                bytes,
+            )?))
+        };
+        let extreme = |pick: fn(f32, f32) -> f32, start: f32| {
+            mesh.positions.iter().fold([start; 3], |m, p| [0, 1, 2].map(|i| pick(m[i], p[i])))
+        };
+        Ok(Some(Self {
+            vertices: buffer(
+                vk::BufferUsageFlags::VERTEX_BUFFER,
+                bytemuck::cast_slice(&vertices),
+            )?,
+            indices: buffer(
+                vk::BufferUsageFlags::INDEX_BUFFER,
+                bytemuck::cast_slice(&mesh.indices),
+            )?,
+            count: mesh.indices.len() as u32,
+            bounds: [extreme(f32::min, f32::INFINITY), extreme(f32::max, f32::NEG_INFINITY)],
+        }))
+    }
+}

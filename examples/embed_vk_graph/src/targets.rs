@@ -1,0 +1,74 @@
+//! The images of the picture's size.
+
+use crate::Outcome;
+use crate::device::Gpu;
+use ash::vk;
+use std::sync::Arc;
+use vk::ImageUsageFlags as Usage;
+use vk_graph::Graph;
+use vk_graph::driver::image::{Image, ImageInfo};
+use vk_graph::node::ImageNode;
+
+pub const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
+pub const MASK: vk::Format = vk::Format::R8_UNORM;
+const NORMAL: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
+const VISIBILITY: vk::Format = vk::Format::R32_SFLOAT;
+/// What every device can write from a compute shader.
+const PICTURE: vk::Format = vk::Format::R8G8B8A8_UNORM;
+
+/// The images. There is one set for all frames in flight: vk-graph remembers how the frame before
+/// used each of them, and a graph keeps those that it binds until its commands are done.
+pub struct Targets {
+    pub extent: [u32; 2],
+    pub depth: Arc<Image>,
+    pub normal: Arc<Image>,
+    pub mask: Arc<Image>,
+    /// The engine's own, lent to the node, which writes it.
+    pub visibility: Arc<Image>,
+    pub picture: Arc<Image>,
+}
+
+/// The images as one graph knows them.
+#[derive(Clone, Copy)]
+pub struct TargetNodes {
+    pub depth: ImageNode,
+    pub normal: ImageNode,
+    pub mask: ImageNode,
+    pub visibility: ImageNode,
+    pub picture: ImageNode,
+}
+
+impl Targets {
+    pub fn new(gpu: &Gpu, extent: [u32; 2]) -> Outcome<Self> {
+        let [width, height] = extent;
+        let image = |name: &str, format, usage| -> Outcome<Arc<Image>> {
+            let info = ImageInfo::image_2d(width, height, format, usage);
+            let made = Image::create(&gpu.device, info)
+                .map_err(|e| format!("making the {name} image of {width}×{height} pixels: {e}"))?;
+            Ok(Arc::new(made))
+        };
+        let (color, depth) = (Usage::COLOR_ATTACHMENT, Usage::DEPTH_STENCIL_ATTACHMENT);
+        let copied = Usage::TRANSFER_SRC;
+        Ok(Self {
+            extent,
+            // The node samples depth and mask, so both say SAMPLED.
+            depth: image("depth", DEPTH, depth | Usage::SAMPLED | copied)?,
+            normal: image("normal", NORMAL, color | Usage::SAMPLED)?,
+            mask: image("mask", MASK, color | Usage::SAMPLED)?,
+            // The node stores into it.
+            visibility: image("visibility", VISIBILITY, Usage::STORAGE | Usage::SAMPLED | copied)?,
+            picture: image("picture", PICTURE, Usage::STORAGE | copied)?,
+        })
+    }
+
+    /// Binds the images to a graph.
+    pub fn bind(&self, graph: &mut Graph) -> TargetNodes {
+        TargetNodes {
+            depth: graph.bind_resource(&self.depth),
+            normal: graph.bind_resource(&self.normal),
+            mask: graph.bind_resource(&self.mask),
+            visibility: graph.bind_resource(&self.visibility),
+            picture: graph.bind_resource(&self.picture),
+        }
+    }
+}

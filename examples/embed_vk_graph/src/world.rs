@@ -1,0 +1,53 @@
+//! What there is to see: a glTF scene, its first light and its camera.
+
+use crate::Outcome;
+use antumbra::Role;
+use antumbra::scene::{AreaLight, Camera, Scene, from_gltf};
+use glam::{DMat4, DVec4};
+use std::path::Path;
+
+/// A scene with a light.
+pub struct World {
+    pub scene: Scene,
+    pub light: AreaLight,
+}
+
+impl World {
+    /// Reads a glTF file.
+    pub fn load(path: &Path) -> Outcome<Self> {
+        let scene = from_gltf(path)?;
+        let light = scene.light(None).map_err(|e| format!("{}: {e}", path.display()))?.clone();
+        if scene.triangles() == 0 {
+            let path = path.display();
+            return Err(format!("{path}: the scene has no triangles; at least one is needed").into());
+        }
+        Ok(Self { scene, light })
+    }
+
+    /// World space to clip space: the scene's camera, or one that sees all of it, as a perspective
+    /// with reversed depth and no far plane.
+    pub fn clip_from_world(&self, [width, height]: [u32; 2]) -> DMat4 {
+        let aspect = f64::from(width) / f64::from(height);
+        let camera = self.scene.camera.unwrap_or_else(|| Camera::framing(&self.scene, aspect));
+        let scale = 1.0 / (0.5 * camera.yfov).tan();
+        let clip_from_view = DMat4::from_cols(
+            DVec4::new(scale / aspect, 0.0, 0.0, 0.0),
+            DVec4::new(0.0, -scale, 0.0, 0.0), // Vulkan's y runs down the image
+            DVec4::new(0.0, 0.0, 0.0, -1.0),
+            DVec4::new(0.0, 0.0, camera.near, 0.0),
+        );
+        clip_from_view * camera.world_from_view.inverse()
+    }
+
+    /// The light's radiance, exposed so that white paper amid the occluders would just be white.
+    pub fn radiance(&self) -> [f32; 4] {
+        let light = &self.light.light;
+        let [a, b] = light.half_extents();
+        let center = self.scene.bounds(|i| i.role != Role::Receiver).map(|b| b.center());
+        let r2 = center.map_or(1.0, |c| c.distance_squared(light.center()));
+        let exposure = (r2 / (4.0 * a * b)) as f32;
+        let [r, g, b] = self.light.color;
+        let peak = r.max(g).max(b).max(1e-6);
+        [r, g, b, peak].map(|c| c / peak * exposure)
+    }
+}
