@@ -2,9 +2,8 @@
 
 use crate::Outcome;
 use crate::device::Gpu;
-use crate::targets::TargetNodes;
-use crate::world::World;
-use glam::{DMat4, DVec3};
+use crate::shot::Shot;
+use glam::DVec3;
 use vk_graph::Graph;
 use vk_graph::driver::compute::{ComputePipeline, ComputePipelineInfo};
 use vk_graph::driver::shader::Shader;
@@ -22,15 +21,17 @@ struct Push {
 }
 
 impl Push {
-    fn new(world_from_ndc: &DMat4, world: &World) -> Self {
-        let light = &world.light.light;
-        let frame = light.world_from_light();
+    fn new(shot: &Shot) -> Self {
+        let light = &shot.light.light;
         let [a, b] = light.half_extents();
+        let peak = shot.light.color.into_iter().fold(1e-6, f32::max);
+        let [red, green, blue] = shot.light.color.map(|c| c / peak * shot.exposure);
         // Light space has its z along the emission, which is half_v × half_u: v is against y.
+        let frame = light.world_from_light();
         let vector = |v: DVec3| frame.transform_vector3(v).as_vec3().extend(0.0).to_array();
         Self {
-            world_from_ndc: world_from_ndc.as_mat4().to_cols_array(),
-            radiance: world.radiance(),
+            world_from_ndc: shot.world_from_ndc.as_mat4().to_cols_array(),
+            radiance: [red, green, blue, 0.0],
             center: light.center().as_vec3().extend(1.0).to_array(),
             half_u: vector(DVec3::X * a),
             half_v: vector(DVec3::NEG_Y * b),
@@ -48,30 +49,24 @@ impl ComposePass {
     }
 
     /// Adds the command that composes.
-    pub fn add(
-        &self,
-        graph: &mut Graph,
-        targets: &TargetNodes,
-        [width, height]: [u32; 2],
-        world_from_ndc: &DMat4,
-        world: &World,
-    ) {
-        let fetched = AccessType::ComputeShaderReadSampledImageOrUniformTexelBuffer;
-        let push = Push::new(world_from_ndc, world);
+    pub fn add(&self, graph: &mut Graph, shot: &Shot) {
+        let targets = shot.targets;
+        let fetched = [&targets.depth, &targets.normal, &targets.visibility];
+        let [depth, normal, visibility] = fetched.map(|image| graph.bind_resource(image));
+        let picture = graph.bind_resource(&targets.picture);
+        let read = AccessType::ComputeShaderReadSampledImageOrUniformTexelBuffer;
+        let push = Push::new(shot);
+        let [groups_x, groups_y] = targets.extent.map(|e| e.div_ceil(8));
         graph
             .begin_cmd()
             .debug_name("compose")
             .bind_pipeline(&self.0)
-            .shader_resource_access(0, targets.depth, fetched)
-            .shader_resource_access(1, targets.normal, fetched)
-            .shader_resource_access(2, targets.visibility, fetched)
-            .shader_resource_access(3, targets.picture, AccessType::ComputeShaderWrite)
+            .shader_resource_access(0, depth, read)
+            .shader_resource_access(1, normal, read)
+            .shader_resource_access(2, visibility, read)
+            .shader_resource_access(3, picture, AccessType::ComputeShaderWrite)
             .record_cmd(move |cmd| {
-                cmd.push_constants(0, bytemuck::bytes_of(&push)).dispatch(
-                    width.div_ceil(8),
-                    height.div_ceil(8),
-                    1,
-                );
+                cmd.push_constants(0, bytemuck::bytes_of(&push)).dispatch(groups_x, groups_y, 1);
             });
     }
 }

@@ -19,7 +19,7 @@ impl Gpu {
     /// vk-graph turns on what it wants of the device. The node wants nothing beyond.
     pub fn open() -> Outcome<Self> {
         let instance = Instance::create(InstanceInfo::default())
-            .map_err(|e| format!("no Vulkan 1.3 loader was found ({e})"))?;
+            .map_err(|e| format!("there is no Vulkan 1.3 loader and driver ({e})"))?;
         let wanted = std::env::var("ANTUMBRA_DRIVER").unwrap_or_default().to_lowercase();
         let mut names = Vec::new();
         let mut best: Option<(u32, PhysicalDevice, u32)> = None;
@@ -44,7 +44,8 @@ impl Gpu {
         let (_, physical, queue_family) = best.ok_or_else(|| {
             format!("no Vulkan 1.3 device's name holds \"{wanted}\"; there are {names:?}")
         })?;
-        let device = Device::try_from_physical_device(physical)?;
+        let device = Device::try_from_physical_device(physical)
+            .map_err(|e| format!("vk-graph does not get its device ({e})"))?;
         Ok(Self { device, queue_family })
     }
 

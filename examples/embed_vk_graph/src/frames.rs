@@ -2,14 +2,14 @@
 
 use crate::Outcome;
 use crate::device::Gpu;
-use crate::targets::{TargetNodes, Targets};
+use crate::targets::Targets;
 use ash::vk;
 use std::sync::Arc;
 use vk_graph::Graph;
 use vk_graph::driver::buffer::{Buffer, BufferInfo};
 use vk_graph::driver::fence::Fence;
+use vk_graph::driver::image::Image;
 use vk_graph::driver::sync::AccessType;
-use vk_graph::node::ImageNode;
 use vk_graph::pool::hash::HashPool;
 
 /// How many frames are recorded before the first of them must be done.
@@ -62,26 +62,22 @@ pub struct ReadBack {
 
 impl ReadBack {
     /// Adds the commands that copy.
-    pub fn add(
-        gpu: &Gpu,
-        graph: &mut Graph,
-        targets: &Targets,
-        nodes: &TargetNodes,
-    ) -> Outcome<Self> {
+    pub fn add(gpu: &Gpu, graph: &mut Graph, targets: &Targets) -> Outcome<Self> {
         let pixels = targets.extent.iter().map(|&e| u64::from(e)).product::<u64>();
-        let mut copy = |image: ImageNode| -> Outcome<Arc<Buffer>> {
+        let mut copy = |image: &Arc<Image>| -> Outcome<Arc<Buffer>> {
             // All three have four bytes a pixel.
             let info = BufferInfo::host_mem(pixels * 4, vk::BufferUsageFlags::TRANSFER_DST);
             let buffer = Arc::new(Buffer::create(&gpu.device, info)?);
-            let node = graph.bind_resource(&buffer);
-            graph.copy_image_to_buffer(image, node);
-            graph.begin_cmd().resource_access(node, AccessType::HostRead).record_cmd(|_| {});
+            let (from, to) = (graph.bind_resource(image), graph.bind_resource(&buffer));
+            graph.copy_image_to_buffer(from, to);
+            // A fence alone does not make writes visible to the processor.
+            graph.begin_cmd().resource_access(to, AccessType::HostRead).record_cmd(|_| {});
             Ok(buffer)
         };
         Ok(Self {
-            visibility: copy(nodes.visibility)?,
-            depth: copy(nodes.depth)?,
-            picture: copy(nodes.picture)?,
+            visibility: copy(&targets.visibility)?,
+            depth: copy(&targets.depth)?,
+            picture: copy(&targets.picture)?,
         })
     }
 

@@ -2,8 +2,8 @@
 
 use crate::Outcome;
 use crate::device::Gpu;
-use crate::geometry::{Model, ModelNodes};
-use crate::targets::TargetNodes;
+use crate::geometry::Model;
+use crate::shot::Shot;
 use ash::vk;
 use glam::DMat4;
 use vk_graph::Graph;
@@ -48,40 +48,40 @@ impl GBufferPass {
         Ok(Self(GraphicsPipeline::create(&gpu.device, info, [vertex, fragment])?))
     }
 
-    /// Adds the command that draws the models.
-    pub fn add(
-        &self,
-        graph: &mut Graph,
-        targets: &TargetNodes,
-        models: &[(&Model, ModelNodes)],
-        clip_from_world: &DMat4,
-    ) {
+    /// Adds the command that draws the models. (Binding what the graph has already gives the same
+    /// node again; the graph keeps it alive until its commands are done.)
+    pub fn add(&self, graph: &mut Graph, shot: &Shot) {
+        let depth = graph.bind_resource(&shot.targets.depth);
+        let normal = graph.bind_resource(&shot.targets.normal);
+        let mask = graph.bind_resource(&shot.targets.mask);
+        let draws: Vec<_> = shot
+            .models
+            .iter()
+            .map(|model| {
+                let vertices = graph.bind_resource(&model.vertices);
+                let indices = graph.bind_resource(&model.indices);
+                (vertices, indices, model.count, Push::new(model, &shot.clip_from_world))
+            })
+            .collect();
         let clear = LoadOp::CLEAR_BLACK_ALPHA_ZERO;
+        // Reversed depth has its background at 0.
+        let clear_depth = LoadOp::CLEAR_ZERO_STENCIL_ZERO;
         let mut command = graph
             .begin_cmd()
             .debug_name("gbuffer")
             .bind_pipeline(&self.0)
             .depth_stencil(DepthStencilInfo::DEPTH_WRITE_GREATER)
-            .color_attachment_image(0, targets.normal, clear, StoreOp::Store)
-            .color_attachment_image(1, targets.mask, clear, StoreOp::Store)
-            // Reversed depth has its background at 0.
-            .depth_stencil_attachment_image(
-                targets.depth,
-                LoadOp::CLEAR_ZERO_STENCIL_ZERO,
-                StoreOp::Store,
-            );
-        for (_, nodes) in models {
-            command.set_resource_access(nodes.vertices, AccessType::VertexBuffer);
-            command.set_resource_access(nodes.indices, AccessType::IndexBuffer);
+            .color_attachment_image(0, normal, clear, StoreOp::Store)
+            .color_attachment_image(1, mask, clear, StoreOp::Store)
+            .depth_stencil_attachment_image(depth, clear_depth, StoreOp::Store);
+        for (vertices, indices, ..) in &draws {
+            command.set_resource_access(*vertices, AccessType::VertexBuffer);
+            command.set_resource_access(*indices, AccessType::IndexBuffer);
         }
-        let draws: Vec<(ModelNodes, u32, Push)> = models
-            .iter()
-            .map(|(model, nodes)| (*nodes, model.count, Push::new(model, clip_from_world)))
-            .collect();
         command.record_cmd(move |cmd| {
-            for (nodes, count, push) in &draws {
-                cmd.bind_vertex_buffer(0, nodes.vertices, 0)
-                    .bind_index_buffer(nodes.indices, 0, vk::IndexType::UINT32)
+            for (vertices, indices, count, push) in &draws {
+                cmd.bind_vertex_buffer(0, *vertices, 0)
+                    .bind_index_buffer(*indices, 0, vk::IndexType::UINT32)
                     .push_constants(0, bytemuck::bytes_of(push))
                     .draw_indexed(*count, 1, 0, 0, 0);
             }

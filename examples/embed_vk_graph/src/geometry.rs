@@ -3,11 +3,9 @@
 use crate::Outcome;
 use crate::device::Gpu;
 use antumbra::scene::{Instance, Mesh, Scene};
-use ash::vk;
+use ash::vk::BufferUsageFlags as Usage;
 use std::sync::Arc;
-use vk_graph::Graph;
 use vk_graph::driver::buffer::Buffer;
-use vk_graph::node::BufferNode;
 
 /// One vertex: what the G-buffer's pipeline reads. The node reads the positions alone, by stride.
 #[repr(C)]
@@ -29,23 +27,6 @@ pub struct Model {
     pub bounds: [[f32; 3]; 2],
     pub double_sided: bool,
     pub instance: Instance,
-}
-
-/// A model's buffers as one graph knows them.
-#[derive(Clone, Copy)]
-pub struct ModelNodes {
-    pub vertices: BufferNode,
-    pub indices: BufferNode,
-}
-
-impl Model {
-    /// Binds the buffers to a graph, which keeps them alive until its commands are done.
-    pub fn bind(&self, graph: &mut Graph) -> ModelNodes {
-        ModelNodes {
-            vertices: graph.bind_resource(&self.vertices),
-            indices: graph.bind_resource(&self.indices),
-        }
-    }
 }
 
 /// Uploads the scene. A mesh that stands in several places has its buffers once.
@@ -86,27 +67,16 @@ impl Uploaded {
             .zip(&mesh.normals)
             .map(|(&position, &normal)| Vertex { position, normal })
             .collect();
-        let buffer = |usage, bytes: &[u8]| {
-            Ok::<_, vk_graph::driver::DriverError>(Arc::new(Buffer::create_from_slice(
-                &gpu.device,
-                usage,
-                bytes,
-            )?))
-        };
-        let extreme = |pick: fn(f32, f32) -> f32, start: f32| {
-            mesh.positions.iter().fold([start; 3], |m, p| [0, 1, 2].map(|i| pick(m[i], p[i])))
+        let buffer = |usage, bytes: &[u8]| -> Outcome<Arc<Buffer>> {
+            let made = Buffer::create_from_slice(&gpu.device, usage, bytes)
+                .map_err(|e| format!("making a buffer of {} bytes: {e}", bytes.len()))?;
+            Ok(Arc::new(made))
         };
         Ok(Some(Self {
-            vertices: buffer(
-                vk::BufferUsageFlags::VERTEX_BUFFER,
-                bytemuck::cast_slice(&vertices),
-            )?,
-            indices: buffer(
-                vk::BufferUsageFlags::INDEX_BUFFER,
-                bytemuck::cast_slice(&mesh.indices),
-            )?,
+            vertices: buffer(Usage::VERTEX_BUFFER, bytemuck::cast_slice(&vertices))?,
+            indices: buffer(Usage::INDEX_BUFFER, bytemuck::cast_slice(&mesh.indices))?,
             count: mesh.indices.len() as u32,
-            bounds: [extreme(f32::min, f32::INFINITY), extreme(f32::max, f32::NEG_INFINITY)],
+            bounds: mesh.bounds(),
         }))
     }
 }

@@ -11,7 +11,8 @@
 //!   world      scene, light, camera                    geometry   vertex and index buffers
 //!   targets    the images of the picture's size        gbuffer    draws depth, normal, mask
 //!   shadows    the node as a foreign pass              compose    visibility × irradiance
-//!   frames     two frames in flight, read-back         output     EXR and PNG
+//!   frames     two frames in flight, read-back         shot       what a frame's passes are given
+//!   output     EXR and PNG
 //! ```
 
 #![allow(unsafe_code, reason = "lending the device is a promise that only the engine can make")]
@@ -24,15 +25,17 @@ mod geometry;
 mod options;
 mod output;
 mod shadows;
+mod shot;
 mod targets;
 mod world;
 
 use compose::ComposePass;
 use device::Gpu;
-use frames::{Frames, ReadBack};
+use frames::{FRAMES_IN_FLIGHT, Frames, ReadBack};
 use gbuffer::GBufferPass;
 use options::Options;
 use shadows::Shadows;
+use shot::Shot;
 use std::process::ExitCode;
 use targets::Targets;
 use vk_graph::Graph;
@@ -69,68 +72,90 @@ fn run(options: &Options, world: &World) -> Outcome<()> {
     let compose_pass = ComposePass::new(&gpu)?;
     let models = geometry::upload(&gpu, &world.scene)?;
     let mut targets = Targets::new(&gpu, options.size)?;
+    let mut shadows = Shadows::new(&gpu, options.size, options.settings, options.lie)?;
     let mut frames = Frames::new(&gpu);
-    let mut shadows = Shadows::new(&gpu, options.size, options.settings)?;
-    targets.visibility = shadows.visibility(&gpu);
 
+    println!("frame  size        plan µs  record µs  passes  barriers");
+    let exposure = world.exposure();
     let count = options.frames.max(options.resizes + 1);
     let mut read_back = None;
-    println!("frame  size      plan µs  record µs  passes");
     for number in 0..count {
+        // ---- Wait for the slot --------------------------------------------------------------
+        // The frame before last had it; what that one was the last to use can go.
         if let Some(done) = frames.wait(number)? {
             shadows.frame_done(done);
         }
+
+        // ---- Resize -------------------------------------------------------------------------
+        // The frame before this one may still run on the old images: its graph keeps those of the
+        // engine, `shadows` those of the node.
         if (1..=options.resizes).contains(&number) {
             let extent = size_after(options, number);
             targets = Targets::new(&gpu, extent)?;
             shadows.resize(extent, number - 1)?;
-            targets.visibility = shadows.visibility(&gpu);
         }
-        let clip_from_world = world.clip_from_world(targets.extent);
-        let world_from_ndc = clip_from_world.inverse();
 
+        // ---- Graph --------------------------------------------------------------------------
+        let clip_from_world = world.clip_from_world(targets.extent);
+        let shot = Shot {
+            slot: Frames::slot_of(number),
+            clip_from_world,
+            world_from_ndc: clip_from_world.inverse(),
+            light: &world.light,
+            exposure,
+            models: &models,
+            targets: &targets,
+        };
         let mut graph = Graph::new();
-        let nodes = targets.bind(&mut graph);
-        let drawn: Vec<_> = models.iter().map(|m| (m, m.bind(&mut graph))).collect();
-        gbuffer_pass.add(&mut graph, &nodes, &drawn, &clip_from_world);
-        let told = shadows.add(
-            &mut graph,
-            &targets,
-            &nodes,
-            &drawn,
-            world.light.light,
-            world_from_ndc,
-            Frames::slot_of(number),
-            options.lie,
-        )?;
-        compose_pass.add(&mut graph, &nodes, targets.extent, &world_from_ndc, world);
+        gbuffer_pass.add(&mut graph, &shot);
+        let told = shadows.add(&mut graph, &shot)?;
+        compose_pass.add(&mut graph, &shot);
         if number + 1 == count {
-            read_back = Some(ReadBack::add(&gpu, &mut graph, &targets, &nodes)?);
+            read_back = Some(ReadBack::add(&gpu, &mut graph, &targets)?);
         }
         frames.submit(number, graph)?;
-        println!("{number} {:?} {:?} {} {:?}", targets.extent, told.plan, told.passes, told.recorded.get());
+
+        let record = told.recorded.try_recv().map_err(|_| "the graph left the node out")??;
+        let [width, height] = targets.extent;
+        println!(
+            "{number:>5}  {:<10}  {:>7.1}  {:>9.1}  {:>6}  {:>8}",
+            format!("{width}×{height}"),
+            told.plan.as_secs_f64() * 1e6,
+            record.as_secs_f64() * 1e6,
+            told.passes,
+            told.barriers,
+        );
     }
-    for number in count..count + u64::from(frames::FRAMES_IN_FLIGHT) {
+
+    // ---- Tear down --------------------------------------------------------------------------
+    // Wait for the frames in flight; then the node may go, before the device that it borrowed.
+    for number in count..count + u64::from(FRAMES_IN_FLIGHT) {
         if let Some(done) = frames.wait(number)? {
             shadows.frame_done(done);
         }
     }
-    println!("{:?}", shadows.size());
     if let Some(read_back) = &read_back {
         output::write(&options.out, targets.extent, read_back)?;
     }
-    let left = shadows.destroy()?;
-    println!("{left} bytes left");
+    let (objects, memory) = {
+        let node = shadows.node();
+        (node.object_count(), node.memory())
+    };
+    let bytes: u64 = memory.iter().map(|(_, bytes)| bytes).sum();
+    println!("the node: {objects} Vulkan objects, {bytes} bytes");
+    match shadows.destroy()? {
+        0 => println!("the node is gone: 0 bytes left"),
+        left => return Err(format!("the node is gone, but {left} of its bytes are left").into()),
+    }
     Ok(())
 }
 
 /// The size behind a resize: other ones, and --size behind the last.
 fn size_after(options: &Options, resize: u64) -> [u32; 2] {
-    const OTHERS: [[u32; 2]; 3] = [[5, 5], [2, 3], [4, 1]];
-    let [width, height] = options.size;
     if resize == options.resizes {
         return options.size;
     }
-    let [a, b] = OTHERS[(resize % 3) as usize];
-    [(width * a / 4).clamp(1, 16384), (height * b / 4).clamp(1, 16384)]
+    // Larger, narrower, flatter; in quarters of --size.
+    let quarters = [[5, 5], [2, 3], [4, 1]][(resize % 3) as usize];
+    [0, 1].map(|axis| (options.size[axis] * quarters[axis] / 4).clamp(1, 16384))
 }

@@ -9,8 +9,7 @@ use std::path::Path;
 pub fn write(folder: &Path, extent: [u32; 2], read_back: &ReadBack) -> Outcome<()> {
     let failed = |path: &Path, problem: String| format!("{}: {problem}", path.display());
     std::fs::create_dir_all(folder).map_err(|e| failed(folder, e.to_string()))?;
-    let channels =
-        [("visibility.exr", read_back.visibility()), ("depth.exr", read_back.depth())];
+    let channels = [("visibility.exr", read_back.visibility()), ("depth.exr", read_back.depth())];
     for (name, values) in &channels {
         let path = folder.join(name);
         exr_y(&path, extent, values).map_err(|e| failed(&path, e.to_string()))?;

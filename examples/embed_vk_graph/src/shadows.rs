@@ -1,53 +1,64 @@
 //! antumbra's node as a foreign pass of the graph: everything in this engine that knows the node.
+//!
+//! vk-graph places every barrier between commands from what each says it does. The node's plan says
+//! the same of the node, so one command carries it: the plan's accesses become the command's, and
+//! recording the command records the plan (`BorderBarriers::Host`; the node places the barriers
+//! between its own passes itself, on images that vk-graph never sees).
 
 use crate::Outcome;
 use crate::device::Gpu;
 use crate::frames::FRAMES_IN_FLIGHT;
-use crate::geometry::{Model, ModelNodes, STRIDE};
-use crate::targets::{DEPTH, MASK, TargetNodes, Targets};
-use antumbra::graph::Scope;
-use antumbra::{BorderBarriers, Description, Frame, Host, HostImage, MeshInstance, Requirements};
-use antumbra::{RectangleLight, Retired, Settings, ShadowNode};
+use crate::geometry::{Model, STRIDE};
+use crate::shot::Shot;
+use crate::targets::{DEPTH, MASK};
+use antumbra::{BorderBarriers, Description, Frame, Geometry, Host, HostImage, MeshBuffers};
+use antumbra::{MeshInstance, Requirements, Retired, Scope, Settings, ShadowNode, Visibility};
 use ash::vk;
-use glam::DMat4;
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 use std::time::{Duration, Instant};
 use vk::{AccessFlags as Access, ImageLayout as Layout, PipelineStageFlags as Stage};
 use vk_graph::Graph;
+use vk_graph::driver::DriverError;
 use vk_graph::driver::image::Image;
 use vk_graph::driver::sync::AccessType;
 
 /// The node, and memory for it.
 pub struct Shadows {
-    /// Shared with the command that records it, which is called when the graph is submitted.
+    /// Shared with the commands that record it: vk-graph calls them when the graph is submitted.
     node: Arc<Mutex<ShadowNode>>,
     allocator: Allocator,
     /// What resizes replaced, and the last frame that may use it.
     retired: Vec<(u64, Retired)>,
+    /// `--lie`
+    lie: bool,
 }
 
-/// Interim.
+/// What a frame's plan took, and what recording it will have taken.
 pub struct Told {
     pub plan: Duration,
     pub passes: usize,
-    pub recorded: Arc<OnceLock<Result<Duration, antumbra::Error>>>,
+    /// Barriers of the node's own.
+    pub barriers: usize,
+    /// Filled when the graph is submitted.
+    pub recorded: mpsc::Receiver<Result<Duration, antumbra::Error>>,
 }
 
 impl Shadows {
-    /// Lends the device and makes the node.
-    pub fn new(gpu: &Gpu, extent: [u32; 2], settings: Settings) -> Outcome<Self> {
+    /// Lends the device and makes the node for pictures of a size.
+    pub fn new(gpu: &Gpu, extent: [u32; 2], settings: Settings, lie: bool) -> Outcome<Self> {
         let physical = &gpu.device.physical;
         let (instance, device): (&ash::Instance, &ash::Device) = (&physical.instance, &gpu.device);
-        // SAFETY: the handles belong together, and the node is gone before vk-graph destroys them;
-        // the graphs keep what each frame lends until its fence is signalled, and vk-graph brings it
-        // into the said state; a slot is recorded, and what was retired destroyed, only behind that
-        // fence.
+        // SAFETY: the handles belong together, and `destroy` comes before vk-graph destroys them;
+        // a graph keeps what it binds until its fence is signalled, and brings it into the said
+        // layouts; a slot is recorded, and what was retired destroyed, only behind that fence.
         let host = unsafe {
             Host::borrow(instance.clone(), physical.handle, device.clone(), gpu.queue_family)
         };
+        // One sentence with everything that is missing; on a device that vk-graph takes, nothing is.
         Requirements::of(&host).met()?;
-        // vk-graph keeps its allocator to itself.
+        // vk-graph has an allocator too, but keeps it to itself.
         let mut allocator = Allocator::new(&AllocatorCreateDesc {
             instance: instance.clone(),
             device: device.clone(),
@@ -62,111 +73,108 @@ impl Shadows {
             depth_format: DEPTH,
             mask_format: Some(MASK),
             position_strides: vec![STRIDE],
+            lent_visibility: true,
             ..Description::new(extent)
         };
         let node = ShadowNode::new(host, &mut allocator, description)?;
-        Ok(Self { node: Arc::new(Mutex::new(node)), allocator, retired: Vec::new() })
+        Ok(Self { node: Arc::new(Mutex::new(node)), allocator, retired: Vec::new(), lie })
     }
 
-    /// Interim: the node's own image.
-    pub fn visibility(&self, gpu: &Gpu) -> Arc<Image> {
-        let v = self.node.lock().unwrap().visibility();
-        let info = vk_graph::driver::image::ImageInfo::image_2d(v.extent[0], v.extent[1], vk::Format::R32_SFLOAT,
-            vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_SRC);
-        Arc::new(unsafe { Image::from_raw(&gpu.device, v.image, info) })
+    /// The node.
+    pub fn node(&self) -> MutexGuard<'_, ShadowNode> {
+        lock(&self.node)
     }
 
-    pub fn add(
-        &self,
-        graph: &mut Graph,
-        targets: &Targets,
-        nodes: &TargetNodes,
-        models: &[(&Model, ModelNodes)],
-        light: RectangleLight,
-        world_from_ndc: DMat4,
-        slot: u32,
-        lie: bool,
-    ) -> Outcome<Told> {
-        let meshes: Vec<_> = models.iter().map(|(model, _)| mesh(model)).collect();
-        let sampled = Scope { stage: Stage::COMPUTE_SHADER, access: Access::SHADER_READ, layout: Layout::SHADER_READ_ONLY_OPTIMAL };
-        let lend = |image: &Image| -> Outcome<HostImage> {
-            let view = image.view(image.info.into_image_view())?;
-            Ok(HostImage { image: image.handle, view, before: sampled, after: sampled })
-        };
+    /// Plans the frame and adds the command that records it, between the G-buffer and whoever reads
+    /// visibility. The frame that last had the shot's slot must be done when the graph is submitted.
+    pub fn add(&self, graph: &mut Graph, shot: &Shot) -> Outcome<Told> {
+        let meshes: Vec<_> = shot.models.iter().map(mesh).collect();
+        let images = [&shot.targets.depth, &shot.targets.mask, &shot.targets.visibility];
+        let [depth, mask, visibility] = images.map(|image| lend(image));
         let frame = Frame {
-            light,
-            world_from_ndc,
-            background: 0.0,
-            meshes: &meshes,
-            depth: lend(&targets.depth)?,
-            mask: Some(lend(&targets.mask)?),
-            visibility_before: sampled,
-            visibility_after: sampled,
-            window: None,
-            slot,
+            mask: Some(mask?),
+            visibility: Visibility::Lent(visibility?),
+            slot: shot.slot,
             border_barriers: BorderBarriers::Host,
+            ..Frame::new(shot.light.light, shot.world_from_ndc, &meshes, depth?)
         };
         let started = Instant::now();
-        let plan = self.node.lock().unwrap().plan(&frame)?;
-        let took = started.elapsed();
+        let plan = self.node().plan(&frame)?;
+        let (tell, recorded) = mpsc::channel();
+        let told = Told {
+            plan: started.elapsed(),
+            passes: plan.plan.steps.len(),
+            barriers: plan.plan.steps.iter().map(|s| s.barriers.len()).sum(),
+            recorded,
+        };
+
         let mut command = graph.begin_cmd().debug_name("antumbra");
-        for use_ in plan.accesses() {
-            let image = match use_.name {
-                "gbuffer.depth" => nodes.depth,
-                "gbuffer.mask" => nodes.mask,
-                _ => nodes.visibility,
+        // What this frame's passes leave alone has no node use, and no need of a barrier here.
+        for (access, used) in plan.accesses().iter().filter_map(|a| Some((a, a.node?))) {
+            let image = images.into_iter().find(|image| image.handle == access.image);
+            let image = command.bind_resource(image.ok_or(access.name)?);
+            let said = if self.lie && used.writes {
+                AccessType::ComputeShaderReadOther // of a storage image, in GENERAL too
+            } else {
+                access_type(used.entry)?
             };
-            let mut access = access_type(use_.entry)?;
-            if lie && use_.writes { access = AccessType::ComputeShaderReadOther }
-            command.set_resource_access(image, access);
+            command.set_resource_access(image, said);
         }
-        for (_, nodes) in models {
-            command.set_resource_access(nodes.vertices, AccessType::VertexBuffer);
-            command.set_resource_access(nodes.indices, AccessType::IndexBuffer);
+        let buffers = shot.models.iter().flat_map(|model| [&model.vertices, &model.indices]);
+        let buffers: HashMap<_, _> = buffers.map(|buffer| (buffer.handle, buffer)).collect();
+        for access in plan.buffer_accesses() {
+            let buffer = command.bind_resource(buffers[&access.buffer]);
+            command.set_resource_access(buffer, access_type(access.scope)?);
         }
-        let recorded = Arc::new(OnceLock::new());
-        let told = Told { plan: took, passes: plan.plan.steps.len(), recorded: recorded.clone() };
         let node = self.node.clone();
         command.record_cmd(move |cmd| {
             let started = Instant::now();
-            let r = node.lock().unwrap_or_else(PoisonError::into_inner).record(cmd.handle, &plan);
-            let _ = recorded.set(r.map(|()| started.elapsed()));
+            let done = lock(&node).record(cmd.handle, &plan).map(|()| started.elapsed());
+            // Whoever does not listen does not care.
+            let _ = tell.send(done);
         });
         Ok(told)
     }
 
+    /// Makes the node fit pictures of another size. Frames up to `last_frame` may still run on what
+    /// this replaces.
     pub fn resize(&mut self, extent: [u32; 2], last_frame: u64) -> Outcome<()> {
-        let retired = self.node.lock().unwrap().resize(&mut self.allocator, extent)?;
+        let retired = lock(&self.node).resize(&mut self.allocator, extent)?;
         self.retired.push((last_frame, retired));
         Ok(())
     }
 
+    /// Destroys what no frame after `done` uses.
     pub fn frame_done(&mut self, done: u64) {
-        for (_, retired) in self.retired.extract_if(.., |(last, _)| *last <= done) {
+        for (_, retired) in self.retired.extract_if(.., |(last_frame, _)| *last_frame <= done) {
             retired.destroy(&mut self.allocator);
         }
     }
 
-    pub fn size(&self) -> (usize, u64) {
-        let node = self.node.lock().unwrap();
-        (node.object_count(), node.memory().iter().map(|m| m.1).sum())
-    }
-
+    /// Destroys the node, once every frame is done, and says how many bytes it has left behind: 0.
     pub fn destroy(mut self) -> Outcome<u64> {
-        let node = Arc::into_inner(self.node).ok_or("held")?.into_inner().unwrap();
+        self.frame_done(u64::MAX);
+        let node = Arc::into_inner(self.node).ok_or("a graph still holds the node")?;
+        let node = node.into_inner().unwrap_or_else(PoisonError::into_inner);
         node.destroy(&mut self.allocator);
-        for (_, r) in self.retired { r.destroy(&mut self.allocator); }
         Ok(self.allocator.generate_report().total_allocated_bytes)
     }
 }
 
+fn lock(node: &Mutex<ShadowNode>) -> MutexGuard<'_, ShadowNode> {
+    node.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A model as the node takes it.
 fn mesh(model: &Model) -> MeshInstance {
     MeshInstance {
-        positions: model.vertices.handle,
-        positions_offset: 0,
-        positions_stride: STRIDE,
-        indices: Some((model.indices.handle, 0, vk::IndexType::UINT32)),
-        count: model.count,
+        geometry: Geometry::Buffers(MeshBuffers {
+            positions: model.vertices.handle,
+            positions_offset: 0,
+            positions_stride: STRIDE,
+            indices: Some((model.indices.handle, 0, vk::IndexType::UINT32)),
+            count: model.count,
+        }),
         world_from_mesh: model.instance.world_from_mesh,
         bounds: model.bounds,
         role: model.instance.role,
@@ -174,14 +182,37 @@ fn mesh(model: &Model) -> MeshInstance {
     }
 }
 
+/// An image as the node takes it. vk-graph brings what a compute shader fetches into
+/// SHADER_READ_ONLY_OPTIMAL; the rest of the scopes is the graph's to know, not the node's.
+fn lend(image: &Image) -> Result<HostImage, DriverError> {
+    let info = image.info;
+    Ok(HostImage {
+        image: image.handle,
+        view: image.view(info.into_image_view())?,
+        format: info.format,
+        extent: [info.width, info.height],
+        usage: info.usage,
+        before: Scope::COMPUTE_SAMPLED,
+        after: Scope::COMPUTE_SAMPLED,
+    })
+}
+
+/// vk-graph's word for a use, which stands for stage, access and layout alike.
 fn access_type(scope: Scope) -> Outcome<AccessType> {
-    match (scope.stage, scope.access, scope.layout) {
-        (Stage::COMPUTE_SHADER, Access::SHADER_READ, Layout::SHADER_READ_ONLY_OPTIMAL) => {
-            Ok(AccessType::ComputeShaderReadSampledImageOrUniformTexelBuffer)
+    let fetched = (Access::SHADER_READ, Layout::SHADER_READ_ONLY_OPTIMAL);
+    Ok(match (scope.stage, (scope.access, scope.layout)) {
+        (Stage::COMPUTE_SHADER, f) if f == fetched => {
+            AccessType::ComputeShaderReadSampledImageOrUniformTexelBuffer
         }
-        (Stage::COMPUTE_SHADER, Access::SHADER_WRITE, Layout::GENERAL) => {
-            Ok(AccessType::ComputeShaderWrite)
+        (Stage::FRAGMENT_SHADER, f) if f == fetched => {
+            AccessType::FragmentShaderReadSampledImageOrUniformTexelBuffer
         }
-        _ => Err(format!("vk-graph has no word for {scope:?}").into()),
-    }
+        (_, f) if f == fetched => AccessType::AnyShaderReadSampledImageOrUniformTexelBuffer,
+        (Stage::COMPUTE_SHADER, (Access::SHADER_WRITE, Layout::GENERAL)) => {
+            AccessType::ComputeShaderWrite
+        }
+        (Stage::VERTEX_INPUT, (Access::VERTEX_ATTRIBUTE_READ, _)) => AccessType::VertexBuffer,
+        (Stage::VERTEX_INPUT, (Access::INDEX_READ, _)) => AccessType::IndexBuffer,
+        _ => return Err(format!("vk-graph has no word for {scope:?}").into()),
+    })
 }

@@ -5,9 +5,7 @@ use crate::device::Gpu;
 use ash::vk;
 use std::sync::Arc;
 use vk::ImageUsageFlags as Usage;
-use vk_graph::Graph;
 use vk_graph::driver::image::{Image, ImageInfo};
-use vk_graph::node::ImageNode;
 
 pub const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 pub const MASK: vk::Format = vk::Format::R8_UNORM;
@@ -26,16 +24,6 @@ pub struct Targets {
     /// The engine's own, lent to the node, which writes it.
     pub visibility: Arc<Image>,
     pub picture: Arc<Image>,
-}
-
-/// The images as one graph knows them.
-#[derive(Clone, Copy)]
-pub struct TargetNodes {
-    pub depth: ImageNode,
-    pub normal: ImageNode,
-    pub mask: ImageNode,
-    pub visibility: ImageNode,
-    pub picture: ImageNode,
 }
 
 impl Targets {
@@ -59,16 +47,5 @@ impl Targets {
             visibility: image("visibility", VISIBILITY, Usage::STORAGE | Usage::SAMPLED | copied)?,
             picture: image("picture", PICTURE, Usage::STORAGE | copied)?,
         })
-    }
-
-    /// Binds the images to a graph.
-    pub fn bind(&self, graph: &mut Graph) -> TargetNodes {
-        TargetNodes {
-            depth: graph.bind_resource(&self.depth),
-            normal: graph.bind_resource(&self.normal),
-            mask: graph.bind_resource(&self.mask),
-            visibility: graph.bind_resource(&self.visibility),
-            picture: graph.bind_resource(&self.picture),
-        }
     }
 }

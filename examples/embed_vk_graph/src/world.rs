@@ -1,7 +1,6 @@
 //! What there is to see: a glTF scene, its first light and its camera.
 
 use crate::Outcome;
-use antumbra::Role;
 use antumbra::scene::{AreaLight, Camera, Scene, from_gltf};
 use glam::{DMat4, DVec4};
 use std::path::Path;
@@ -19,7 +18,9 @@ impl World {
         let light = scene.light(None).map_err(|e| format!("{}: {e}", path.display()))?.clone();
         if scene.triangles() == 0 {
             let path = path.display();
-            return Err(format!("{path}: the scene has no triangles; at least one is needed").into());
+            return Err(
+                format!("{path}: the scene has no triangles; at least one is needed").into()
+            );
         }
         Ok(Self { scene, light })
     }
@@ -39,15 +40,11 @@ impl World {
         clip_from_view * camera.world_from_view.inverse()
     }
 
-    /// The light's radiance, exposed so that white paper amid the occluders would just be white.
-    pub fn radiance(&self) -> [f32; 4] {
-        let light = &self.light.light;
-        let [a, b] = light.half_extents();
-        let center = self.scene.bounds(|i| i.role != Role::Receiver).map(|b| b.center());
-        let r2 = center.map_or(1.0, |c| c.distance_squared(light.center()));
-        let exposure = (r2 / (4.0 * a * b)) as f32;
-        let [r, g, b] = self.light.color;
-        let peak = r.max(g).max(b).max(1e-6);
-        [r, g, b, peak].map(|c| c / peak * exposure)
+    /// The radiance at which white paper amid the occluders, facing the light, is just white.
+    pub fn exposure(&self) -> f32 {
+        let [a, b] = self.light.light.half_extents();
+        let center = self.scene.bounds(|i| i.role.blocks()).map(|b| b.center());
+        let r2 = center.map_or(1.0, |c| c.distance_squared(self.light.light.center()));
+        (r2 / (4.0 * a * b)) as f32
     }
 }

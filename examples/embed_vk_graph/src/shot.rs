@@ -1,0 +1,21 @@
+//! What every pass of a frame is given.
+
+use crate::geometry::Model;
+use crate::targets::Targets;
+use antumbra::scene::AreaLight;
+use glam::DMat4;
+
+/// One frame: where from, in what light, of what, into which images.
+pub struct Shot<'a> {
+    /// Which of the frames in flight it is.
+    pub slot: u32,
+    /// World space to clip space.
+    pub clip_from_world: DMat4,
+    /// The inverse.
+    pub world_from_ndc: DMat4,
+    pub light: &'a AreaLight,
+    /// Light that the picture shows as white.
+    pub exposure: f32,
+    pub models: &'a [Model],
+    pub targets: &'a Targets,
+}
