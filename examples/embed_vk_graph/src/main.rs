@@ -37,6 +37,7 @@ use options::Options;
 use shadows::Shadows;
 use shot::Shot;
 use std::process::ExitCode;
+use std::time::Instant;
 use targets::Targets;
 use vk_graph::Graph;
 use world::World;
@@ -72,7 +73,7 @@ fn run(options: &Options, world: &World) -> Outcome<()> {
     let compose_pass = ComposePass::new(&gpu)?;
     let models = geometry::upload(&gpu, &world.scene)?;
     let mut targets = Targets::new(&gpu, options.size)?;
-    let mut shadows = Shadows::new(&gpu, options.size, options.settings, options.lie)?;
+    let mut shadows = Shadows::new(&gpu, options.size, options.settings)?;
     let mut frames = Frames::new(&gpu);
 
     println!("frame  size        plan µs  record µs  passes  barriers");
@@ -106,24 +107,31 @@ fn run(options: &Options, world: &World) -> Outcome<()> {
             models: &models,
             targets: &targets,
         };
+        // Pure: what the node will do this frame, from what the engine says of it.
+        let started = Instant::now();
+        let plan = shadows.plan(&shot)?;
+        let planned = started.elapsed();
+        let steps = &plan.plan.steps;
+        let (passes, barriers) =
+            (steps.len(), steps.iter().map(|s| s.barriers.len()).sum::<usize>());
+
         let mut graph = Graph::new();
         gbuffer_pass.add(&mut graph, &shot);
-        let told = shadows.add(&mut graph, &shot)?;
+        let recorded = shadows.add(&mut graph, &shot, plan, options.lie)?;
         compose_pass.add(&mut graph, &shot);
         if number + 1 == count {
             read_back = Some(ReadBack::add(&gpu, &mut graph, &targets)?);
         }
         frames.submit(number, graph)?;
 
-        let record = told.recorded.try_recv().map_err(|_| "the graph left the node out")??;
+        // The submit has recorded every command, the node's too.
+        let recorded = recorded.try_recv().map_err(|_| "the graph left the node out")??;
         let [width, height] = targets.extent;
         println!(
-            "{number:>5}  {:<10}  {:>7.1}  {:>9.1}  {:>6}  {:>8}",
+            "{number:>5}  {:<10}  {:>7.1}  {:>9.1}  {passes:>6}  {barriers:>8}",
             format!("{width}×{height}"),
-            told.plan.as_secs_f64() * 1e6,
-            record.as_secs_f64() * 1e6,
-            told.passes,
-            told.barriers,
+            planned.as_secs_f64() * 1e6,
+            recorded.as_secs_f64() * 1e6,
         );
     }
 
@@ -134,9 +142,6 @@ fn run(options: &Options, world: &World) -> Outcome<()> {
             shadows.frame_done(done);
         }
     }
-    if let Some(read_back) = &read_back {
-        output::write(&options.out, targets.extent, read_back)?;
-    }
     let (objects, memory) = {
         let node = shadows.node();
         (node.object_count(), node.memory())
@@ -146,6 +151,9 @@ fn run(options: &Options, world: &World) -> Outcome<()> {
     match shadows.destroy()? {
         0 => println!("the node is gone: 0 bytes left"),
         left => return Err(format!("the node is gone, but {left} of its bytes are left").into()),
+    }
+    if let Some(read_back) = &read_back {
+        output::write(&options.out, targets.extent, read_back)?;
     }
     Ok(())
 }
