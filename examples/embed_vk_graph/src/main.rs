@@ -106,6 +106,7 @@ fn run(options: &Options, world: &World) -> Outcome<()> {
             exposure,
             models: &models,
             targets: &targets,
+            lie: options.lie,
         };
         // Pure: what the node will do this frame, from what the engine says of it.
         let started = Instant::now();
@@ -117,7 +118,7 @@ fn run(options: &Options, world: &World) -> Outcome<()> {
 
         let mut graph = Graph::new();
         gbuffer_pass.add(&mut graph, &shot);
-        let recorded = shadows.add(&mut graph, &shot, plan, options.lie)?;
+        let recorded = shadows.add(&mut graph, &shot, plan)?;
         compose_pass.add(&mut graph, &shot);
         if number + 1 == count {
             read_back = Some(ReadBack::add(&gpu, &mut graph, &targets)?);

@@ -13,8 +13,7 @@ use crate::shot::Shot;
 use crate::targets::{DEPTH, MASK};
 use antumbra::{BorderBarriers, Description, Error, Frame, FramePlan, Geometry, Host, HostImage};
 use antumbra::{MeshBuffers, MeshInstance, Retired, Scope, Settings, ShadowNode, Visibility};
-use ash::vk;
-use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
+use gpu_allocator::vulkan::Allocator;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 use std::time::{Duration, Instant};
 use vk_graph::Graph;
@@ -35,22 +34,15 @@ pub type Recorded = mpsc::Receiver<Result<Duration, Error>>;
 impl Shadows {
     /// Lends the device and makes the node for pictures of a size.
     pub fn new(gpu: &Gpu, extent: [u32; 2], settings: Settings) -> Outcome<Self> {
-        let physical_device = gpu.device.physical.handle;
         let instance = ash::Instance::clone(&gpu.device.physical.instance);
         let device = ash::Device::clone(&gpu.device);
-        // vk-graph has an allocator too, but keeps it to itself.
-        let mut allocator = Allocator::new(&AllocatorCreateDesc {
-            instance: instance.clone(),
-            device: device.clone(),
-            physical_device,
-            debug_settings: gpu_allocator::AllocatorDebugSettings::default(),
-            buffer_device_address: false,
-            allocation_sizes: gpu_allocator::AllocationSizes::default(),
-        })?;
+        let physical_device = gpu.device.physical.handle;
         // SAFETY: the handles belong together, and `destroy` comes before vk-graph destroys them;
         // a graph keeps what it binds until its fence is signalled, and brings it into the said
         // layouts; a slot is recorded, and what was retired destroyed, only behind that fence.
         let host = unsafe { Host::borrow(instance, physical_device, device, gpu.queue_family) };
+        // vk-graph has an allocator too, but keeps it to itself.
+        let mut allocator = host.new_allocator()?;
         let description = Description {
             settings,
             frames_in_flight: FRAMES_IN_FLIGHT,
@@ -84,26 +76,20 @@ impl Shadows {
 
     /// Adds the command that records the plan, between the G-buffer and whoever reads visibility.
     /// The frame that last had the shot's slot must be done when the graph is submitted.
-    pub fn add(
-        &self,
-        graph: &mut Graph,
-        shot: &Shot,
-        plan: FramePlan,
-        lie: bool,
-    ) -> Outcome<Recorded> {
+    pub fn add(&self, graph: &mut Graph, shot: &Shot, plan: FramePlan) -> Outcome<Recorded> {
         let mut command = graph.begin_cmd().debug_name("antumbra");
         for image in [&shot.targets.depth, &shot.targets.mask, &shot.targets.visibility] {
             let access = plan.accesses().iter().find(|access| access.image == image.handle);
             // What this frame's passes leave alone needs no barrier here.
             let Some(used) = access.and_then(|access| access.node) else { continue };
             let image = command.bind_resource(image);
-            command.set_resource_access(image, access_type(used.entry, lie)?);
+            command.set_resource_access(image, access_type(used.entry, shot.lie)?);
         }
+        // `plan.buffer_accesses` leaves out the meshes that this frame does; here they do no harm.
         for model in shot.models {
-            let vertices = command.bind_resource(&model.vertices);
-            let indices = command.bind_resource(&model.indices);
-            command.set_resource_access(vertices, AccessType::VertexBuffer);
-            command.set_resource_access(indices, AccessType::IndexBuffer);
+            let buffers = [&model.vertices, &model.indices].map(|b| command.bind_resource(b));
+            command.set_resource_access(buffers[0], AccessType::VertexBuffer);
+            command.set_resource_access(buffers[1], AccessType::IndexBuffer);
         }
         let (tell, recorded) = mpsc::channel();
         let node = self.node.clone();
@@ -146,14 +132,10 @@ fn lock(node: &Mutex<ShadowNode>) -> MutexGuard<'_, ShadowNode> {
 
 /// A model as the node takes it.
 fn mesh(model: &Model) -> MeshInstance {
+    let [vertices, indices] = [&model.vertices, &model.indices].map(|buffer| buffer.handle);
+    let buffers = MeshBuffers::indexed(vertices, STRIDE, indices, model.count);
     MeshInstance {
-        geometry: Geometry::Buffers(MeshBuffers {
-            positions: model.vertices.handle,
-            positions_offset: 0,
-            positions_stride: STRIDE,
-            indices: Some((model.indices.handle, 0, vk::IndexType::UINT32)),
-            count: model.count,
-        }),
+        geometry: Geometry::Buffers(buffers),
         world_from_mesh: model.instance.world_from_mesh,
         bounds: model.bounds,
         role: model.instance.role,

@@ -18,4 +18,6 @@ pub struct Shot<'a> {
     pub exposure: f32,
     pub models: &'a [Model],
     pub targets: &'a Targets,
+    /// `--lie`: the graph hears of the node's write as a read.
+    pub lie: bool,
 }
