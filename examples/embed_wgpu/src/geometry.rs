@@ -62,7 +62,7 @@ impl Object {
                     vertices,
                     indices,
                     count: mesh.indices.len() as u32,
-                    bounds: bounds(mesh),
+                    bounds: mesh.bounds(),
                     double_sided: mesh.double_sided,
                     role: instance.role,
                     world_from_mesh: instance.world_from_mesh,
@@ -95,13 +95,6 @@ fn upload(gpu: &Gpu, mesh: &scene::Mesh) -> (wgpu::Buffer, wgpu::Buffer) {
         buffer("vertices", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX),
         buffer("indices", bytemuck::cast_slice(&mesh.indices), wgpu::BufferUsages::INDEX),
     )
-}
-
-fn bounds(mesh: &scene::Mesh) -> [[f32; 3]; 2] {
-    let extreme = |pick: fn(f32, f32) -> f32, start: f32| {
-        mesh.positions.iter().fold([start; 3], |m, p| [0, 1, 2].map(|i| pick(m[i], p[i])))
-    };
-    [extreme(f32::min, f32::INFINITY), extreme(f32::max, f32::NEG_INFINITY)]
 }
 
 /// Bytes between two objects' uniforms: what dynamic offsets are multiples of by default.

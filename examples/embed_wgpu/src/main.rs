@@ -1,27 +1,82 @@
-//! A wgpu program that hosts antumbra's node.
+//! A program built on wgpu that hosts antumbra's node.
+//!
+//! `cargo run --release --example embed_wgpu -- --out out/embed_wgpu`
+//!
+//! No window: a glTF scene with soft shadows, drawn a few times with two frames in flight; the last
+//! one is written as files. The program turns no feature of wgpu's on. Whatever knows the node is
+//! in one file; the rest is a program that would look like this without shadows too:
+//!
+//! ```text
+//!   shadows    antumbra's node, lent wgpu's device, textures and buffers
+//!
+//!   options    the command line                        device     device, textures, errors
+//!   world      scene, light, camera                    geometry   vertex and index buffers
+//!   gbuffer    draws depth, normal, mask               compose    visibility × irradiance
+//!   output     copies out, EXR, PNG                    occluder_maps   --own-shadow-map
+//! ```
 
-#![allow(unsafe_code, reason = "an engine calls Vulkan")]
+#![allow(unsafe_code, reason = "the node and wgpu meet at raw Vulkan handles")]
 
 mod compose;
 mod device;
 mod gbuffer;
 mod geometry;
+mod occluder_maps;
 mod options;
 mod output;
+mod shadows;
 mod world;
 
+use antumbra::Retired;
 use compose::ComposePass;
 use device::{Gpu, Target};
 use gbuffer::{GBuffer, GBufferPass};
 use geometry::Object;
+use occluder_maps::{LightView, OccluderPass};
 use options::Options;
 use output::Copied;
+use shadows::{Lent, Shadows};
 use std::process::ExitCode;
-use wgpu::TextureUsages as Usage;
+use std::time::Instant;
+use wgpu::{SubmissionIndex, TextureFormat, TextureUsages};
 use world::World;
+
+/// How many frames are submitted before the first of them must be done.
+const FRAMES_IN_FLIGHT: usize = 2;
+
+/// The side of the program's own occluder maps, in texels: the node's default.
+const MAP_SIDE: u32 = 256;
 
 /// What goes wrong in an example is told and ends it.
 type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
+
+/// Everything of the window's size, had there been a window.
+struct Targets {
+    gbuffer: GBuffer,
+    visibility: Target,
+    picture: Target,
+}
+
+impl Targets {
+    fn new(gpu: &Gpu, pass: &GBufferPass, extent: [u32; 2]) -> Outcome<Self> {
+        use TextureUsages as Usage;
+        let usage = Usage::STORAGE_BINDING | Usage::TEXTURE_BINDING | Usage::COPY_SRC;
+        let new = Self {
+            gbuffer: pass.images(gpu, extent),
+            visibility: gpu.zeroed_target("visibility", TextureFormat::R32Float, extent, usage),
+            picture: ComposePass::picture(gpu, extent),
+        };
+        gpu.check().map(|()| new)
+    }
+}
+
+/// What a resize replaced, and the last frame that may use it.
+struct Replaced {
+    last_frame: u64,
+    /// wgpu would keep what its own commands use; of the node's it does not know.
+    _targets: Targets,
+    node: Retired,
+}
 
 fn main() -> ExitCode {
     let options = match options::parse() {
@@ -41,33 +96,128 @@ fn main() -> ExitCode {
 }
 
 fn run(options: &Options) -> Outcome<()> {
+    // ---- Set up -----------------------------------------------------------------------------
     let world = World::load(&options.scene)?;
+    std::fs::create_dir_all(&options.out).map_err(|e| format!("{}: {e}", options.out.display()))?;
     let gpu = Gpu::new()?;
+    println!("{}", gpu.name);
     let objects = Object::all(&gpu, &world.scene);
     let gbuffer_pass = GBufferPass::new(&gpu, objects.len());
     let compose_pass = ComposePass::new(&gpu);
-    std::fs::create_dir_all(&options.out)?;
-    let gbuffer = gbuffer_pass.images(&gpu, options.size);
-    let picture = ComposePass::picture(&gpu, options.size);
-    let visibility = gpu.zeroed_target(
-        "visibility",
-        wgpu::TextureFormat::R32Float,
-        options.size,
-        Usage::STORAGE_BINDING | Usage::TEXTURE_BINDING | Usage::COPY_SRC,
-    );
+    let own_maps = match options.own_shadow_map {
+        true => {
+            Some((OccluderPass::new(&gpu, objects.len()), LightView::new(&gpu, &world, MAP_SIDE)?))
+        }
+        false => None,
+    };
+    let mut targets = Targets::new(&gpu, &gbuffer_pass, options.size)?;
+    let mut shadows = Shadows::new(&gpu, &objects, options.size, options.own_shadow_map)?;
+
+    println!("frame  size       plan µs  record µs  passes  node objects  node MB");
+    let mut running: [Option<(u64, SubmissionIndex)>; FRAMES_IN_FLIGHT] = [None, None];
+    let mut replaced: Vec<Replaced> = Vec::new();
+    let mut copies = None;
+    for number in 0..options.frame_count() {
+        // ---- Wait for the slot --------------------------------------------------------------
+        // The frame before last had it; what that one was the last to use can go.
+        let slot = (number % FRAMES_IN_FLIGHT as u64) as usize;
+        if let Some((done, submission)) = running[slot].take() {
+            gpu.wait(submission)?;
+            destroy_replaced(&mut replaced, &mut shadows, done);
+        }
+
+        // ---- Resize -------------------------------------------------------------------------
+        // The frame before this one may still run on the old images: they wait until it is done.
+        if number > 0 && number <= options.resizes {
+            let extent = options.size_of_frame(number);
+            let new = Targets::new(&gpu, &gbuffer_pass, extent)?;
+            let started = Instant::now();
+            let node = shadows.resize(extent)?;
+            println!("resize: {:.1} ms", started.elapsed().as_secs_f64() * 1e3);
+            let old = std::mem::replace(&mut targets, new);
+            replaced.push(Replaced { last_frame: number - 1, _targets: old, node });
+        }
+        let Targets { gbuffer, visibility, picture } = &targets;
+        let view = world.view(picture.extent());
+
+        // ---- What is seen -------------------------------------------------------------------
+        let encoder = |name| {
+            let label = wgpu::CommandEncoderDescriptor { label: Some(name) };
+            gpu.device.create_command_encoder(&label)
+        };
+        let mut seen = encoder("seen");
+        gbuffer_pass.record(&gpu, &mut seen, gbuffer, &objects, &view);
+        if let Some((pass, maps)) = &own_maps {
+            pass.record(&gpu, &mut seen, maps, &objects);
+        }
+
+        // ---- Shadows ------------------------------------------------------------------------
+        let lent = Lent {
+            light: *world.rectangle(),
+            world_from_ndc: view.world_from_ndc(),
+            gbuffer,
+            visibility,
+            occluders: own_maps.as_ref().map(|(_, maps)| maps),
+            slot: slot as u32,
+        };
+        let started = Instant::now();
+        let plan = shadows.plan(&lent)?;
+        let plan_time = started.elapsed();
+        let started = Instant::now();
+        let [border, node] = shadows.record(&gpu, &plan, &lent, &objects)?;
+        let record_time = started.elapsed();
+
+        // ---- Compose ------------------------------------------------------------------------
+        let mut shaded = encoder("shaded");
+        let inputs = (gbuffer, visibility);
+        compose_pass.record(&gpu, &mut shaded, inputs, picture, (&world, &view));
+        if number + 1 == options.frame_count() {
+            copies = Some(
+                [&gbuffer.depth, visibility, picture]
+                    .map(|image| Copied::record(&gpu, &mut shaded, image)),
+            );
+        }
+        let commands = [seen.finish(), border, node, shaded.finish()];
+        running[slot] = Some((number, gpu.queue.submit(commands)));
+        gpu.check()?;
+
+        let [width, height] = picture.extent();
+        println!(
+            "{number:>5}  {:<9}  {:>7.1}  {:>9.1}  {:>6}  {:>12}  {:>7.2}",
+            format!("{width}×{height}"),
+            plan_time.as_secs_f64() * 1e6,
+            record_time.as_secs_f64() * 1e6,
+            plan.plan.steps.len(),
+            shadows.node().object_count(),
+            shadows.node().memory().iter().map(|(_, bytes)| bytes).sum::<u64>() as f64 / 1e6,
+        );
+    }
+
+    // ---- Files ------------------------------------------------------------------------------
+    if let Some([depth, visibility, picture]) = copies {
+        depth.exr(&gpu, &options.out.join("depth.exr"))?;
+        visibility.exr(&gpu, &options.out.join("visibility.exr"))?;
+        picture.png(&gpu, &options.out.join("picture.png"))?;
+    }
+
+    // ---- Tear down --------------------------------------------------------------------------
+    // The node before the device that it borrowed, and behind every frame.
+    for (done, submission) in running.into_iter().flatten() {
+        gpu.wait(submission)?;
+        destroy_replaced(&mut replaced, &mut shadows, done);
+    }
+    let left = shadows.destroy();
+    println!("the node is destroyed; its allocator holds {left} bytes");
     gpu.check()?;
-    println!("{}", gpu.name);
-    let view = world.view(options.size);
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    gbuffer_pass.record(&gpu, &mut encoder, &gbuffer, &objects, &view);
-    compose_pass.record(&gpu, &mut encoder, (&gbuffer, &visibility), &picture, (&world, &view));
-    let a = Copied::record(&gpu, &mut encoder, &gbuffer.depth);
-    let b = Copied::record(&gpu, &mut encoder, &picture);
-    let i = gpu.queue.submit([encoder.finish()]);
-    gpu.wait(i)?;
-    gpu.check()?;
-    a.exr(&gpu, &options.out.join("depth.exr"))?;
-    b.png(&gpu, &options.out.join("picture.png"))?;
-    gpu.check()?;
-    Ok(())
+    match left {
+        0 => Ok(()),
+        _ => Err(format!("the node left {left} bytes of device memory behind").into()),
+    }
+}
+
+/// Destroys what no frame after `done` uses.
+fn destroy_replaced(replaced: &mut Vec<Replaced>, shadows: &mut Shadows, done: u64) {
+    while replaced.first().is_some_and(|r| r.last_frame <= done) {
+        shadows.destroy_retired(replaced.remove(0).node);
+    }
 }
