@@ -1,8 +1,8 @@
 //! Compose: visibility × unshadowed irradiance, into the picture.
 
 use crate::device::{Gpu, Target};
-use crate::gbuffer::GBuffer;
 use crate::world::{View, World};
+use crate::{Outcome, Seen, Targets};
 use glam::DVec3;
 use wgpu::{TextureFormat, TextureUsages};
 
@@ -66,22 +66,16 @@ impl ComposePass {
     }
 
     /// The image that pictures of a size are composed into.
-    pub fn picture(gpu: &Gpu, extent: [u32; 2]) -> Target {
+    pub fn picture(gpu: &Gpu, extent: [u32; 2]) -> Outcome<Target> {
         let usage = TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC;
         gpu.target("picture", PICTURE, extent, usage)
     }
 
     /// Composes.
-    pub fn record(
-        &self,
-        gpu: &Gpu,
-        encoder: &mut wgpu::CommandEncoder,
-        (gbuffer, visibility): (&GBuffer, &Target),
-        picture: &Target,
-        (world, view): (&World, &View),
-    ) {
-        let uniforms = Uniforms::new(world, view);
+    pub fn record(&self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, seen: &Seen) {
+        let uniforms = Uniforms::new(seen.world, &seen.view);
         gpu.queue.write_buffer(&self.uniforms, 0, bytemuck::bytes_of(&uniforms));
+        let Targets { gbuffer, visibility, picture } = seen.targets;
         fn image(binding: u32, target: &Target) -> wgpu::BindGroupEntry<'_> {
             let resource = wgpu::BindingResource::TextureView(&target.view);
             wgpu::BindGroupEntry { binding, resource }

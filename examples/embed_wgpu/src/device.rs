@@ -1,10 +1,12 @@
 //! The program's device, as wgpu gives it to anyone: no feature asked for, default limits.
 
 use crate::Outcome;
+use crate::raw::{self, RawImage};
 use std::future::Future;
 use std::pin::pin;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::task::{Context, Poll, Waker};
+use wgpu::util::{DeviceExt, TextureDataOrder};
 use wgpu::{Backends, DeviceType, SubmissionIndex, TextureFormat, TextureUsages};
 
 /// What the rest of the program calls wgpu with.
@@ -62,6 +64,12 @@ impl Gpu {
         Ok(())
     }
 
+    /// An encoder.
+    pub fn encoder(&self, name: &str) -> wgpu::CommandEncoder {
+        let create = wgpu::CommandEncoderDescriptor { label: Some(name) };
+        self.device.create_command_encoder(&create)
+    }
+
     /// A 2D texture of one level, and its only view.
     pub fn target(
         &self,
@@ -69,31 +77,28 @@ impl Gpu {
         format: TextureFormat,
         extent: [u32; 2],
         usage: TextureUsages,
-    ) -> Target {
+    ) -> Outcome<Target> {
         let texture = self.device.create_texture(&describe(name, format, extent, usage));
-        Target::of(texture)
+        Target::of(self, texture)
     }
 
     /// The same, full of zeros that wgpu knows it has written.
     ///
-    /// A texture that was never written is cleared by wgpu before its first use in a shader. What
-    /// is written behind its back does not count: wgpu would clear the node's result.
+    /// wgpu clears a texture that was never written before a shader's first use of it. What others
+    /// write behind its back does not count: it would clear the node's first result away.
     pub fn zeroed_target(
         &self,
         name: &str,
         format: TextureFormat,
         extent: [u32; 2],
         usage: TextureUsages,
-    ) -> Target {
-        use wgpu::util::{DeviceExt, TextureDataOrder};
-        let texel = format.block_copy_size(None).unwrap_or(4) as usize;
-        let zeros = vec![0; extent.map(|e| e as usize).iter().product::<usize>() * texel];
-        Target::of(self.device.create_texture_with_data(
-            &self.queue,
-            &describe(name, format, extent, usage),
-            TextureDataOrder::LayerMajor,
-            &zeros,
-        ))
+    ) -> Outcome<Target> {
+        let texel = format.block_copy_size(None).ok_or("this format cannot be copied to")?;
+        let zeros = vec![0; extent.iter().map(|&e| e as usize).product::<usize>() * texel as usize];
+        let create = describe(name, format, extent, usage);
+        let order = TextureDataOrder::LayerMajor;
+        let texture = self.device.create_texture_with_data(&self.queue, &create, order, &zeros);
+        Target::of(self, texture)
     }
 }
 
@@ -119,12 +124,16 @@ fn describe(
 pub struct Target {
     pub texture: wgpu::Texture,
     pub view: wgpu::TextureView,
+    /// Both, as Vulkan knows them.
+    pub raw: RawImage,
 }
 
 impl Target {
-    fn of(texture: wgpu::Texture) -> Self {
+    fn of(gpu: &Gpu, texture: wgpu::Texture) -> Outcome<Self> {
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        Self { texture, view }
+        gpu.check()?;
+        let raw = raw::image(&texture, &view)?;
+        Ok(Self { texture, view, raw })
     }
 
     /// Width and height.

@@ -1,5 +1,6 @@
 //! The G-buffer: depth, normal and role of each pixel.
 
+use crate::Outcome;
 use crate::device::{Gpu, Target};
 use crate::geometry::{Object, PerObject, vertex_layout};
 use crate::world::View;
@@ -7,7 +8,7 @@ use wgpu::{TextureFormat, TextureUsages};
 
 pub const DEPTH: TextureFormat = TextureFormat::Depth32Float;
 const NORMAL: TextureFormat = TextureFormat::Rgba16Float;
-pub const MASK: TextureFormat = TextureFormat::R8Unorm;
+const MASK: TextureFormat = TextureFormat::R8Unorm;
 
 /// The images, all of one size.
 pub struct GBuffer {
@@ -77,15 +78,15 @@ impl GBufferPass {
     }
 
     /// Images of a size, not yet drawn.
-    pub fn images(&self, gpu: &Gpu, extent: [u32; 2]) -> GBuffer {
+    pub fn images(&self, gpu: &Gpu, extent: [u32; 2]) -> Outcome<GBuffer> {
         use TextureUsages as Usage;
         // Sampled is what the node asks of both images that it is lent.
         let drawn = Usage::RENDER_ATTACHMENT | Usage::TEXTURE_BINDING;
-        GBuffer {
-            depth: gpu.target("gbuffer.depth", DEPTH, extent, drawn | Usage::COPY_SRC),
-            normal: gpu.target("gbuffer.normal", NORMAL, extent, drawn),
-            mask: gpu.target("gbuffer.mask", MASK, extent, drawn),
-        }
+        Ok(GBuffer {
+            depth: gpu.target("gbuffer.depth", DEPTH, extent, drawn | Usage::COPY_SRC)?,
+            normal: gpu.target("gbuffer.normal", NORMAL, extent, drawn)?,
+            mask: gpu.target("gbuffer.mask", MASK, extent, drawn)?,
+        })
     }
 
     /// Draws every object.

@@ -1,9 +1,12 @@
 //! The scene's triangles in vertex and index buffers, and what shaders are told of each object.
 
 use crate::device::Gpu;
-use antumbra::Role;
+use crate::{Outcome, raw};
+use antumbra::frame::{Geometry, MeshBuffers};
 use antumbra::scene::{self, Scene};
-use glam::DMat4;
+use antumbra::{MeshInstance, Role};
+use ash::vk;
+use glam::{DMat4, DVec3};
 use std::marker::PhantomData;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
@@ -70,6 +73,32 @@ impl Object {
                 }
             })
             .collect()
+    }
+
+    /// The corners of its box, in the world.
+    pub fn corners(&self) -> [DVec3; 8] {
+        std::array::from_fn(|i| {
+            let pick = |axis: usize| f64::from(self.bounds[i >> axis & 1][axis]);
+            self.world_from_mesh.transform_point3(DVec3::new(pick(0), pick(1), pick(2)))
+        })
+    }
+
+    /// The same buffers as the node takes them.
+    pub fn for_node(&self) -> Outcome<MeshInstance> {
+        let buffers = MeshBuffers {
+            positions: raw::buffer(&self.vertices)?,
+            positions_offset: 0,
+            positions_stride: STRIDE,
+            indices: Some((raw::buffer(&self.indices)?, 0, vk::IndexType::UINT32)),
+            count: self.count,
+        };
+        Ok(MeshInstance {
+            geometry: Geometry::Buffers(buffers),
+            world_from_mesh: self.world_from_mesh,
+            bounds: self.bounds,
+            role: self.role,
+            double_sided: self.double_sided,
+        })
     }
 
     /// Draws its triangles with whatever pipeline is set.

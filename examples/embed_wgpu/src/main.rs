@@ -12,7 +12,8 @@
 //!   options    the command line                        device     device, textures, errors
 //!   world      scene, light, camera                    geometry   vertex and index buffers
 //!   gbuffer    draws depth, normal, mask               compose    visibility × irradiance
-//!   output     copies out, EXR, PNG                    occluder_maps   --own-shadow-map
+//!   output     copies out, EXR, PNG                    raw        Vulkan's handles of wgpu's
+//!   occluder_maps   --own-shadow-map
 //! ```
 
 #![allow(unsafe_code, reason = "the node and wgpu meet at raw Vulkan handles")]
@@ -24,6 +25,7 @@ mod geometry;
 mod occluder_maps;
 mod options;
 mod output;
+mod raw;
 mod shadows;
 mod world;
 
@@ -35,17 +37,14 @@ use geometry::Object;
 use occluder_maps::{LightView, OccluderPass};
 use options::Options;
 use output::Copied;
-use shadows::{Lent, Shadows};
+use shadows::Shadows;
 use std::process::ExitCode;
 use std::time::Instant;
 use wgpu::{SubmissionIndex, TextureFormat, TextureUsages};
-use world::World;
+use world::{View, World};
 
 /// How many frames are submitted before the first of them must be done.
 const FRAMES_IN_FLIGHT: usize = 2;
-
-/// The side of the program's own occluder maps, in texels: the node's default.
-const MAP_SIDE: u32 = 256;
 
 /// What goes wrong in an example is told and ends it.
 type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
@@ -61,13 +60,22 @@ impl Targets {
     fn new(gpu: &Gpu, pass: &GBufferPass, extent: [u32; 2]) -> Outcome<Self> {
         use TextureUsages as Usage;
         let usage = Usage::STORAGE_BINDING | Usage::TEXTURE_BINDING | Usage::COPY_SRC;
-        let new = Self {
-            gbuffer: pass.images(gpu, extent),
-            visibility: gpu.zeroed_target("visibility", TextureFormat::R32Float, extent, usage),
-            picture: ComposePass::picture(gpu, extent),
-        };
-        gpu.check().map(|()| new)
+        Ok(Self {
+            gbuffer: pass.images(gpu, extent)?,
+            visibility: gpu.zeroed_target("visibility", TextureFormat::R32Float, extent, usage)?,
+            picture: ComposePass::picture(gpu, extent)?,
+        })
     }
+}
+
+/// What one frame shows.
+struct Seen<'a> {
+    world: &'a World,
+    view: View,
+    targets: &'a Targets,
+    /// Occluder maps of the program's own.
+    maps: Option<&'a LightView>,
+    slot: usize,
 }
 
 /// What a resize replaced, and the last frame that may use it.
@@ -104,20 +112,24 @@ fn run(options: &Options) -> Outcome<()> {
     let objects = Object::all(&gpu, &world.scene);
     let gbuffer_pass = GBufferPass::new(&gpu, objects.len());
     let compose_pass = ComposePass::new(&gpu);
+    let mut targets = Targets::new(&gpu, &gbuffer_pass, options.size)?;
+    let mut shadows = Shadows::new(&gpu, options.size, options.own_shadow_map)?;
+    let meshes = objects.iter().map(Object::for_node).collect::<Outcome<Vec<_>>>()?;
+    let side = shadows.node.description().settings.soft_shadow_map.map;
     let own_maps = match options.own_shadow_map {
-        true => {
-            Some((OccluderPass::new(&gpu, objects.len()), LightView::new(&gpu, &world, MAP_SIDE)?))
-        }
+        true => Some((
+            OccluderPass::new(&gpu, objects.len()),
+            LightView::new(&gpu, &world, &objects, side)?,
+        )),
         false => None,
     };
-    let mut targets = Targets::new(&gpu, &gbuffer_pass, options.size)?;
-    let mut shadows = Shadows::new(&gpu, &objects, options.size, options.own_shadow_map)?;
 
     println!("frame  size       plan µs  record µs  passes  node objects  node MB");
     let mut running: [Option<(u64, SubmissionIndex)>; FRAMES_IN_FLIGHT] = [None, None];
     let mut replaced: Vec<Replaced> = Vec::new();
+    let mut resizes = 0;
     let mut copies = None;
-    for number in 0..options.frame_count() {
+    for number in 0..options.frames {
         // ---- Wait for the slot --------------------------------------------------------------
         // The frame before last had it; what that one was the last to use can go.
         let slot = (number % FRAMES_IN_FLIGHT as u64) as usize;
@@ -128,56 +140,51 @@ fn run(options: &Options) -> Outcome<()> {
 
         // ---- Resize -------------------------------------------------------------------------
         // The frame before this one may still run on the old images: they wait until it is done.
-        if number > 0 && number <= options.resizes {
-            let extent = options.size_of_frame(number);
+        while resizes < options.resizes_before(number) {
+            resizes += 1;
+            let extent = options.size_after(resizes);
             let new = Targets::new(&gpu, &gbuffer_pass, extent)?;
             let started = Instant::now();
             let node = shadows.resize(extent)?;
-            println!("resize: {:.1} ms", started.elapsed().as_secs_f64() * 1e3);
+            if options.resizes < 10 {
+                let ms = started.elapsed().as_secs_f64() * 1e3;
+                println!("resize to {}×{}: {ms:.2} ms", extent[0], extent[1]);
+            }
             let old = std::mem::replace(&mut targets, new);
             replaced.push(Replaced { last_frame: number - 1, _targets: old, node });
         }
-        let Targets { gbuffer, visibility, picture } = &targets;
-        let view = world.view(picture.extent());
 
         // ---- What is seen -------------------------------------------------------------------
-        let encoder = |name| {
-            let label = wgpu::CommandEncoderDescriptor { label: Some(name) };
-            gpu.device.create_command_encoder(&label)
+        let seen = Seen {
+            world: &world,
+            view: world.view(targets.picture.extent()),
+            targets: &targets,
+            maps: own_maps.as_ref().map(|(_, maps)| maps),
+            slot,
         };
-        let mut seen = encoder("seen");
-        gbuffer_pass.record(&gpu, &mut seen, gbuffer, &objects, &view);
+        let mut drawn = gpu.encoder("drawn");
+        gbuffer_pass.record(&gpu, &mut drawn, &targets.gbuffer, &objects, &seen.view);
         if let Some((pass, maps)) = &own_maps {
-            pass.record(&gpu, &mut seen, maps, &objects);
+            pass.record(&gpu, &mut drawn, maps, &objects);
         }
 
-        // ---- Shadows ------------------------------------------------------------------------
-        let lent = Lent {
-            light: *world.rectangle(),
-            world_from_ndc: view.world_from_ndc(),
-            gbuffer,
-            visibility,
-            occluders: own_maps.as_ref().map(|(_, maps)| maps),
-            slot: slot as u32,
-        };
+        // ---- Its shadows --------------------------------------------------------------------
         let started = Instant::now();
-        let plan = shadows.plan(&lent)?;
+        let plan = shadows.plan(&seen, &meshes)?;
         let plan_time = started.elapsed();
         let started = Instant::now();
-        let [border, node] = shadows.record(&gpu, &plan, &lent, &objects)?;
+        let [border, node] = shadows.record(&gpu, &plan, &seen)?;
         let record_time = started.elapsed();
 
-        // ---- Compose ------------------------------------------------------------------------
-        let mut shaded = encoder("shaded");
-        let inputs = (gbuffer, visibility);
-        compose_pass.record(&gpu, &mut shaded, inputs, picture, (&world, &view));
-        if number + 1 == options.frame_count() {
-            copies = Some(
-                [&gbuffer.depth, visibility, picture]
-                    .map(|image| Copied::record(&gpu, &mut shaded, image)),
-            );
+        // ---- Its picture --------------------------------------------------------------------
+        let mut shaded = gpu.encoder("shaded");
+        compose_pass.record(&gpu, &mut shaded, &seen);
+        let Targets { gbuffer, visibility, picture } = &targets;
+        if number + 1 == options.frames {
+            let wanted = [&gbuffer.depth, visibility, picture];
+            copies = Some(wanted.map(|image| Copied::record(&gpu, &mut shaded, image)));
         }
-        let commands = [seen.finish(), border, node, shaded.finish()];
+        let commands = [drawn.finish(), border, node, shaded.finish()];
         running[slot] = Some((number, gpu.queue.submit(commands)));
         gpu.check()?;
 
@@ -188,8 +195,8 @@ fn run(options: &Options) -> Outcome<()> {
             plan_time.as_secs_f64() * 1e6,
             record_time.as_secs_f64() * 1e6,
             plan.plan.steps.len(),
-            shadows.node().object_count(),
-            shadows.node().memory().iter().map(|(_, bytes)| bytes).sum::<u64>() as f64 / 1e6,
+            shadows.node.object_count(),
+            shadows.node.memory().iter().map(|(_, bytes)| bytes).sum::<u64>() as f64 / 1e6,
         );
     }
 

@@ -6,7 +6,7 @@ use crate::device::{Gpu, Target};
 use crate::gbuffer::DEPTH;
 use crate::geometry::{Object, PerObject, vertex_layout};
 use crate::world::{World, down_from_up};
-use glam::{DMat4, DVec4};
+use glam::{DMat4, DVec2, DVec3, DVec4, Vec3Swizzles as _};
 use wgpu::{CompareFunction as Compare, Face, FrontFace, TextureUsages};
 
 /// What the light sees, and the matrix it was drawn with.
@@ -22,44 +22,39 @@ pub struct LightView {
 impl LightView {
     /// Maps of `side` texels a side around everything that casts shadows.
     ///
-    /// They stand at the light's centre, parallel to it, x along its first axis: one light's
-    /// ordinary shadow map, had it been a point.
-    pub fn new(gpu: &Gpu, world: &World, side: u32) -> Outcome<Self> {
+    /// They stand at the light's centre, parallel to it, x along its first axis: the shadow map of a
+    /// light that is a point. What is behind its near plane is not seen.
+    pub fn new(gpu: &Gpu, world: &World, objects: &[Object], side: u32) -> Outcome<Self> {
         let light_from_world = world.rectangle().light_from_world();
-        let positions = || {
-            let positions = world.scene.world_positions(|i| i.role.blocks());
-            positions.map(|p| light_from_world.transform_point3(p)) // z: away from the light
-        };
-        let far = 1.01 * positions().map(|p| p.z).fold(0.0, f64::max);
-        let least = positions().map(|p| p.z).fold(far, f64::min);
+        let corners: Vec<DVec3> = objects
+            .iter()
+            .filter(|object| object.role.blocks())
+            .flat_map(Object::corners)
+            .map(|corner| light_from_world.transform_point3(corner)) // z: away from the light
+            .collect();
+        let far = 1.01 * corners.iter().map(|p| p.z).fold(0.0, f64::max);
         if far <= 0.0 {
             return Err("nothing that casts shadows is in front of the light".into());
         }
-        let near = (0.99 * least).max(0.01 * far);
-        // The window: every tangent under which the light's centre sees something.
-        let (mut min, mut max) = ([f64::MAX; 2], [f64::MIN; 2]);
-        for p in positions().filter(|p| p.z >= near) {
-            for (i, tangent) in [p.x / p.z, p.y / p.z].into_iter().enumerate() {
-                min[i] = min[i].min(tangent);
-                max[i] = max[i].max(tangent);
-            }
-        }
+        let near = (0.99 * corners.iter().map(|p| p.z).fold(far, f64::min)).max(0.001 * far);
+        let tangents = corners.iter().filter(|p| p.z >= near).map(|p| p.xy() / p.z);
+        let (min, max) = tangents.fold((DVec2::MAX, DVec2::MIN), |(a, b), t| (a.min(t), b.max(t)));
+        let middle = 0.5 * (max + min);
         // A texel of room on each side.
         let half =
-            [0, 1].map(|i| (0.5 * (max[i] - min[i])).max(1e-6) * (1.0 + 2.0 / f64::from(side)));
-        let middle = [0, 1].map(|i| 0.5 * (max[i] + min[i]));
+            0.5 * (max - min).max(DVec2::splat(1e-6)) * f64::from(side) / f64::from(side - 2);
         let share = far / (far - near);
         let clip_from_light = DMat4::from_cols(
-            DVec4::new(1.0 / half[0], 0.0, 0.0, 0.0),
-            DVec4::new(0.0, 1.0 / half[1], 0.0, 0.0),
-            DVec4::new(-middle[0] / half[0], -middle[1] / half[1], share, 1.0),
+            DVec4::new(1.0 / half.x, 0.0, 0.0, 0.0),
+            DVec4::new(0.0, 1.0 / half.y, 0.0, 0.0),
+            DVec4::new(-middle.x / half.x, -middle.y / half.y, share, 1.0),
             DVec4::new(0.0, 0.0, -share * near, 0.0),
         );
         let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
         let map = |name| gpu.target(name, DEPTH, [side; 2], usage);
         Ok(Self {
-            front: map("occluders.front"),
-            back: map("occluders.back"),
+            front: map("occluders.front")?,
+            back: map("occluders.back")?,
             clip_from_world: clip_from_light * light_from_world,
         })
     }

@@ -21,10 +21,10 @@ pub struct Options {
     /// Image size
     #[arg(long, value_name = "WxH", default_value = "640x480", value_parser = size)]
     pub size: [u32; 2],
-    /// How many frames; more where the resizes need more
-    #[arg(long, value_name = "N", default_value_t = 3)]
+    /// How many frames
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u64).range(1..))]
     pub frames: u64,
-    /// How many of the frames are of another size than the one before; the last is --size again
+    /// How many times everything is resized on the way, in the end back to --size
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub resizes: u64,
     /// Draw the occluder maps here, with pipelines of wgpu, and hand them to the node
@@ -33,27 +33,24 @@ pub struct Options {
 }
 
 impl Options {
-    /// Frame `number` and its size: each of the first frames behind frame 0 has another one than
-    /// the frame before it, and the last of them is back at what was asked for.
-    pub fn size_of_frame(&self, number: u64) -> [u32; 2] {
-        let [w, h] = self.size;
-        match number {
-            0 => self.size,
-            n if n >= self.resizes => self.size,
-            n if n % 2 == 1 => [w.div_ceil(2), h.div_ceil(2)],
-            _ => [w.div_ceil(4) * 3, h.div_ceil(3) * 2],
-        }
+    /// How many resizes come before a frame: they are spread over the run, none before the first.
+    pub fn resizes_before(&self, frame: u64) -> u64 {
+        self.resizes * frame / (self.frames - 1).max(1)
     }
 
-    /// How many frames there are.
-    pub fn frame_count(&self) -> u64 {
-        self.frames.max(self.resizes + 1)
+    /// The size behind the n-th resize.
+    pub fn size_after(&self, n: u64) -> [u32; 2] {
+        if n == self.resizes {
+            return self.size;
+        }
+        let factor = [1.25, 0.5, 0.8][n as usize % 3];
+        self.size.map(|e| ((f64::from(e) * factor) as u32).max(1))
     }
 }
 
 /// Reads the command line; what is wrong with it comes back as one line, help exits.
 pub fn parse() -> Result<Options, String> {
-    Options::try_parse().map_err(|e| {
+    let options = Options::try_parse().map_err(|e| {
         if !e.use_stderr() {
             e.exit();
         }
@@ -62,7 +59,11 @@ pub fn parse() -> Result<Options, String> {
         let lines: Vec<_> = text.lines().map(str::trim).take_while(|l| !l.is_empty()).collect();
         let line = lines.join(" ");
         line.strip_prefix("error: ").unwrap_or(&line).to_string()
-    })
+    })?;
+    if options.resizes > 0 && options.frames < 2 {
+        return Err("--resizes: they come between frames; give --frames 2 or more".into());
+    }
+    Ok(options)
 }
 
 fn size(text: &str) -> Result<[u32; 2], String> {
