@@ -10,6 +10,7 @@ use wgpu::util::{DeviceExt, TextureDataOrder};
 use wgpu::{Backends, DeviceType, SubmissionIndex, TextureFormat, TextureUsages};
 
 /// What the rest of the program calls wgpu with.
+#[derive(Clone)]
 pub struct Gpu {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,

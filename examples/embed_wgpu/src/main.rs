@@ -173,7 +173,7 @@ fn run(options: &Options) -> Outcome<()> {
         let plan = shadows.plan(&seen, &meshes)?;
         let plan_time = started.elapsed();
         let started = Instant::now();
-        let [border, node] = shadows.record(&gpu, &plan, &seen)?;
+        let [border, node] = shadows.record(&plan, &seen)?;
         let record_time = started.elapsed();
 
         // ---- Its picture --------------------------------------------------------------------

@@ -11,7 +11,7 @@
 //! ```
 
 use crate::device::{Gpu, Target};
-use crate::{FRAMES_IN_FLIGHT, Outcome, Seen, geometry};
+use crate::{FRAMES_IN_FLIGHT, Outcome, Seen, Targets, geometry};
 use antumbra::frame::OccluderMaps;
 use antumbra::{BorderBarriers, Description, Frame, FramePlan, Host, HostImage, MeshInstance};
 use antumbra::{Retired, Scope, ShadowNode, Visibility};
@@ -28,8 +28,8 @@ const DEPTH_SAMPLED: Scope =
 pub struct Shadows {
     pub node: ShadowNode,
     allocator: Allocator,
-    /// Keeps what the node borrows.
-    _device: wgpu::Device,
+    /// Keeps the device that the node borrows; the last to go.
+    gpu: Gpu,
 }
 
 impl Shadows {
@@ -47,7 +47,7 @@ impl Shadows {
             buffer_device_address: false,
             allocation_sizes: gpu_allocator::AllocationSizes::default(),
         })?;
-        // SAFETY: the handles belong together, and `_device` keeps them. What a frame lends is kept,
+        // SAFETY: the handles belong together, and `gpu` keeps them. What a frame lends is kept,
         // a slot is not recorded again and what was replaced is not destroyed until wgpu says that
         // the frame's submission is done.
         let host =
@@ -61,17 +61,16 @@ impl Shadows {
             ..Description::new(extent)
         };
         let node = ShadowNode::new(host, &mut allocator, description)?;
-        Ok(Self { node, allocator, _device: gpu.device.clone() })
+        Ok(Self { node, allocator, gpu: gpu.clone() })
     }
 
     /// What the node will do this frame, from what the program says of it.
     pub fn plan(&self, seen: &Seen, meshes: &[MeshInstance]) -> Result<FramePlan, antumbra::Error> {
-        let gbuffer = &seen.targets.gbuffer;
-        let light = *seen.world.rectangle();
+        let Targets { gbuffer, visibility, .. } = seen.targets;
         let depth = lend(&gbuffer.depth, DEPTH_SAMPLED);
         self.node.plan(&Frame {
             mask: Some(lend(&gbuffer.mask, Scope::COMPUTE_SAMPLED)),
-            visibility: Visibility::Lent(lend(&seen.targets.visibility, Scope::COMPUTE_WRITTEN)),
+            visibility: Visibility::Lent(lend(visibility, Scope::COMPUTE_WRITTEN)),
             occluder_maps: seen.maps.map(|maps| OccluderMaps {
                 front: lend(&maps.front, DEPTH_SAMPLED),
                 back: Some(lend(&maps.back, DEPTH_SAMPLED)),
@@ -79,33 +78,27 @@ impl Shadows {
             }),
             slot: seen.slot as u32,
             border_barriers: BorderBarriers::Host,
-            ..Frame::new(light, seen.view.world_from_ndc(), meshes, depth)
+            ..Frame::new(*seen.world.rectangle(), seen.view.world_from_ndc(), meshes, depth)
         })
     }
 
     /// Records it, to be submitted in this order between what draws and what shades. (The meshes'
     /// buffers are where the G-buffer's pass, which draws every mesh, has them already.)
-    pub fn record(
-        &mut self,
-        gpu: &Gpu,
-        plan: &FramePlan,
-        seen: &Seen,
-    ) -> Outcome<[CommandBuffer; 2]> {
-        let [mut tracked, mut raw] = ["shadows.border", "shadows"].map(|name| gpu.encoder(name));
-        let sampled = [&seen.targets.gbuffer.depth, &seen.targets.gbuffer.mask].into_iter();
+    pub fn record(&mut self, plan: &FramePlan, seen: &Seen) -> Outcome<[CommandBuffer; 2]> {
+        let Targets { gbuffer, visibility, .. } = seen.targets;
+        let [mut tracked, mut raw] = ["border", "shadows"].map(|name| self.gpu.encoder(name));
+        let sampled = [&gbuffer.depth, &gbuffer.mask].into_iter();
+        let sampled = sampled.chain(seen.maps.into_iter().flat_map(|m| [&m.front, &m.back]));
         let textures = sampled
-            .chain(seen.maps.into_iter().flat_map(|maps| [&maps.front, &maps.back]))
-            .map(|sampled| (sampled, TextureUses::RESOURCE))
-            .chain([(&seen.targets.visibility, TextureUses::STORAGE_WRITE_ONLY)])
+            .map(|target| (target, TextureUses::RESOURCE))
+            .chain([(visibility, TextureUses::STORAGE_WRITE_ONLY)])
             .map(|(t, state)| TextureTransition { texture: &t.texture, selector: None, state });
         tracked.transition_resources(std::iter::empty(), textures);
         // SAFETY: the node only records, and wgpu records nothing into this encoder.
-        unsafe {
-            raw.as_hal_mut::<Vulkan, _, Outcome<()>>(|encoder| {
-                let encoder = encoder.ok_or("wgpu runs without Vulkan")?;
-                Ok(self.node.record(encoder.raw_handle(), plan)?)
-            })
-        }?;
+        let recorded = unsafe {
+            raw.as_hal_mut::<Vulkan, _, _>(|hal| Some(self.node.record(hal?.raw_handle(), plan)))
+        };
+        recorded.ok_or("wgpu runs without Vulkan")??;
         Ok([tracked.finish(), raw.finish()])
     }
 
