@@ -5,7 +5,6 @@ use crate::{Outcome, raw};
 use antumbra::frame::{Geometry, MeshBuffers};
 use antumbra::scene::{self, Scene};
 use antumbra::{MeshInstance, Role};
-use ash::vk;
 use glam::{DMat4, DVec3};
 use std::marker::PhantomData;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
@@ -85,13 +84,8 @@ impl Object {
 
     /// The same buffers as the node takes them.
     pub fn for_node(&self) -> Outcome<MeshInstance> {
-        let buffers = MeshBuffers {
-            positions: raw::buffer(&self.vertices)?,
-            positions_offset: 0,
-            positions_stride: STRIDE,
-            indices: Some((raw::buffer(&self.indices)?, 0, vk::IndexType::UINT32)),
-            count: self.count,
-        };
+        let (vertices, indices) = (raw::buffer(&self.vertices)?, raw::buffer(&self.indices)?);
+        let buffers = MeshBuffers::indexed(vertices, STRIDE, indices, self.count);
         Ok(MeshInstance {
             geometry: Geometry::Buffers(buffers),
             world_from_mesh: self.world_from_mesh,

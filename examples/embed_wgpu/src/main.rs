@@ -4,7 +4,7 @@
 //!
 //! No window: a glTF scene with soft shadows, drawn a few times with two frames in flight; the last
 //! one is written as files. The program turns no feature of wgpu's on. Whatever knows the node is
-//! in one file; the rest is a program that would look like this without shadows too:
+//! in `shadows`; the rest is a program that would look like this without shadows too:
 //!
 //! ```text
 //!   shadows    antumbra's node, lent wgpu's device, textures and buffers
@@ -12,8 +12,8 @@
 //!   options    the command line                        device     device, textures, errors
 //!   world      scene, light, camera                    geometry   vertex and index buffers
 //!   gbuffer    draws depth, normal, mask               compose    visibility × irradiance
-//!   output     copies out, EXR, PNG                    raw        Vulkan's handles of wgpu's
-//!   occluder_maps   --own-shadow-map
+//!   output     copies out, EXR, PNG                    raw        what of it Vulkan code is lent
+//!   occluder_maps   --own-shadow-map: what the light sees, drawn here
 //! ```
 
 #![allow(unsafe_code, reason = "the node and wgpu meet at raw Vulkan handles")]

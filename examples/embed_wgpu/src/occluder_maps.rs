@@ -60,13 +60,6 @@ impl LightView {
     }
 }
 
-/// Which faces of an object a pipeline draws.
-#[derive(Clone, Copy)]
-enum Faces {
-    All,
-    Backs(FrontFace),
-}
-
 /// Draws both maps.
 pub struct OccluderPass {
     uniforms: PerObject<[f32; 16]>,
@@ -86,14 +79,12 @@ impl OccluderPass {
             bind_group_layouts: &[Some(&uniforms.layout)],
             immediate_size: 0,
         });
-        let pipeline = |faces, compare| {
-            let primitive = match faces {
-                Faces::All => wgpu::PrimitiveState::default(),
-                Faces::Backs(front_face) => wgpu::PrimitiveState {
-                    front_face,
-                    cull_mode: Some(Face::Front),
-                    ..Default::default()
-                },
+        // Culls fronts, where it is said which those are.
+        let pipeline = |fronts: Option<FrontFace>, compare| {
+            let primitive = wgpu::PrimitiveState {
+                front_face: fronts.unwrap_or_default(),
+                cull_mode: fronts.map(|_| Face::Front),
+                ..Default::default()
             };
             gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some("occluders"),
@@ -118,17 +109,17 @@ impl OccluderPass {
                 cache: None,
             })
         };
-        let backs = [Faces::Backs(FrontFace::Ccw), Faces::Backs(FrontFace::Cw), Faces::All];
+        let backs = [Some(FrontFace::Ccw), Some(FrontFace::Cw), None];
         Self {
-            front: pipeline(Faces::All, Compare::Less),
-            backs: backs.map(|faces| pipeline(faces, Compare::Greater)),
+            front: pipeline(None, Compare::Less),
+            backs: backs.map(|fronts| pipeline(fronts, Compare::Greater)),
             uniforms,
         }
     }
 
     /// Draws everything that casts shadows.
-    pub fn record<'a>(
-        &'a self,
+    pub fn record(
+        &self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
         maps: &LightView,
@@ -139,30 +130,37 @@ impl OccluderPass {
             .iter()
             .map(|object| (clip_from_world * object.world_from_mesh).as_mat4().to_cols_array());
         self.uniforms.write(gpu, uniforms);
-        let mut draw =
-            |target: &Target, clear, pipeline: &dyn Fn(&Object) -> &'a wgpu::RenderPipeline| {
-                let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                    label: Some("occluders"),
-                    depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                        view: &target.view,
-                        depth_ops: Some(wgpu::Operations {
-                            load: wgpu::LoadOp::Clear(clear),
-                            store: wgpu::StoreOp::Store,
-                        }),
-                        stencil_ops: None,
-                    }),
-                    ..Default::default()
-                });
-                for (index, object) in objects.iter().enumerate().filter(|(_, o)| o.role.blocks()) {
-                    pass.set_pipeline(pipeline(object));
-                    self.uniforms.bind(&mut pass, index);
-                    object.draw(&mut pass);
-                }
-            };
-        draw(&maps.front, 1.0, &|_| &self.front);
-        draw(&maps.back, 0.0, &|object| match object.double_sided {
-            true => &self.backs[2],
-            false => &self.backs[usize::from(object.world_from_mesh.determinant() < 0.0)],
+        self.draw(encoder, (&maps.front, 1.0), objects, |_| &self.front);
+        self.draw(encoder, (&maps.back, 0.0), objects, |object| {
+            let mirrored = object.world_from_mesh.determinant() < 0.0;
+            &self.backs[if object.double_sided { 2 } else { usize::from(mirrored) }]
         });
+    }
+
+    /// Draws into one map, cleared to a depth, each object by its pipeline.
+    fn draw<'a>(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        (map, clear): (&Target, f32),
+        objects: &[Object],
+        pipeline: impl Fn(&Object) -> &'a wgpu::RenderPipeline,
+    ) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("occluders"),
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &map.view,
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(clear),
+                    store: wgpu::StoreOp::Store,
+                }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        for (index, object) in objects.iter().enumerate().filter(|(_, o)| o.role.blocks()) {
+            pass.set_pipeline(pipeline(object));
+            self.uniforms.bind(&mut pass, index);
+            object.draw(&mut pass);
+        }
     }
 }

@@ -16,7 +16,7 @@ use antumbra::frame::OccluderMaps;
 use antumbra::{BorderBarriers, Description, Frame, FramePlan, Host, HostImage, MeshInstance};
 use antumbra::{Retired, Scope, ShadowNode, Visibility};
 use ash::vk;
-use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
+use gpu_allocator::vulkan::Allocator;
 use wgpu::hal::api::Vulkan;
 use wgpu::{CommandBuffer, TextureTransition, TextureUses};
 
@@ -38,20 +38,14 @@ impl Shadows {
         // SAFETY: what is reached through this is only lent, and nothing of it is destroyed.
         let hal = unsafe { gpu.device.as_hal::<Vulkan>() }.ok_or("wgpu runs without Vulkan")?;
         let instance = hal.shared_instance().raw_instance().clone();
-        let (device, physical_device) = (hal.raw_device().clone(), hal.raw_physical_device());
-        let mut allocator = Allocator::new(&AllocatorCreateDesc {
-            instance: instance.clone(),
-            device: device.clone(),
-            physical_device,
-            debug_settings: gpu_allocator::AllocatorDebugSettings::default(),
-            buffer_device_address: false,
-            allocation_sizes: gpu_allocator::AllocationSizes::default(),
-        })?;
+        let (physical_device, family) = (hal.raw_physical_device(), hal.queue_family_index());
         // SAFETY: the handles belong together, and `gpu` keeps them. What a frame lends is kept,
         // a slot is not recorded again and what was replaced is not destroyed until wgpu says that
         // the frame's submission is done.
         let host =
-            unsafe { Host::borrow(instance, physical_device, device, hal.queue_family_index()) };
+            unsafe { Host::borrow(instance, physical_device, hal.raw_device().clone(), family) };
+        // wgpu does not lend its own.
+        let mut allocator = host.new_allocator()?;
         let description = Description {
             frames_in_flight: FRAMES_IN_FLIGHT as u32,
             mask_format: Some(vk::Format::R8_UNORM),
