@@ -143,6 +143,17 @@ impl Target {
     }
 }
 
+/// Waits for everything that was submitted when it is dropped, so that an error on the way does not
+/// take memory away from frames that still run.
+pub struct WaitAtEnd<'a>(pub &'a Gpu);
+
+impl Drop for WaitAtEnd<'_> {
+    fn drop(&mut self) {
+        // A device that is lost runs nothing any more either.
+        let _ = self.0.device.poll(wgpu::PollType::wait_indefinitely());
+    }
+}
+
 /// Runs a future of wgpu's to its end. Outside of browsers they are ready at once.
 fn finish<F: Future>(future: F) -> F::Output {
     let mut future = pin!(future);

@@ -31,7 +31,7 @@ mod world;
 
 use antumbra::Retired;
 use compose::ComposePass;
-use device::{Gpu, Target};
+use device::{Gpu, Target, WaitAtEnd};
 use gbuffer::{GBuffer, GBufferPass};
 use geometry::Object;
 use occluder_maps::{LightView, OccluderPass};
@@ -124,11 +124,12 @@ fn run(options: &Options) -> Outcome<()> {
         false => None,
     };
 
-    println!("frame  size       plan µs  record µs  passes  node objects  node MB");
+    println!("frame  size       plan µs  record µs  passes");
     let mut running: [Option<(u64, SubmissionIndex)>; FRAMES_IN_FLIGHT] = [None, None];
     let mut replaced: Vec<Replaced> = Vec::new();
     let mut resizes = 0;
     let mut copies = None;
+    let _before_anything_goes = WaitAtEnd(&gpu);
     for number in 0..options.frames {
         // ---- Wait for the slot --------------------------------------------------------------
         // The frame before last had it; what that one was the last to use can go.
@@ -190,13 +191,11 @@ fn run(options: &Options) -> Outcome<()> {
 
         let [width, height] = picture.extent();
         println!(
-            "{number:>5}  {:<9}  {:>7.1}  {:>9.1}  {:>6}  {:>12}  {:>7.2}",
+            "{number:>5}  {:<9}  {:>7.1}  {:>9.1}  {:>6}",
             format!("{width}×{height}"),
             plan_time.as_secs_f64() * 1e6,
             record_time.as_secs_f64() * 1e6,
             plan.plan.steps.len(),
-            shadows.node.object_count(),
-            shadows.node.memory().iter().map(|(_, bytes)| bytes).sum::<u64>() as f64 / 1e6,
         );
     }
 
@@ -212,6 +211,10 @@ fn run(options: &Options) -> Outcome<()> {
     for (done, submission) in running.into_iter().flatten() {
         gpu.wait(submission)?;
         destroy_replaced(&mut replaced, &mut shadows, done);
+    }
+    println!("the node: {} Vulkan objects, and in memory:", shadows.node.object_count());
+    for (name, bytes) in shadows.node.memory() {
+        println!("  {name:<32} {:>9.1} kB", bytes as f64 / 1e3);
     }
     let left = shadows.destroy();
     println!("the node is destroyed; its allocator holds {left} bytes");
