@@ -82,7 +82,7 @@ pub use frame::{
     OccluderMaps, Visibility,
 };
 pub use glam;
-pub use gpu::{Allocator, Host, HostDraw, Requirements, Retired};
+pub use gpu::{Allocator, Host, HostDraw, Requirements, RetireQueue, Retired};
 pub use graph::{Layer, Scope};
 pub use light::RectangleLight;
 pub use node::{LayerPass, ShadowNode, VisibilityImage};

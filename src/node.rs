@@ -124,7 +124,7 @@ impl ShadowNode {
     /// # Errors
     /// [`Error::Frame`] where the plan was made by another node, or before a resize, or has meshes
     /// that the host draws; nothing is recorded then.
-    pub fn record(&mut self, cmd: vk::CommandBuffer, plan: &FramePlan) -> Result<(), Error> {
+    pub fn record(&self, cmd: vk::CommandBuffer, plan: &FramePlan) -> Result<(), Error> {
         if plan.has_host_draws() {
             return Err(Error::Frame(
                 "some of this plan's meshes are the host's to draw; use record_with".into(),
@@ -140,7 +140,7 @@ impl ShadowNode {
     /// [`Error::Frame`] where the plan was made by another node, or before a resize; nothing is
     /// recorded then.
     pub fn record_with(
-        &mut self,
+        &self,
         cmd: vk::CommandBuffer,
         plan: &FramePlan,
         draw: &mut dyn FnMut(&HostDraw),
@@ -261,8 +261,9 @@ impl ShadowNode {
     }
 }
 
-/// A node may be planned on one thread and recorded on another.
+/// A node may be shared by threads: each records slots of its own.
 const _: () = {
-    const fn sent<T: Send>() {}
-    sent::<ShadowNode>();
+    const fn shared<T: Send + Sync>() {}
+    shared::<ShadowNode>();
+    shared::<FramePlan>();
 };

@@ -64,6 +64,11 @@ impl FramePlan {
         &self.accesses
     }
 
+    /// How the node uses one of the images of the border; none where this frame leaves it alone.
+    pub fn use_of(&self, image: vk::Image) -> Option<NodeUse> {
+        self.accesses.iter().find(|a| a.image == image)?.node
+    }
+
     /// The barriers to place before the node, for a host that asked for [`BorderBarriers::Host`].
     pub fn entry_barriers(&self) -> impl Iterator<Item = ImageBarrier> + '_ {
         self.accesses.iter().filter_map(HostAccess::entry_barrier)

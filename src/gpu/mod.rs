@@ -11,13 +11,14 @@ mod node_objects;
 mod objects;
 mod pipeline;
 mod record;
+mod retired;
 mod timing;
 
 pub use host::{Host, Requirements};
 pub use memory::{Allocator, MemoryBlock, MemoryRequest};
 pub(crate) use node_objects::NodeObjects;
-pub use node_objects::Retired;
 pub use record::HostDraw;
+pub use retired::{RetireQueue, Retired};
 
 #[cfg(feature = "headless")]
 pub mod headless;

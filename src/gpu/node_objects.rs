@@ -109,7 +109,7 @@ impl NodeObjects {
 
     /// Records a plan whose rows are the ones these objects were made for.
     pub fn record(
-        &mut self,
+        &self,
         host: &Host,
         cmd: vk::CommandBuffer,
         plan: &FramePlan,
@@ -121,7 +121,7 @@ impl NodeObjects {
             rows: &self.rows,
             labels: &self.labels,
             descriptors: &self.descriptors,
-            timing: self.timing.as_mut(),
+            timing: self.timing.as_ref(),
             draw,
             cmd,
         }
@@ -169,34 +169,4 @@ impl NodeObjects {
 /// `antumbra.<name>`; names are literals without a zero byte.
 fn label(name: &str) -> CString {
     CString::new(format!("antumbra.{name}")).unwrap_or_default()
-}
-
-/// What a resize or a reconfiguration replaced: alive until the frames that use it are done.
-#[must_use = "destroy it once the frames recorded before are done, or its memory is lost"]
-pub struct Retired {
-    host: Host,
-    parts: Parts,
-}
-
-enum Parts {
-    Everything(NodeObjects),
-    Sized(Objects),
-}
-
-impl Retired {
-    pub(crate) fn everything(host: Host, objects: NodeObjects) -> Self {
-        Self { host, parts: Parts::Everything(objects) }
-    }
-
-    pub(crate) fn sized(host: Host, objects: Objects) -> Self {
-        Self { host, parts: Parts::Sized(objects) }
-    }
-
-    /// Destroys it; the device must be done with every frame recorded before the replacement.
-    pub fn destroy(self, allocator: &mut dyn Allocator) {
-        match self.parts {
-            Parts::Everything(objects) => objects.destroy(&self.host, allocator),
-            Parts::Sized(objects) => objects.destroy(&self.host, allocator),
-        }
-    }
 }

@@ -38,7 +38,7 @@ pub(crate) struct Recorder<'a> {
     pub rows: &'a [RowPipeline],
     pub labels: &'a [CString],
     pub descriptors: &'a Descriptors,
-    pub timing: Option<&'a mut Timing>,
+    pub timing: Option<&'a Timing>,
     pub draw: &'a mut dyn FnMut(&HostDraw),
     pub cmd: vk::CommandBuffer,
 }
@@ -47,17 +47,17 @@ impl Recorder<'_> {
     /// Records every step of a plan and hands the host's resources back.
     pub fn record(&mut self, frame: &FramePlan) {
         let plan = &frame.plan;
-        if let Some(timing) = &mut self.timing {
+        if let Some(timing) = self.timing {
             timing.begin(self.host, self.cmd, frame.slot);
         }
-        for step in &plan.steps {
+        for (nth, step) in plan.steps.iter().enumerate() {
             let pass = &plan.graph.passes()[step.pass];
             self.label(step.pass);
             self.barriers(frame, &step.barriers);
             self.pass(frame, step.pass, pass);
             self.unlabel();
-            if let Some(timing) = &mut self.timing {
-                timing.end_row(self.host, self.cmd, frame.slot, step.pass);
+            if let Some(timing) = self.timing {
+                timing.end_row(self.host, self.cmd, frame.slot, (nth, step.pass));
             }
         }
         self.barriers(frame, &plan.handover);

@@ -3,6 +3,7 @@
 use super::host::Host;
 use crate::Error;
 use ash::vk;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// One pool of timestamps a frame slot: one before the first pass, one behind each.
 pub(crate) struct Timing {
@@ -13,8 +14,8 @@ pub(crate) struct Timing {
     mask: u64,
     /// Queries a pool.
     queries: u32,
-    /// The rows that each slot recorded last, in order.
-    recorded: Vec<Vec<usize>>,
+    /// Which rows each slot recorded last; rows are recorded in their order.
+    recorded: Vec<Vec<AtomicBool>>,
 }
 
 impl Timing {
@@ -34,7 +35,9 @@ impl Timing {
             period: f64::from(limits.timestamp_period),
             mask: if bits >= 64 { u64::MAX } else { (1 << bits) - 1 },
             queries: rows as u32 + 1,
-            recorded: (0..slots).map(|_| Vec::with_capacity(rows)).collect(),
+            recorded: (0..slots)
+                .map(|_| (0..rows).map(|_| AtomicBool::new(false)).collect())
+                .collect(),
         };
         for _ in 0..slots {
             let create = vk::QueryPoolCreateInfo::default()
@@ -53,10 +56,9 @@ impl Timing {
     }
 
     /// Starts a slot anew: resets its pool and takes the first timestamp.
-    pub fn begin(&mut self, host: &Host, cmd: vk::CommandBuffer, slot: u32) {
+    pub fn begin(&self, host: &Host, cmd: vk::CommandBuffer, slot: u32) {
         let pool = self.pools[slot as usize];
-        let recorded = &mut self.recorded[slot as usize];
-        recorded.clear();
+        self.recorded[slot as usize].iter().for_each(|row| row.store(false, Ordering::Relaxed));
         // SAFETY: Host::borrow's promise: cmd is recording outside a render pass, and the slot's
         // earlier commands are done.
         unsafe { host.device.cmd_reset_query_pool(cmd, pool, 0, self.queries) };
@@ -66,11 +68,16 @@ impl Timing {
         };
     }
 
-    /// Takes the timestamp behind a row.
-    pub fn end_row(&mut self, host: &Host, cmd: vk::CommandBuffer, slot: u32, row: usize) {
-        let recorded = &mut self.recorded[slot as usize];
-        recorded.push(row);
-        let (pool, query) = (self.pools[slot as usize], recorded.len() as u32);
+    /// Takes the timestamp behind a row, the `nth` of the slot from 0.
+    pub fn end_row(
+        &self,
+        host: &Host,
+        cmd: vk::CommandBuffer,
+        slot: u32,
+        (nth, row): (usize, usize),
+    ) {
+        self.recorded[slot as usize][row].store(true, Ordering::Relaxed);
+        let (pool, query) = (self.pools[slot as usize], nth as u32 + 1);
         // SAFETY: as in `begin`; each row takes the next query, and there is one for every row.
         unsafe {
             let bottom = vk::PipelineStageFlags::BOTTOM_OF_PIPE;
@@ -80,7 +87,9 @@ impl Timing {
 
     /// Milliseconds of each row that the slot recorded last; none until its commands are done.
     pub fn read(&self, host: &Host, slot: u32) -> Option<Vec<(usize, f64)>> {
-        let rows = self.recorded.get(slot as usize)?;
+        let recorded = self.recorded.get(slot as usize)?.iter().enumerate();
+        let rows: Vec<usize> =
+            recorded.filter(|(_, r)| r.load(Ordering::Relaxed)).map(|(row, _)| row).collect();
         let mut ticks = vec![0u64; rows.len() + 1];
         if rows.is_empty() {
             return None;

@@ -144,7 +144,7 @@ fn run(options: &Options, world: &World) -> Outcome<()> {
         }
     }
     let (objects, memory) = {
-        let node = shadows.node();
+        let node = &shadows.node;
         (node.object_count(), node.memory())
     };
     let bytes: u64 = memory.iter().map(|(_, bytes)| bytes).sum();

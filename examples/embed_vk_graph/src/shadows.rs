@@ -12,9 +12,9 @@ use crate::geometry::{Model, STRIDE};
 use crate::shot::Shot;
 use crate::targets::{DEPTH, MASK};
 use antumbra::{BorderBarriers, Description, Error, Frame, FramePlan, Geometry, Host, HostImage};
-use antumbra::{MeshBuffers, MeshInstance, Retired, Scope, Settings, ShadowNode, Visibility};
+use antumbra::{MeshBuffers, MeshInstance, RetireQueue, Scope, Settings, ShadowNode, Visibility};
 use gpu_allocator::vulkan::Allocator;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
+use std::sync::{Arc, mpsc};
 use std::time::{Duration, Instant};
 use vk_graph::Graph;
 use vk_graph::driver::{DriverError, image::Image, sync::AccessType};
@@ -22,10 +22,9 @@ use vk_graph::driver::{DriverError, image::Image, sync::AccessType};
 /// The node, and memory for it.
 pub struct Shadows {
     /// Shared with the commands that record it: vk-graph calls them when the graph is submitted.
-    node: Arc<Mutex<ShadowNode>>,
+    pub node: Arc<ShadowNode>,
     allocator: Allocator,
-    /// What resizes replaced, and the last frame that may use it.
-    retired: Vec<(u64, Retired)>,
+    retired: RetireQueue,
 }
 
 /// Comes when the graph is submitted: how long recording the node took, or why it was refused.
@@ -52,13 +51,8 @@ impl Shadows {
             lent_visibility: true,
             ..Description::new(extent)
         };
-        let node = Arc::new(Mutex::new(ShadowNode::new(host, &mut allocator, description)?));
-        Ok(Self { node, allocator, retired: Vec::new() })
-    }
-
-    /// The node.
-    pub fn node(&self) -> MutexGuard<'_, ShadowNode> {
-        lock(&self.node)
+        let node = Arc::new(ShadowNode::new(host, &mut allocator, description)?);
+        Ok(Self { node, allocator, retired: RetireQueue::default() })
     }
 
     /// What the node will do in a frame.
@@ -71,7 +65,7 @@ impl Shadows {
             border_barriers: BorderBarriers::Host,
             ..Frame::new(shot.light.light, shot.world_from_ndc, &meshes, lend(&shot.targets.depth)?)
         };
-        Ok(self.node().plan(&frame)?)
+        Ok(self.node.plan(&frame)?)
     }
 
     /// Adds the command that records the plan, between the G-buffer and whoever reads visibility.
@@ -79,9 +73,8 @@ impl Shadows {
     pub fn add(&self, graph: &mut Graph, shot: &Shot, plan: FramePlan) -> Outcome<Recorded> {
         let mut command = graph.begin_cmd().debug_name("antumbra");
         for image in [&shot.targets.depth, &shot.targets.mask, &shot.targets.visibility] {
-            let access = plan.accesses().iter().find(|access| access.image == image.handle);
             // What this frame's passes leave alone needs no barrier here.
-            let Some(used) = access.and_then(|access| access.node) else { continue };
+            let Some(used) = plan.use_of(image.handle) else { continue };
             let image = command.bind_resource(image);
             command.set_resource_access(image, access_type(used.entry, shot.lie)?);
         }
@@ -95,7 +88,7 @@ impl Shadows {
         let node = self.node.clone();
         command.record_cmd(move |cmd| {
             let started = Instant::now();
-            let done = lock(&node).record(cmd.handle, &plan);
+            let done = node.record(cmd.handle, &plan);
             // Whoever does not listen does not care.
             let _ = tell.send(done.map(|()| started.elapsed()));
         });
@@ -105,29 +98,23 @@ impl Shadows {
     /// Makes the node fit pictures of another size. Frames up to `last_frame` may still run on what
     /// this replaces.
     pub fn resize(&mut self, extent: [u32; 2], last_frame: u64) -> Outcome<()> {
-        let retired = lock(&self.node).resize(&mut self.allocator, extent)?;
-        self.retired.push((last_frame, retired));
+        let node = Arc::get_mut(&mut self.node).ok_or("a graph was never submitted")?;
+        self.retired.push(last_frame, node.resize(&mut self.allocator, extent)?);
         Ok(())
     }
 
     /// Destroys what no frame after `done` uses.
     pub fn frame_done(&mut self, done: u64) {
-        for (_, retired) in self.retired.extract_if(.., |(last_frame, _)| *last_frame <= done) {
-            retired.destroy(&mut self.allocator);
-        }
+        self.retired.done(done, &mut self.allocator);
     }
 
     /// Destroys the node, once every frame is done, and says how many bytes it has left behind: 0.
     pub fn destroy(mut self) -> Outcome<u64> {
         self.frame_done(u64::MAX);
-        let node = Arc::into_inner(self.node).ok_or("a graph still holds the node")?;
-        node.into_inner().unwrap_or_else(PoisonError::into_inner).destroy(&mut self.allocator);
+        let node = Arc::into_inner(self.node).ok_or("a graph was never submitted")?;
+        node.destroy(&mut self.allocator);
         Ok(self.allocator.generate_report().total_allocated_bytes)
     }
-}
-
-fn lock(node: &Mutex<ShadowNode>) -> MutexGuard<'_, ShadowNode> {
-    node.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// A model as the node takes it.
