@@ -9,8 +9,8 @@ use crate::Outcome;
 use crate::device::Gpu;
 use crate::geometry::{Model, STRIDE};
 use crate::resources::{COLOR_DRAWN, DEPTH_DRAWN, Image};
+use crate::world::Seen;
 use ash::vk;
-use glam::DMat4;
 
 pub const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 pub const MASK: vk::Format = vk::Format::R8_UNORM;
@@ -98,15 +98,8 @@ impl GBufferPass {
     }
 
     /// Draws the models as they stand at a time.
-    pub fn record(
-        &self,
-        gpu: &Gpu,
-        cmd: vk::CommandBuffer,
-        images: &GBuffer,
-        models: &[Model],
-        clip_from_world: &DMat4,
-        seconds: f64,
-    ) {
+    pub fn record(&self, gpu: &Gpu, cmd: vk::CommandBuffer, seen: &Seen) {
+        let Seen { gbuffer: images, models, clip_from_world, seconds, .. } = *seen;
         let [width, height] = images.depth.extent;
         let area = vk::Rect2D { extent: vk::Extent2D { width, height }, ..Default::default() };
         let viewport = vk::Viewport {

@@ -6,7 +6,6 @@ use crate::gbuffer::Push;
 use crate::resources::Buffer;
 use crate::world::Object;
 use antumbra::depth_layers::MeshBounds;
-use antumbra::{Geometry, MeshBuffers, MeshInstance};
 use ash::vk;
 use glam::{DMat3, DMat4};
 
@@ -30,8 +29,8 @@ pub struct Model {
     pub albedo_role: [u8; 4],
     pub double_sided: bool,
     /// Least and largest corner of the mesh, the jelly's swing included.
-    bounds: MeshBounds,
-    object: Object,
+    pub bounds: MeshBounds,
+    pub object: Object,
 }
 
 impl Model {
@@ -76,22 +75,6 @@ impl Model {
             swell: self.object.jelly.unwrap_or(0.0),
             phase: (seconds * 8.0) as f32,
             unused: 0.0,
-        }
-    }
-
-    /// The same triangles as the node takes them: its buffers, or, for a jelly, the number under which
-    /// it is asked for.
-    pub fn for_node(&self, number: u64, seconds: f64) -> MeshInstance {
-        let buffers = MeshBuffers::indexed(self.vertices.raw, STRIDE, self.indices.raw, self.count);
-        MeshInstance {
-            geometry: match self.object.jelly {
-                Some(_) => Geometry::HostDrawn(number),
-                None => Geometry::Buffers(buffers),
-            },
-            world_from_mesh: self.world_from_mesh(seconds),
-            bounds: self.bounds,
-            role: self.object.role,
-            double_sided: self.double_sided,
         }
     }
 

@@ -37,11 +37,11 @@ use frames::{FRAMES_IN_FLIGHT, FrameNotes, Frames};
 use gbuffer::{GBuffer, GBufferPass};
 use geometry::Model;
 use resources::{COLOR_DRAWN, COMPOSE_READS, COMPOSE_WRITES, COPY_READS, Image, barrier};
-use shadows::{Seen, Shadows};
+use shadows::Shadows;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
-use world::World;
+use world::{Seen, World};
 
 /// What goes wrong in an example is told and ends it.
 type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
@@ -149,7 +149,7 @@ fn run(options: &Options) -> Outcome<()> {
             extent = size_after(options, resizes);
             let new = make_targets(&gbuffer_pass, &mut gpu, extent)?;
             let started = Instant::now();
-            let retired = shadows.resize(&mut gpu, extent)?;
+            let retired = shadows.node.resize(&mut gpu.allocator, extent)?;
             if options.resizes < 10 {
                 let ms = started.elapsed().as_secs_f64() * 1e3;
                 println!("resize to {}×{}: {ms:.1} ms", extent[0], extent[1]);
@@ -183,7 +183,7 @@ fn run(options: &Options) -> Outcome<()> {
         // ---- Record -------------------------------------------------------------------------
         let copies = if last { 3 } else { 1 };
         let cmd = frames.begin(&mut gpu, slot, extent, copies)?;
-        gbuffer_pass.record(&gpu, cmd, gbuffer, &models, &clip_from_world, seconds);
+        gbuffer_pass.record(&gpu, cmd, &seen);
         let started = Instant::now();
         shadows.record(&gpu, cmd, &plan, &seen)?;
         let record_time = started.elapsed();

@@ -3,27 +3,17 @@
 use crate::Outcome;
 use crate::device::Gpu;
 use crate::frames::FRAMES_IN_FLIGHT;
-use crate::gbuffer::{self, GBuffer};
-use crate::geometry::{self, Model};
+use crate::gbuffer;
+use crate::geometry::{Model, STRIDE};
 use crate::jelly::JellyPipelines;
 use crate::resources::{COLOR_DRAWN, COMPOSE_READS, DEPTH_DRAWN, Image};
+use crate::world::Seen;
 use antumbra::graph::Scope;
 use antumbra::{
-    BorderBarriers, Description, Error, Frame, FramePlan, Host, HostImage, RectangleLight,
-    Requirements, Retired, ShadowNode, Visibility,
+    BorderBarriers, Description, Error, Frame, FramePlan, Geometry, Host, HostImage, MeshBuffers,
+    MeshInstance, ShadowNode, Visibility,
 };
 use ash::vk;
-use glam::DMat4;
-
-/// What a frame's shadows depend on.
-pub struct Seen<'a> {
-    pub light: &'a RectangleLight,
-    pub clip_from_world: &'a DMat4,
-    pub models: &'a [Model],
-    pub gbuffer: &'a GBuffer,
-    pub seconds: f64,
-    pub slot: usize,
-}
 
 /// The node, and what draws the engine's own meshes into its maps.
 pub struct Shadows {
@@ -46,16 +36,15 @@ impl Shadows {
         if let Some(debug_utils) = &gpu.debug_utils {
             host = host.with_debug_utils(debug_utils.clone());
         }
-        // One sentence with everything that is missing; on a device of Vulkan 1.1, nothing is.
-        Requirements::of(&host).met()?;
         let description = Description {
             frames_in_flight: FRAMES_IN_FLIGHT as u32,
             depth_format: gbuffer::DEPTH,
             mask_format: Some(gbuffer::MASK),
-            position_strides: vec![geometry::STRIDE],
+            position_strides: vec![STRIDE],
             ..Description::new(extent)
         };
-        // Its memory comes from the engine's allocator.
+        // Its memory comes from the engine's allocator. A device that it cannot run on is refused with
+        // all that is missing, in one sentence.
         let node = ShadowNode::new(host, &mut gpu.allocator, description)?;
         let jelly = JellyPipelines::new(gpu, &node)?;
         Ok(Self { node, jelly, border_barriers })
@@ -63,12 +52,8 @@ impl Shadows {
 
     /// What the node will do this frame, from what the engine says of it.
     pub fn plan(&self, seen: &Seen) -> Result<FramePlan, Error> {
-        let meshes: Vec<_> = seen
-            .models
-            .iter()
-            .zip(0..)
-            .map(|(m, number)| m.for_node(number, seen.seconds))
-            .collect();
+        let meshes = seen.models.iter().zip(0..).map(|(model, n)| mesh(model, n, seen.seconds));
+        let meshes: Vec<_> = meshes.collect();
         let depth = lend(&seen.gbuffer.depth, DEPTH_DRAWN);
         self.node.plan(&Frame {
             mask: Some(lend(&seen.gbuffer.mask, COLOR_DRAWN)),
@@ -87,24 +72,20 @@ impl Shadows {
         plan: &FramePlan,
         seen: &Seen,
     ) -> Result<(), Error> {
-        // These two loops are empty where the node places the barriers.
+        // Only where the engine asked to place the barriers itself.
         let host = self.border_barriers == BorderBarriers::Host;
-        for barrier in plan.entry_barriers().filter(|_| host) {
-            gpu.place(cmd, &barrier);
-        }
+        let place = |barrier| {
+            if host {
+                gpu.place(cmd, &barrier);
+            }
+        };
+        plan.entry_barriers().for_each(place);
         let jelly = &self.jelly;
         self.node.record_with(cmd, plan, &mut |draw| {
             jelly.draw(gpu, draw, &seen.models[draw.mesh as usize], seen.seconds);
         })?;
-        for barrier in plan.exit_barriers().filter(|_| host) {
-            gpu.place(cmd, &barrier);
-        }
+        plan.exit_barriers().for_each(place);
         Ok(())
-    }
-
-    /// Follows the G-buffer's size; what that replaced is destroyed when no frame uses it any more.
-    pub fn resize(&mut self, gpu: &mut Gpu, extent: [u32; 2]) -> Result<Retired, Error> {
-        self.node.resize(&mut gpu.allocator, extent)
     }
 
     /// Destroys it; the device must be done with every frame.
@@ -116,5 +97,17 @@ impl Shadows {
 
 fn lend(image: &Image, before: Scope) -> HostImage {
     let Image { raw: image, view, format, extent, usage, .. } = *image;
-    HostImage { image, view, format, extent, usage, before, after: COMPOSE_READS }
+    HostImage::new((image, view), format, extent, usage, before, COMPOSE_READS)
+}
+
+/// A model as the node takes it: its buffers, or, for a jelly, the number by which it is asked for.
+fn mesh(model: &Model, number: u64, seconds: f64) -> MeshInstance {
+    let (vertices, indices) = (model.vertices.raw, model.indices.raw);
+    let geometry = match model.object.jelly {
+        Some(_) => Geometry::HostDrawn(number),
+        None => Geometry::Buffers(MeshBuffers::indexed(vertices, STRIDE, indices, model.count)),
+    };
+    let world_from_mesh = model.world_from_mesh(seconds);
+    let mesh = MeshInstance::new(geometry, world_from_mesh, model.bounds, model.object.role);
+    MeshInstance { double_sided: model.double_sided, ..mesh }
 }

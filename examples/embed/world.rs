@@ -1,11 +1,23 @@
 //! What there is to see: a few objects under a light that goes round, or a scene from a file.
 
 use crate::Outcome;
+use crate::gbuffer::GBuffer;
+use crate::geometry::Model;
 use antumbra::RectangleLight;
 use antumbra::scene::{Camera, Mesh, Role, Scene, from_gltf, generate};
 use glam::{DMat3, DMat4, DVec3, DVec4};
 use std::f64::consts::TAU;
 use std::path::Path;
+
+/// What a frame shows, and where it is drawn.
+pub struct Seen<'a> {
+    pub light: &'a RectangleLight,
+    pub clip_from_world: &'a DMat4,
+    pub models: &'a [Model],
+    pub gbuffer: &'a GBuffer,
+    pub seconds: f64,
+    pub slot: usize,
+}
 
 /// An object of the world.
 pub struct Object {

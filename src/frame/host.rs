@@ -31,6 +31,20 @@ pub struct HostImage {
     pub after: Scope,
 }
 
+impl HostImage {
+    /// An image and its view, with what they were created with and how the host uses them.
+    pub fn new(
+        (image, view): (vk::Image, vk::ImageView),
+        format: vk::Format,
+        extent: [u32; 2],
+        usage: vk::ImageUsageFlags,
+        before: Scope,
+        after: Scope,
+    ) -> Self {
+        Self { image, view, format, extent, usage, before, after }
+    }
+}
+
 /// Whose image the result is written to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Visibility {
@@ -99,6 +113,13 @@ pub struct MeshInstance {
     pub role: Role,
     /// Both sides of each triangle are front faces.
     pub double_sided: bool,
+}
+
+impl MeshInstance {
+    /// A mesh whose triangles have one front.
+    pub fn new(geometry: Geometry, world_from_mesh: DMat4, bounds: MeshBounds, role: Role) -> Self {
+        Self { geometry, world_from_mesh, bounds, role, double_sided: false }
+    }
 }
 
 /// Depth images of the occluders that the host drew itself, from the light.

@@ -76,7 +76,7 @@ fn run(options: &Options, world: &World) -> Outcome<()> {
     let mut shadows = Shadows::new(&gpu, options.size, options.settings)?;
     let mut frames = Frames::new(&gpu);
 
-    println!("frame  size        plan µs  record µs  passes  barriers");
+    println!("frame  size        plan µs  passes  barriers");
     let exposure = world.exposure();
     let count = options.frames.max(options.resizes + 1);
     let mut read_back = None;
@@ -126,13 +126,12 @@ fn run(options: &Options, world: &World) -> Outcome<()> {
         frames.submit(number, graph)?;
 
         // The submit has recorded every command, the node's too.
-        let recorded = recorded.try_recv().map_err(|_| "the graph left the node out")??;
+        recorded.try_recv().map_err(|_| "the graph left the node out")??;
         let [width, height] = targets.extent;
         println!(
-            "{number:>5}  {:<10}  {:>7.1}  {:>9.1}  {passes:>6}  {barriers:>8}",
+            "{number:>5}  {:<10}  {:>7.1}  {passes:>6}  {barriers:>8}",
             format!("{width}×{height}"),
             planned.as_secs_f64() * 1e6,
-            recorded.as_secs_f64() * 1e6,
         );
     }
 
@@ -143,10 +142,7 @@ fn run(options: &Options, world: &World) -> Outcome<()> {
             shadows.frame_done(done);
         }
     }
-    let (objects, memory) = {
-        let node = &shadows.node;
-        (node.object_count(), node.memory())
-    };
+    let (objects, memory) = (shadows.node.object_count(), shadows.node.memory());
     let bytes: u64 = memory.iter().map(|(_, bytes)| bytes).sum();
     println!("the node: {objects} Vulkan objects, {bytes} bytes");
     match shadows.destroy()? {

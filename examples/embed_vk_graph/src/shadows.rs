@@ -15,9 +15,12 @@ use antumbra::{BorderBarriers, Description, Error, Frame, FramePlan, Geometry, H
 use antumbra::{MeshBuffers, MeshInstance, RetireQueue, Scope, Settings, ShadowNode, Visibility};
 use gpu_allocator::vulkan::Allocator;
 use std::sync::{Arc, mpsc};
-use std::time::{Duration, Instant};
 use vk_graph::Graph;
-use vk_graph::driver::{DriverError, image::Image, sync::AccessType};
+use vk_graph::driver::{
+    DriverError,
+    image::{Image, ImageInfo},
+    sync::AccessType,
+};
 
 /// The node, and memory for it.
 pub struct Shadows {
@@ -27,8 +30,8 @@ pub struct Shadows {
     retired: RetireQueue,
 }
 
-/// Comes when the graph is submitted: how long recording the node took, or why it was refused.
-pub type Recorded = mpsc::Receiver<Result<Duration, Error>>;
+/// Comes when the graph is submitted: whether the node was recorded, or why not.
+pub type Recorded = mpsc::Receiver<Result<(), Error>>;
 
 impl Shadows {
     /// Lends the device and makes the node for pictures of a size.
@@ -87,10 +90,8 @@ impl Shadows {
         let (tell, recorded) = mpsc::channel();
         let node = self.node.clone();
         command.record_cmd(move |cmd| {
-            let started = Instant::now();
-            let done = node.record(cmd.handle, &plan);
             // Whoever does not listen does not care.
-            let _ = tell.send(done.map(|()| started.elapsed()));
+            let _ = tell.send(node.record(cmd.handle, &plan));
         });
         Ok(recorded)
     }
@@ -118,30 +119,22 @@ impl Shadows {
 }
 
 /// A model as the node takes it.
-fn mesh(model: &Model) -> MeshInstance {
-    let [vertices, indices] = [&model.vertices, &model.indices].map(|buffer| buffer.handle);
-    let buffers = MeshBuffers::indexed(vertices, STRIDE, indices, model.count);
-    MeshInstance {
-        geometry: Geometry::Buffers(buffers),
-        world_from_mesh: model.instance.world_from_mesh,
-        bounds: model.bounds,
-        role: model.instance.role,
-        double_sided: model.double_sided,
-    }
+fn mesh(
+    Model { vertices, indices, count, bounds, instance, double_sided, .. }: &Model,
+) -> MeshInstance {
+    let buffers = MeshBuffers::indexed(vertices.handle, STRIDE, indices.handle, *count);
+    let mesh = Geometry::Buffers(buffers);
+    let mesh = MeshInstance::new(mesh, instance.world_from_mesh, *bounds, instance.role);
+    MeshInstance { double_sided: *double_sided, ..mesh }
 }
 
 /// An image as the node takes it. The graph knows its uses before and after; of those the node only
 /// needs the layout in which it will find what it reads.
 fn lend(image: &Image) -> Result<HostImage, DriverError> {
-    Ok(HostImage {
-        image: image.handle,
-        view: image.view(image.info.into_image_view())?,
-        format: image.info.format,
-        extent: [image.info.width, image.info.height],
-        usage: image.info.usage,
-        before: Scope::COMPUTE_SAMPLED,
-        after: Scope::COMPUTE_SAMPLED,
-    })
+    let ImageInfo { format, width, height, usage, .. } = image.info;
+    let handles = (image.handle, image.view(image.info.into_image_view())?);
+    let known = Scope::COMPUTE_SAMPLED;
+    Ok(HostImage::new(handles, format, [width, height], usage, known, known))
 }
 
 /// vk-graph's word for what the node does, which stands for stage, access and layout alike.
