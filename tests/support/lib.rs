@@ -9,6 +9,7 @@ pub mod compile;
 pub mod device;
 pub mod example;
 pub mod function;
+pub mod layer;
 pub mod measure;
 pub mod reflect;
 mod signature;

@@ -1,0 +1,62 @@
+//! Programs under the validation layer, switched on from outside: hosts of their own make their own
+//! instance, and must not have to know.
+
+use crate::example::folder;
+use std::path::Path;
+use std::process::Command;
+
+/// What a program did.
+#[derive(Debug)]
+pub struct Run {
+    /// Whether it ended well.
+    pub ok: bool,
+    /// What it wrote to standard output.
+    pub said: String,
+    /// What it wrote to standard error.
+    pub complained: String,
+    /// What the validation layer, synchronization checks included, wrote.
+    pub messages: String,
+}
+
+/// Whether tests run under the validation layer.
+pub fn validating() -> bool {
+    std::env::var("ANTUMBRA_VALIDATE").is_ok_and(|value| value == "1")
+}
+
+/// Runs a program, under the layer if asked.
+///
+/// # Panics
+/// If it cannot be started.
+pub fn run(program: &Path, arguments: &[&str], under_the_layer: bool) -> Run {
+    let mut command = Command::new(program);
+    command.args(arguments);
+    let name = program.file_name().unwrap().to_string_lossy().into_owned();
+    let place = folder(&format!("layer-{name}-{:?}", std::thread::current().id()));
+    let log = place.join("messages");
+    if under_the_layer {
+        let settings = place.join("vk_layer_settings.txt");
+        let text = format!(
+            "khronos_validation.debug_action = VK_DBG_LAYER_ACTION_LOG_MSG\n\
+             khronos_validation.report_flags = error,warn,perf\n\
+             khronos_validation.log_filename = {}\n\
+             khronos_validation.enables = \
+             VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT\n",
+            log.display()
+        );
+        std::fs::write(&settings, text).unwrap();
+        command
+            .env("VK_INSTANCE_LAYERS", "VK_LAYER_KHRONOS_validation")
+            .env("VK_LAYER_SETTINGS_PATH", &settings);
+    }
+    let output = command.output().unwrap();
+    // Made by the layer, even where it has nothing to say; without it the layer was not there.
+    let messages = std::fs::read_to_string(&log);
+    assert!(!under_the_layer || messages.is_ok(), "{name}: the validation layer did not run");
+    std::fs::remove_dir_all(place).unwrap();
+    Run {
+        ok: output.status.success(),
+        said: String::from_utf8_lossy(&output.stdout).into_owned(),
+        complained: String::from_utf8_lossy(&output.stderr).into_owned(),
+        messages: messages.unwrap_or_default(),
+    }
+}
