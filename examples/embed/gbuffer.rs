@@ -40,8 +40,7 @@ pub struct Push {
 pub struct GBufferPass {
     render_pass: vk::RenderPass,
     layout: vk::PipelineLayout,
-    /// Fronts counter-clockwise, fronts clockwise (a mirrored mesh), both sides.
-    pipelines: [vk::Pipeline; 3],
+    pipeline: vk::Pipeline,
 }
 
 /// The images of one size.
@@ -59,20 +58,13 @@ impl GBufferPass {
         let layout = make_layout(gpu)?;
         let vertex = gpu.shader(include_bytes!("shaders/gbuffer.vert.spv"))?;
         let fragment = gpu.shader(include_bytes!("shaders/gbuffer.frag.spv"))?;
-        let make =
-            |cull, front| make_pipeline(gpu, render_pass, layout, [vertex, fragment], cull, front);
-        use vk::{CullModeFlags as Cull, FrontFace as Front};
-        let pipelines = [
-            make(Cull::BACK, Front::COUNTER_CLOCKWISE)?,
-            make(Cull::BACK, Front::CLOCKWISE)?,
-            make(Cull::NONE, Front::COUNTER_CLOCKWISE)?,
-        ];
+        let pipeline = make_pipeline(gpu, render_pass, layout, vertex, fragment)?;
         // SAFETY: a pipeline does not need its modules once it is made.
         unsafe {
             gpu.device.destroy_shader_module(vertex, None);
             gpu.device.destroy_shader_module(fragment, None);
         }
-        Ok(Self { render_pass, layout, pipelines })
+        Ok(Self { render_pass, layout, pipeline })
     }
 
     /// Images for pictures of a size.
@@ -120,26 +112,15 @@ impl GBufferPass {
         // one.
         unsafe {
             device.cmd_begin_render_pass(cmd, &begin, vk::SubpassContents::INLINE);
+            device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::GRAPHICS, self.pipeline);
             device.cmd_set_viewport(cmd, 0, &[viewport]);
             device.cmd_set_scissor(cmd, 0, &[area]);
         }
         for model in models {
             let world_from_mesh = model.world_from_mesh(seconds);
             let clip_from_mesh = (*clip_from_world * world_from_mesh).as_mat4().to_cols_array();
-            let mirrored = world_from_mesh.determinant() < 0.0;
-            let pipeline = self.pipelines[match (model.double_sided, mirrored) {
-                (true, _) => 2,
-                (false, mirrored) => usize::from(mirrored),
-            }];
-            // SAFETY: inside the render pass that the pipeline was made for.
-            unsafe { device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::GRAPHICS, pipeline) };
-            draw_model(
-                gpu,
-                cmd,
-                self.layout,
-                model,
-                &Push { clip_from_mesh, ..model.push(seconds) },
-            );
+            let push = Push { clip_from_mesh, ..model.push(seconds) };
+            draw_model(gpu, cmd, self.layout, model, &push);
         }
         // SAFETY: the render pass was begun above.
         unsafe { device.cmd_end_render_pass(cmd) };
@@ -149,7 +130,7 @@ impl GBufferPass {
     pub fn destroy(self, gpu: &Gpu) {
         // SAFETY: the caller waited for every frame that uses it.
         unsafe {
-            self.pipelines.iter().for_each(|&p| gpu.device.destroy_pipeline(p, None));
+            gpu.device.destroy_pipeline(self.pipeline, None);
             gpu.device.destroy_pipeline_layout(self.layout, None);
             gpu.device.destroy_render_pass(self.render_pass, None);
         }
@@ -261,9 +242,8 @@ fn make_pipeline(
     gpu: &Gpu,
     render_pass: vk::RenderPass,
     layout: vk::PipelineLayout,
-    [vertex, fragment]: [vk::ShaderModule; 2],
-    cull: vk::CullModeFlags,
-    front: vk::FrontFace,
+    vertex: vk::ShaderModule,
+    fragment: vk::ShaderModule,
 ) -> Outcome<vk::Pipeline> {
     let stage = |stage, module| {
         vk::PipelineShaderStageCreateInfo::default().stage(stage).module(module).name(c"main")
@@ -281,8 +261,8 @@ fn make_pipeline(
     let viewport =
         vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
     let raster = vk::PipelineRasterizationStateCreateInfo::default()
-        .cull_mode(cull)
-        .front_face(front)
+        // Open sheets are seen from both sides.
+        .cull_mode(vk::CullModeFlags::NONE)
         .line_width(1.0);
     let samples = vk::PipelineMultisampleStateCreateInfo::default()
         .rasterization_samples(vk::SampleCountFlags::TYPE_1);

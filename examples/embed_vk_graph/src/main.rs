@@ -78,9 +78,9 @@ fn run(options: &Options, world: &World) -> Outcome<()> {
 
     println!("frame  size        plan µs  passes  barriers");
     let exposure = world.exposure();
-    let count = options.frames.max(options.resizes + 1);
+    let mut resizes = 0;
     let mut read_back = None;
-    for number in 0..count {
+    for number in 0..options.frames {
         // ---- Wait for the slot --------------------------------------------------------------
         // The frame before last had it; what that one was the last to use can go.
         if let Some(done) = frames.wait(number)? {
@@ -90,8 +90,9 @@ fn run(options: &Options, world: &World) -> Outcome<()> {
         // ---- Resize -------------------------------------------------------------------------
         // The frame before this one may still run on the old images: its graph keeps those of the
         // engine, `shadows` those of the node.
-        if (1..=options.resizes).contains(&number) {
-            let extent = size_after(options, number);
+        while number > 0 && resizes < resizes_due(options, number) {
+            resizes += 1;
+            let extent = size_after(options, resizes);
             targets = Targets::new(&gpu, extent)?;
             shadows.resize(extent, number - 1)?;
         }
@@ -120,7 +121,7 @@ fn run(options: &Options, world: &World) -> Outcome<()> {
         gbuffer_pass.add(&mut graph, &shot);
         let recorded = shadows.add(&mut graph, &shot, plan)?;
         compose_pass.add(&mut graph, &shot);
-        if number + 1 == count {
+        if number + 1 == options.frames {
             read_back = Some(ReadBack::add(&gpu, &mut graph, &targets)?);
         }
         frames.submit(number, graph)?;
@@ -137,7 +138,7 @@ fn run(options: &Options, world: &World) -> Outcome<()> {
 
     // ---- Tear down --------------------------------------------------------------------------
     // Wait for the frames in flight; then the node may go, before the device that it borrowed.
-    for number in count..count + u64::from(FRAMES_IN_FLIGHT) {
+    for number in options.frames..options.frames + u64::from(FRAMES_IN_FLIGHT) {
         if let Some(done) = frames.wait(number)? {
             shadows.frame_done(done);
         }
@@ -153,6 +154,12 @@ fn run(options: &Options, world: &World) -> Outcome<()> {
         output::write(&options.out, targets.extent, read_back)?;
     }
     Ok(())
+}
+
+/// How many resizes come before a frame: they are spread over the run.
+fn resizes_due(options: &Options, number: u64) -> u64 {
+    let steps = (options.frames - 1).max(1);
+    (options.resizes * number + steps / 2) / steps
 }
 
 /// The size behind a resize: other ones, and --size behind the last.

@@ -21,7 +21,7 @@ pub struct Options {
     /// Image size
     #[arg(long, value_name = "WxH", default_value = "640x480", value_parser = size)]
     pub size: [u32; 2],
-    /// How many frames; at least one is drawn behind each resize
+    /// How many frames
     #[arg(long, value_name = "N", default_value_t = 3,
           value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     pub frames: u64,

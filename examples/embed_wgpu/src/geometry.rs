@@ -1,10 +1,8 @@
 //! The scene's triangles in vertex and index buffers, and what shaders are told of each object.
 
 use crate::device::Gpu;
-use crate::{Outcome, raw};
-use antumbra::frame::{Geometry, MeshBuffers};
+use antumbra::Role;
 use antumbra::scene::{self, Scene};
-use antumbra::{MeshInstance, Role};
 use glam::{DMat4, DVec3};
 use std::marker::PhantomData;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
@@ -79,19 +77,6 @@ impl Object {
         std::array::from_fn(|i| {
             let pick = |axis: usize| f64::from(self.bounds[i >> axis & 1][axis]);
             self.world_from_mesh.transform_point3(DVec3::new(pick(0), pick(1), pick(2)))
-        })
-    }
-
-    /// The same buffers as the node takes them.
-    pub fn for_node(&self) -> Outcome<MeshInstance> {
-        let (vertices, indices) = (raw::buffer(&self.vertices)?, raw::buffer(&self.indices)?);
-        let buffers = MeshBuffers::indexed(vertices, STRIDE, indices, self.count);
-        Ok(MeshInstance {
-            geometry: Geometry::Buffers(buffers),
-            world_from_mesh: self.world_from_mesh,
-            bounds: self.bounds,
-            role: self.role,
-            double_sided: self.double_sided,
         })
     }
 

@@ -114,7 +114,7 @@ fn run(options: &Options) -> Outcome<()> {
     let compose_pass = ComposePass::new(&gpu);
     let mut targets = Targets::new(&gpu, &gbuffer_pass, options.size)?;
     let mut shadows = Shadows::new(&gpu, options.size, options.own_shadow_map)?;
-    let meshes = objects.iter().map(Object::for_node).collect::<Outcome<Vec<_>>>()?;
+    let meshes = objects.iter().map(shadows::mesh).collect::<Outcome<Vec<_>>>()?;
     let side = shadows.node.description().settings.soft_shadow_map.map;
     let own_maps = match options.own_shadow_map {
         true => Some((

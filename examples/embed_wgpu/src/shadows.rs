@@ -11,10 +11,10 @@
 //! ```
 
 use crate::device::{Gpu, Target};
-use crate::{FRAMES_IN_FLIGHT, Outcome, Seen, Targets, geometry};
-use antumbra::frame::OccluderMaps;
-use antumbra::{BorderBarriers, Description, Frame, FramePlan, Host, HostImage, MeshInstance};
-use antumbra::{Retired, Scope, ShadowNode, Visibility};
+use crate::geometry::{Object, STRIDE};
+use crate::{FRAMES_IN_FLIGHT, Outcome, Seen, Targets, raw};
+use antumbra::{BorderBarriers, Description, Frame, FramePlan, Geometry, Host, HostImage};
+use antumbra::{MeshBuffers, MeshInstance, OccluderMaps, Retired, Scope, ShadowNode, Visibility};
 use ash::vk;
 use gpu_allocator::vulkan::Allocator;
 use wgpu::hal::api::Vulkan;
@@ -49,7 +49,7 @@ impl Shadows {
         let description = Description {
             frames_in_flight: FRAMES_IN_FLIGHT as u32,
             mask_format: Some(vk::Format::R8_UNORM),
-            position_strides: vec![geometry::STRIDE],
+            position_strides: vec![STRIDE],
             lent_visibility: true,
             occluder_maps: own_maps.then_some(vk::Format::D32_SFLOAT),
             ..Description::new(extent)
@@ -116,6 +116,15 @@ impl Shadows {
 /// A texture as the node takes it. wgpu has it in this state before the node and believes it there
 /// behind.
 fn lend(target: &Target, scope: Scope) -> HostImage {
-    let crate::raw::RawImage { image, view, format, usage } = target.raw;
-    HostImage { image, view, format, extent: target.extent(), usage, before: scope, after: scope }
+    let raw::RawImage { image, view, format, usage } = target.raw;
+    HostImage::new((image, view), format, target.extent(), usage, scope, scope)
+}
+
+/// An object as the node takes it: the buffers that the program draws it from.
+pub fn mesh(object: &Object) -> Outcome<MeshInstance> {
+    let (vertices, indices) = (raw::buffer(&object.vertices)?, raw::buffer(&object.indices)?);
+    let buffers = MeshBuffers::indexed(vertices, STRIDE, indices, object.count);
+    let Object { world_from_mesh, bounds, role, double_sided, .. } = *object;
+    let mesh = MeshInstance::new(Geometry::Buffers(buffers), world_from_mesh, bounds, role);
+    Ok(MeshInstance { double_sided, ..mesh })
 }
