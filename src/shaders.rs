@@ -68,6 +68,9 @@ pub const LIT: Module = module!("visibility/lit.comp");
 /// Positions and normals of the headless G-buffer.
 #[cfg(feature = "headless")]
 pub const GBUFFER_VERT: Module = module!("headless/gbuffer.vert");
+/// Penumbra rectangles that the processor made.
+#[cfg(feature = "headless")]
+pub const QUADS_VERT: Module = module!("headless/quads.vert");
 /// Position, normal and role of a pixel.
 #[cfg(feature = "headless")]
 pub const GBUFFER_FRAG: Module = module!("headless/gbuffer.frag");

@@ -67,5 +67,7 @@ pub mod push;
 mod settings;
 pub mod twin;
 
+#[cfg(feature = "headless")]
+pub(crate) use passes::{BLEND_STEPS, receiver_grid};
 pub use passes::{Inputs, declare, wanted};
 pub use settings::{Accumulate, Receivers, Settings, Sides, spread_of};

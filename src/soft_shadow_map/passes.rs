@@ -12,7 +12,7 @@ use ash::vk;
 const BLOCK: u32 = 8;
 const SUPERBLOCK: u32 = 32;
 /// Blended contributions are multiples of 2⁻²⁴, see `patch.frag`.
-const BLEND_STEPS: f32 = 16_777_216.0;
+pub(crate) const BLEND_STEPS: f32 = 16_777_216.0;
 /// A superblock and its blocks, as they lie together.
 const FAMILY: u64 = 17;
 /// The largest storage buffer that every device binds (maxStorageBufferRange). Above N = 2048 the
@@ -170,7 +170,7 @@ fn declare_nodes(
 }
 
 /// Receiver texels in occluder texels: the step, and the centre of texel (0, 0).
-fn receiver_grid(view: &MapView, occluders: &MapView) -> ([f32; 2], [f32; 2]) {
+pub(crate) fn receiver_grid(view: &MapView, occluders: &MapView) -> ([f32; 2], [f32; 2]) {
     let (per, first) = (occluders.texels_per_uv(), occluders.first());
     let receiver_per = view.texels_per_uv();
     let step = [0, 1].map(|i| per[i] / receiver_per[i]);
