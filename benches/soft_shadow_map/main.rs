@@ -50,6 +50,7 @@ fn main() {
     println!("{}\n", device.name());
     let tables: Vec<Table> = vec![
         study::gather_and_blend(&device, &options),
+        study::gather_and_readback(&device, &options),
         study::sides(&device, &options),
         study::pixels_and_map(&device, &options),
         study::tolerance(&device, &options),

@@ -3,7 +3,7 @@
 use super::Options;
 use super::model::{Ready, accumulation_ms, committed, ply};
 use super::table::{Table, exponent, line, median, quantile, spread};
-use antumbra::gpu::headless::HeadlessDevice;
+use antumbra::gpu::headless::{HeadlessDevice, ReadbackScheme};
 use antumbra::scene::{Role, Scene, generate};
 use antumbra::truth::ErrorSummary;
 use glam::DMat4;
@@ -63,6 +63,50 @@ pub fn gather_and_blend(device: &HeadlessDevice, options: &Options) -> Table {
         }
         let points: Vec<_> = all.iter().filter(|p| p.1 == largest).map(|p| (p.0, p.2)).collect();
         println!("{name}, N = {largest}: time grows as L^{:.2}", exponent(&points));
+    }
+    table
+}
+
+/// The gather beside the paper's own scheme (Atty 2006 section 4.1), whole frames: one side, N = M, in
+/// turns. The node's frame ends in 32×32 pixels, which weigh nothing; the paper's ends with its map.
+pub fn gather_and_readback(device: &HeadlessDevice, options: &Options) -> Table {
+    let columns =
+        ["L", "N", "gather ms", "readback ms", "depth", "rectangles", "blend", "MB moved", "ratio"];
+    let mut table = Table::new("gather_and_readback", &columns);
+    let sides: &[u32] = if options.quick { &[128, 256] } else { &[128, 256, 512] };
+    for light in [0.1, 0.4, 1.0] {
+        let scene = spheres(light);
+        let lamp = scene.light(None).unwrap().light;
+        for &n in sides {
+            let words = format!("receivers=map sides=one map={n} receiver_map={n}");
+            let mut gather = Ready::new(device, &scene, 32, &words);
+            let mut readback = ReadbackScheme::new(device, &scene, n, n).unwrap();
+            readback.run(&lamp, None).unwrap();
+            let mut frames = Vec::new();
+            let mut parts: [Vec<f64>; 4] = Default::default();
+            let mut bytes = 0;
+            for _ in 0..options.rounds {
+                frames.push(gather.run().frame.as_secs_f64() * 1e3);
+                let times = readback.run(&lamp, None).unwrap();
+                let all = [times.frame, times.depth, times.rectangles, times.blend];
+                for (list, part) in parts.iter_mut().zip(all) {
+                    list.push(part.as_secs_f64() * 1e3);
+                }
+                bytes = times.bytes;
+            }
+            let [whole, depth, rectangles, blend] = &parts;
+            table.row(vec![
+                format!("{light}"),
+                format!("{n}"),
+                spread(&frames),
+                spread(whole),
+                spread(depth),
+                spread(rectangles),
+                spread(blend),
+                format!("{:.1}", bytes as f64 / 1e6),
+                format!("{:.2}", median(&frames) / median(whole)),
+            ]);
+        }
     }
     table
 }
