@@ -84,10 +84,11 @@ pub const KNOBS: &[Knob] = &[
     Knob {
         key: "sides",
         unit: "choice",
-        range: "one, bottom, two",
-        default: "two",
+        range: "one, bottom, two, mean",
+        default: "mean",
         about: "occluders seen as their nearest faces, as those at the distance of the furthest back \
-                faces, or as the larger shadow of both layers",
+                faces, as the larger shadow of both layers, or as the mean of both, which is nearer the \
+                truth (blending takes the larger)",
     },
     Knob {
         key: "accumulate",
@@ -218,7 +219,7 @@ mod tests {
         assert!(refuse("map", "4097").contains("16 to 4096"));
         assert!(refuse("map", "-1").contains("16 to 4096"));
         assert!(refuse("tolerance", "NaN").contains("0 to 0.1"));
-        assert!(refuse("sides", "three").contains("one, bottom, two"));
+        assert!(refuse("sides", "three").contains("one, bottom, two, mean"));
         assert!(refuse("rays", "4").contains("it has map"));
         let mut both = Settings::default();
         both.set("accumulate", "blend").unwrap();

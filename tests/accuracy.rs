@@ -165,7 +165,7 @@ fn real_models_are_within_three_percent() {
         let extent = [640, 480];
         let view = View::perspective(&scene.camera.unwrap(), extent);
         let setup = Setup { scene: &scene, view, extent, window: None, occluders_seen: true };
-        let mut stage = setup.stage(&device, "map=256 sides=two");
+        let mut stage = setup.stage(&device, "map=256");
         let image = setup.visibility(&mut stage);
         let (truth, noise) = setup.traced(&stage, 256);
         let s = summary(&truth, &image);

@@ -16,7 +16,9 @@ const WAYS: &[&str] = &[
     "receivers=pixels sides=one map=64",
     "receivers=pixels sides=bottom map=64",
     "receivers=pixels sides=two map=65",
+    "receivers=pixels sides=mean map=65",
     "receivers=map sides=two map=33 receiver_map=47",
+    "receivers=map sides=mean map=33 receiver_map=47",
     "receivers=map sides=two accumulate=blend map=64 receiver_map=40",
     "receivers=map sides=one accumulate=blend-fp16 map=16 receiver_map=16",
 ];

@@ -8,7 +8,7 @@ use antumbra::gpu::headless::{HeadlessDevice, ReadbackScheme, Stage};
 use antumbra::graph::Pass;
 use antumbra::scene::{Scene, generate};
 use antumbra::soft_shadow_map::push::{Blocks, GatherMap, PatchDraw};
-use antumbra::soft_shadow_map::twin::{OccluderMap, occlusion};
+use antumbra::soft_shadow_map::twin::{OccluderMap, back_or_front, backs_of_mean, occlusion};
 use antumbra_tests::device;
 use antumbra_tests::measure::Setup;
 
@@ -57,18 +57,25 @@ fn grid_of(plan: &FramePlan, accumulate: &str) -> Grid {
     }
 }
 
-/// The largest |error| over the checked texels, relative to a sum above 1, and the largest sum.
-fn worst_error(stage: &mut Stage, setup: &Setup, accumulate: &str) -> (f64, f64) {
+/// The largest |error| over the checked texels, relative to a sum above 1, and the largest sum; of the
+/// front map, or of the back map by pairs.
+fn worst_error(stage: &mut Stage, setup: &Setup, accumulate: &str, pairs: bool) -> (f64, f64) {
     let plan = stage.plan(&setup.light(), None).unwrap();
     stage.run(&plan).unwrap();
     let (depth, [side, _]) = stage.inspect::<f32>(&plan, "depth_layers.front_depth").unwrap();
     let (receivers, [receiver_side, _]) =
         stage.inspect::<f32>(&plan, "depth_layers.receiver_depth").unwrap();
-    let (sums, _) = stage.inspect::<f32>(&plan, "soft_shadow_map.front_map").unwrap();
+    let name = if pairs { "soft_shadow_map.back_map" } else { "soft_shadow_map.front_map" };
+    let (sums, _) = stage.inspect::<f32>(&plan, name).unwrap();
     let blocks: Blocks = push(pass(&plan, "soft_shadow_map.blocks"));
     let grid = grid_of(&plan, accumulate);
     let w: Vec<f32> = depth.iter().map(|d| d * blocks.inv_near).collect();
-    let map = OccluderMap { w: &w, side: side as usize, scale: grid.scale };
+    let backs = pairs.then(|| {
+        let (depth, _) = stage.inspect::<f32>(&plan, "depth_layers.back_depth").unwrap();
+        let w_of = |d: &f32| if *d == 1.0 { 0.0 } else { d * blocks.inv_near };
+        let back: Vec<f32> = depth.iter().map(w_of).collect();
+        backs_of_mean(&w, &back, side as usize)
+    });
 
     // A low-discrepancy walk over the texels that are in some shadow, and a few that are not.
     let shadowed: Vec<usize> = (0..sums.len()).filter(|&i| sums[i] > 0.0).collect();
@@ -88,7 +95,10 @@ fn worst_error(stage: &mut Stage, setup: &Setup, accumulate: &str) -> (f64, f64)
         }
         let p = [index % receiver_side as usize, index / receiver_side as usize];
         let t = [0, 1].map(|i| grid.t_first[i] + p[i] as f32 * grid.t_step[i]);
-        let exact = occlusion(&map, t, receivers[index] * grid.receiver_inv_near);
+        let w_r = receivers[index] * grid.receiver_inv_near;
+        let paired = backs.as_ref().map(|backs| back_or_front(&w, backs, w_r));
+        let w = paired.as_ref().unwrap_or(&w);
+        let exact = occlusion(&OccluderMap { w, side: side as usize, scale: grid.scale }, t, w_r);
         worst = worst.max((f64::from(sums[index]) - exact).abs() / exact.max(1.0));
         largest = largest.max(exact);
     }
@@ -109,9 +119,30 @@ fn gathered_sums_are_the_exact_sums() {
             let words =
                 format!("receivers=map map={side} receiver_map={side} tolerance=0 sides=one");
             let mut stage = setup.stage(&device, &words);
-            let (worst, largest) = worst_error(&mut stage, &setup, "gather");
+            let (worst, largest) = worst_error(&mut stage, &setup, "gather", false);
             println!("{name}, N = {side}: gather {worst:.1e} of sums up to {largest:.3}");
             assert!(worst <= BOUND, "{name}, N = {side}: {worst:.2e}");
+        }
+    }
+}
+
+/// Each texel's back face where it lies before the receiver, its front face where not.
+#[test]
+fn pairs_are_gathered_exactly() {
+    let device = device();
+    let light = || generate::square_light(0.4).unwrap();
+    let mut scenes = scenes();
+    scenes.push(("tall box", generate::tall_box(light())));
+    for (name, scene) in scenes {
+        let setup = Setup::ground(&scene, 2.2, 32);
+        for (side, tolerance) in [(64, 0.0), (100, 0.0), (128, 1e-3)] {
+            let words = format!(
+                "receivers=map map={side} receiver_map={side} tolerance={tolerance} sides=mean"
+            );
+            let mut stage = setup.stage(&device, &words);
+            let (worst, largest) = worst_error(&mut stage, &setup, "gather", true);
+            println!("{name}, N = {side}, {tolerance}: pairs {worst:.1e} of up to {largest:.3}");
+            assert!(worst <= tolerance + BOUND, "{name}, N = {side}: {worst:.2e}");
         }
     }
 }
@@ -125,7 +156,7 @@ fn the_tolerance_is_kept() {
             let words =
                 format!("receivers=map map=128 receiver_map=128 sides=one tolerance={tolerance}");
             let mut stage = setup.stage(&device, &words);
-            let (worst, _) = worst_error(&mut stage, &setup, "gather");
+            let (worst, _) = worst_error(&mut stage, &setup, "gather", false);
             println!("{name}, tolerance {tolerance}: {worst:.1e}");
             assert!(worst <= tolerance + BOUND, "{name}, {tolerance}: {worst:.2e}");
         }
@@ -141,7 +172,7 @@ fn blended_sums_are_the_exact_sums() {
             let words =
                 format!("receivers=map map={side} receiver_map={side} sides=one accumulate=blend");
             let mut stage = setup.stage(&device, &words);
-            let (worst, largest) = worst_error(&mut stage, &setup, "blend");
+            let (worst, largest) = worst_error(&mut stage, &setup, "blend", false);
             println!("{name}, N = {side}: blend {worst:.1e} of sums up to {largest:.3}");
             assert!(worst <= BOUND, "{name}, N = {side}: {worst:.2e}");
         }

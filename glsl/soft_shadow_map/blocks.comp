@@ -18,8 +18,13 @@ layout(push_constant) uniform Push {
     int map;        // the map's side in texels
     int row;        // blocks a row, a multiple of a superblock's
     float inv_near; // 1 over the near plane's distance, 1/m
-    int bottom;     // 1: front texels take the back layer's distance where it has one
+    int faces;      // 0: both layers as they are; 1, 2: see below
 } push;
+
+// Front texels take the back layer's distance where it has one.
+const int BOTTOM = 1;
+// Back texels that only add noise to a front which has none are left out.
+const int MEAN = 2;
 
 // Cleared to 1 and kept where less: 1 is a texel without a back face.
 const float NO_BACK = 1.0;
@@ -31,10 +36,37 @@ float w_at(ivec2 p, uint side)
     }
     float front = texelFetch(front_depth, p, 0).x;
     float back = texelFetch(back_depth, p, 0).x;
-    if (side == 0u && (push.bottom == 0 || front == 0.0 || back == NO_BACK)) {
+    if (side == 0u && (push.faces != BOTTOM || front == 0.0 || back == NO_BACK)) {
         return front * push.inv_near;
     }
     return back == NO_BACK ? 0.0 : back * push.inv_near;
+}
+
+// Patches of a surface parallel to the light join without gap or overlap (Atty 2006, eq. 3), so there is
+// nothing for a back face to cancel where the front is flatter than it by this factor; the gaps of a steep
+// one, such as the side of a box under its top, would only add (mean error of the tall box, L = 0.4: 0.5 %,
+// 4.3 % without). From 15 to 50 no scene tells the difference; at 6 the bunny's error grows by a seventh.
+const float FLATTER = 30.0;
+// What a raster's depth of a flat face may step by.
+const float ROUNDING = 1.0e-4;
+
+// How steeply w changes at a texel: along each axis by the lesser step to its two neighbours, so that an
+// edge beyond which something else lies does not count; of both axes the larger.
+float steepness(ivec2 p, uint side)
+{
+    float w = w_at(p, side);
+    float steep = 0.0;
+    for (int axis = 0; axis < 2; ++axis) {
+        ivec2 step = ivec2(1 - axis, axis);
+        float least = 3.0e38;
+        for (int i = -1; i <= 1; i += 2) {
+            ivec2 q = p + i * step;
+            float other = q.x < 0 || q.y < 0 ? 0.0 : w_at(q, side);
+            least = other > 0.0 ? min(least, abs(other - w)) : least;
+        }
+        steep = least < 3.0e38 ? max(steep, least) : steep;
+    }
+    return steep;
 }
 
 void main()
@@ -53,7 +85,12 @@ void main()
     uvec2 mask = uvec2(0u);
     float w[BLOCK_TEXELS];
     for (int i = 0; i < BLOCK_TEXELS; ++i) {
-        w[i] = w_at(block * BLOCK + ivec2(i % BLOCK, i / BLOCK), side);
+        ivec2 p = block * BLOCK + ivec2(i % BLOCK, i / BLOCK);
+        w[i] = w_at(p, side);
+        if (push.faces == MEAN && side == 1u && w[i] > 0.0 &&
+            steepness(p, 1u) > FLATTER * steepness(p, 0u) + ROUNDING * w[i]) {
+            w[i] = 0.0;
+        }
         texels[index * BLOCK_TEXELS + i] = w[i];
         if (w[i] > 0.0) {
             count += 1.0;

@@ -3,7 +3,7 @@
 // The including shader declares the buffers `texels`, `sums` and `nodes`, and what it knows of the
 // receivers' planes:
 //     struct Receivers { vec4 t_x; vec4 t_y; vec4 w; ... };
-//     vec4 occlusion_above(vec2 lo, float w_o, Receivers r, vec4 occlusion)
+//     bvec4 is_above(vec2 lo, float w_o, Receivers r)
 //     int plane_side(Node node, vec2 lo, float side, Receivers r)
 
 #ifndef SOFT_SHADOW_MAP_GATHER_GLSL
@@ -57,7 +57,7 @@ vec4 texel_occlusion(vec2 lo, float w_o, Receivers r, vec2 scale)
     vec4 a_y = (lo.y - r.t_y) * m_y + 0.5;
     vec4 x = clamp(a_x + m_x, 0.0, 1.0) - clamp(a_x, 0.0, 1.0);
     vec4 y = clamp(a_y + m_y, 0.0, 1.0) - clamp(a_y, 0.0, 1.0);
-    return occlusion_above(lo, w_o, r, x * y);
+    return mix(vec4(0.0), x * y, is_above(lo, w_o, r));
 }
 
 // Moments of the texels [lo, hi) of a block.
@@ -91,7 +91,39 @@ vec4 next_texel(inout uvec2 todo, int block, vec2 lo, Receivers r, vec2 scale)
     return texel_occlusion(lo + vec2(n % BLOCK, n / BLOCK), texels[block * BLOCK_TEXELS + n], r, scale);
 }
 
-// The occlusion by one side of the map.
+// The occlusion of the first texel of a mask by its back face, or by its front face where the back face
+// does not lie before the receiver; it is taken out of the mask.
+vec4 next_pair(inout uvec2 todo, int block, int backs, vec2 lo, Receivers r, vec2 scale)
+{
+    bool first = todo.x != 0u;
+    uint bits = first ? todo.x : todo.y;
+    int n = findLSB(int(bits)) + (first ? 0 : 32);
+    bits &= bits - 1u;
+    todo = first ? uvec2(bits, todo.y) : uvec2(0u, bits);
+    vec2 at = lo + vec2(n % BLOCK, n / BLOCK);
+    int index = block * BLOCK_TEXELS + n;
+    vec4 front = texel_occlusion(at, texels[index], r, scale);
+    float w_b = texels[index + backs];
+    vec4 back = texel_occlusion(at, w_b, r, scale);
+    vec4 before = mix(vec4(0.0), vec4(greaterThan(vec4(w_b), r.w)), is_above(at, w_b, r));
+    return w_b > 0.0 ? mix(front, back, before) : front;
+}
+
+// Which faces are gathered: 0 the front layer, 1 the back layer, or each texel's back face where it lies
+// before the receiver and its front face where not.
+const int BACK_OR_FRONT = 2;
+
+// 1 where every texel of a node lies before all receivers and above their planes, -1 where none does.
+int before(Node node, vec2 lo, float extent, Tile tile, Receivers r)
+{
+    if (node.count == 0.0 || node.w_max <= tile.w.x) {
+        return -1;
+    }
+    int plane = plane_side(node, lo, extent, r);
+    return plane > 0 && node.w_min <= tile.w.y ? 0 : plane;
+}
+
+// The occlusion by one side of the map, or by both in pairs.
 vec4 gather(Map map, int side, Receivers r)
 {
     Tile tile = tile_of(r);
@@ -115,24 +147,41 @@ vec4 gather(Map map, int side, Receivers r)
         int block = 0;
         int plane = 0;
         bool open = false;
+        bool pairs = false; // some of its back faces count and some do not
         while (!open && at.y <= to.y) {
-            int family = (side * map.row + at.y) * map.row + at.x;
             bool whole = children == 0u;
             int child = whole ? 0 : findLSB(int(children));
-            int index = family * FAMILY + (whole ? 0 : 1 + child);
+            int index = (at.y * map.row + at.x) * FAMILY + (whole ? 0 : 1 + child);
             ivec2 blocks_at = at * FAN + ivec2(child % FAN, child / FAN);
-            node = unpack_node(nodes[2 * index], nodes[2 * index + 1]);
             lo = vec2(blocks_at * BLOCK);
             float extent = float(whole ? SUPERBLOCK : BLOCK);
+            int from_side = side == 1 ? 1 : 0;
+            int there = index + from_side * map.row * map.row * FAMILY;
+            node = unpack_node(nodes[2 * there], nodes[2 * there + 1]);
+            pairs = false;
+            if (side == BACK_OR_FRONT) {
+                there = index + map.row * map.row * FAMILY;
+                Node back = unpack_node(nodes[2 * there], nodes[2 * there + 1]);
+                int backs_before = before(back, lo, extent, tile, r);
+                pairs = backs_before >= 0;
+                if (backs_before > 0 && back.count == node.count) {
+                    // A back face has a front face before it, so the two cover the same texels.
+                    node = back;
+                    from_side = 1;
+                    pairs = false;
+                } else if (pairs) {
+                    node.w_min = min(node.w_min, back.w_min);
+                }
+            }
             int kind = classify(node, lo, extent, tile.t_min, tile.t_max, tile.w, map.scale, map.spread);
             plane = kind == OUTSIDE ? -1 : plane_side(node, lo, extent, r);
-            kind = plane < 0 ? OUTSIDE : (kind == INSIDE && plane == 0) ? MIXED : kind;
+            kind = plane < 0 ? OUTSIDE : (kind == INSIDE && (plane == 0 || pairs)) ? MIXED : kind;
             if (kind == INSIDE) {
                 sum += cell * series(vec4(node.count, 0.0, node.s2, node.s3), node.mean, r.w);
             }
             children = !whole ? children & (children - 1u) : kind == MIXED ? node.mask.x : 0u;
             open = kind == MIXED && !whole;
-            block = (side * map.row * FAN + blocks_at.y) * map.row * FAN + blocks_at.x;
+            block = (from_side * map.row * FAN + blocks_at.y) * map.row * FAN + blocks_at.x;
             if (children == 0u) {
                 at = at.x < to.x ? at + ivec2(1, 0) : ivec2(from.x, at.y + 1);
             }
@@ -149,7 +198,7 @@ vec4 gather(Map map, int side, Receivers r)
         uvec2 todo = node.mask & rectangle_mask(outer_lo, outer_hi);
         float deviation = max(node.w_max - node.mean, node.mean - node.w_min);
         bool summed = (block + 1) * BLOCK_TEXELS <= sums.length();
-        if (summed && plane > 0 && deviation <= map.spread * (node.mean - tile.w.y)) {
+        if (summed && plane > 0 && !pairs && deviation <= map.spread * (node.mean - tile.w.y)) {
             ivec2 core_lo = ivec2(clamp(ceil(tile.t_max - inner - lo), 0.0, float(BLOCK)));
             ivec2 core_hi = ivec2(clamp(floor(tile.t_min + inner - lo), 0.0, float(BLOCK)));
             if (core_lo.x < core_hi.x && core_lo.y < core_hi.y) {
@@ -159,6 +208,10 @@ vec4 gather(Map map, int side, Receivers r)
         }
         // A block's own sum first: adding few large numbers keeps the low digits.
         vec4 part = vec4(0.0);
+        int backs = map.row * map.row * FAN * FAN * BLOCK_TEXELS; // from a front face to its back face
+        while (pairs && (todo.x | todo.y) != 0u) {
+            part += next_pair(todo, block, backs, lo, r, map.scale);
+        }
         while ((todo.x | todo.y) != 0u) {
             // Eight at a time: Mesa's CPU driver cuts an invocation off, silently, after 65535 turns of
             // all its loops together.

@@ -24,7 +24,7 @@ layout(push_constant) uniform Push {
     float receiver_inv_near; // 1 over the receiver map's near plane, 1/m
     int receiver_map;        // its side in texels
     int row;                 // superblocks a row
-    int side;                // 0 front, 1 back
+    int side;                // 0 front, 1 back, 2 back or front, as in gather.glsl
 } push;
 
 struct Receivers {
@@ -36,9 +36,9 @@ struct Receivers {
 #include "soft_shadow_map/node.glsl"
 
 // Receivers are not occluders here: every texel in front counts.
-vec4 occlusion_above(vec2 lo, float w_o, Receivers r, vec4 occlusion)
+bvec4 is_above(vec2 lo, float w_o, Receivers r)
 {
-    return occlusion;
+    return bvec4(true);
 }
 
 int plane_side(Node node, vec2 lo, float side, Receivers r)

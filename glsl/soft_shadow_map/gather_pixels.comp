@@ -30,7 +30,7 @@ layout(push_constant) uniform Push {
     float spread;       // the series' limit, see classify
     float snap;         // how far a raster moves a vertex, in texels
     int row;            // superblocks a row
-    int flags;          // bit 0: masked; bit 1: two sides
+    int flags;          // bit 0: masked; bit 1: two sides; bit 2: their mean
     float depth_error;  // how far off an occluder's w may be beyond its rounding, 1/m
 } push;
 
@@ -55,10 +55,10 @@ const float ROUNDING = 1.0 / 2097152.0;
 // the diagonal: 4.0, 2.9, 2.9, 3.0, 3.2 %; on the bunny's lit pixels 6.4, 0.6, 0.4, 0.3, 0.2 %.)
 const float OWN_SURFACE = 0.15;
 
-vec4 occlusion_above(vec2 lo, float w_o, Receivers r, vec4 occlusion)
+bvec4 is_above(vec2 lo, float w_o, Receivers r)
 {
     vec4 above = (lo.x + 0.5) * r.n_x + (lo.y + 0.5) * r.n_y + r.n_0 - r.c * w_o;
-    return mix(vec4(0.0), occlusion, greaterThan(above, r.bias));
+    return greaterThan(above, r.bias);
 }
 
 // 1 where every texel of a node is above the plane for sure, -1 where none is, 0 otherwise.
@@ -115,10 +115,13 @@ void main()
     }
     Map map = Map(push.scale, push.w_max, push.spread, push.row);
     vec4 hidden = below;
-    for (int side = 0; side <= (push.flags >> 1); ++side) {
+    bool mean = (push.flags & 4) != 0;
+    for (int side = 0; side <= ((push.flags >> 1) & 1); ++side) {
         // Where nothing of the light is left to hide, another side need not be asked.
-        r.w = mix(r.w, vec4(NOTHING), greaterThanEqual(hidden, vec4(1.0)));
-        hidden = max(hidden, below + gather(map, side, r));
+        r.w = mix(r.w, vec4(NOTHING), greaterThanEqual(mean ? below : hidden, vec4(1.0)));
+        vec4 sum = gather(map, side == 1 && mean ? BACK_OR_FRONT : side, r);
+        hidden = side == 0 ? below + sum
+                           : mean ? 0.5 * (hidden + below + sum) : max(hidden, below + sum);
     }
     vec4 v = 1.0 - min(hidden, vec4(1.0));
     for (int i = 0; i < 4; ++i) {

@@ -24,12 +24,14 @@ layout(push_constant) uniform Push {
     float background;
     float receiver_inv_near; // 1/m
     int receiver_map;        // the map's side in texels
-    int masked;
+    int flags;               // bit 0: masked; bit 1: the mean of both maps, not their maximum
 } push;
 
 float occlusion_at(ivec2 texel)
 {
-    return max(texelFetch(front_map, texel, 0).x, texelFetch(back_map, texel, 0).x);
+    float front = texelFetch(front_map, texel, 0).x;
+    float back = texelFetch(back_map, texel, 0).x;
+    return (push.flags & 2) != 0 ? 0.5 * (front + back) : max(front, back);
 }
 
 // The share of the plane's own slope over a texel by which a texel on it may be off: half a texel in
@@ -81,7 +83,7 @@ void main()
     if (p.x >= push.extent.x || p.y >= push.extent.y) {
         return;
     }
-    GBuffer g = GBuffer(push.light_from_ndc, push.extent, push.background, push.masked != 0);
+    GBuffer g = GBuffer(push.light_from_ndc, push.extent, push.background, (push.flags & 1) != 0);
     Receiver r = receiver_at(g, p);
     float v = 1.0;
     // Behind the light's plane there is nothing to hide.

@@ -43,6 +43,17 @@
 //! pixel's own rises above its plane within a texel (0.15 of its diagonal, measured); there is nothing
 //! to tune.
 //!
+//! **The mean of both sides.** The paper merges the shadows of the nearest and of the furthest faces by
+//! their maximum (section 3.5). But neighbouring patches at different distances overlap or leave a gap
+//! that grows with their step in w (eq. 3), and on a solid that bulges the steps of its back are those of
+//! its front with the other sign: where the one sums to 1 + e, the other sums to about 1 − e. The maximum
+//! is then always too dark, by |e|; the mean cancels e. A back face that does not lie before the receiver
+//! (a thing that stands on it) is stood in for by the front face of the same texel, receiver by receiver;
+//! where the front is flat there is no e to cancel, and the back is left out. Measured against the
+//! maximum, N = 256, L = 1: spheres 0.9 % for 2.9, bunny 1.6 for 2.7, Suzanne 1.2 for 2.5, the tall box
+//! 3.4 for 4.1, at the same cost. Sheets above each other have no e either, and each hides parts of the
+//! other from the light's centre: there the maximum is nearer (stacked cards, L = 0.4: 2.0 % for 1.5).
+//!
 //! **Blending in 32 bits.** Thousands of equal patches added to one float round the same way each time:
 //! 2e-5 of the light at N = 256, growing with N². So contributions are rounded to multiples of 2⁻²⁴
 //! first, up or down by a plane-filling sequence of thresholds; sums of those are exact, and the error

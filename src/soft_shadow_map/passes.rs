@@ -11,6 +11,8 @@ use ash::vk;
 /// Texels a side of a block and of a superblock, as in `node.glsl`.
 const BLOCK: u32 = 8;
 const SUPERBLOCK: u32 = 32;
+/// As in `gather.glsl`: each texel's back face where it lies before the receiver, else its front face.
+const BACK_OR_FRONT: i32 = 2;
 /// Blended contributions are multiples of 2⁻²⁴, see `patch.frag`.
 pub(crate) const BLEND_STEPS: f32 = 16_777_216.0;
 /// A superblock and its blocks, as they lie together.
@@ -86,7 +88,8 @@ pub fn declare(
                 })
                 .collect();
             let both = [maps[0], maps[maps.len() - 1]];
-            let resolve = visibility::Resolve { receiver_depth, view, maps: both };
+            let mean = combination(settings) == Sides::Mean;
+            let resolve = visibility::Resolve { receiver_depth, view, maps: both, mean };
             visibility::resolve(graph, visibility, &resolve, inputs.gbuffer, inputs.need);
         }
         _ => gather_pixels(graph, &nodes, visibility, settings, inputs),
@@ -95,7 +98,15 @@ pub fn declare(
 
 /// The sides that are summed apart: 0 front, 1 back.
 fn sides(settings: &Settings) -> &'static [u32] {
-    if settings.sides == Sides::Two { &[0, 1] } else { &[0] }
+    if matches!(settings.sides, Sides::Two | Sides::Mean) { &[0, 1] } else { &[0] }
+}
+
+/// How they are put together: blending cannot choose a face by receiver, as the mean does.
+fn combination(settings: &Settings) -> Sides {
+    match (settings.sides, settings.accumulate) {
+        (Sides::Mean, Accumulate::Blend | Accumulate::BlendFp16) => Sides::Two,
+        (sides, _) => sides,
+    }
 }
 
 fn compute(
@@ -142,7 +153,11 @@ fn declare_nodes(
             map: settings.map as i32,
             row: block_row as i32,
             inv_near: (1.0 / inputs.occluders.near) as f32,
-            bottom: i32::from(settings.sides == Sides::Bottom),
+            faces: match combination(settings) {
+                Sides::Bottom => 1,
+                Sides::Mean => 2,
+                Sides::One | Sides::Two => 0,
+            },
         }),
         vec![
             Use::bound(0, layers.front, Access::SampledCompute),
@@ -214,7 +229,10 @@ fn gather_map(
             receiver_inv_near: (1.0 / view.near) as f32,
             receiver_map: settings.receiver_map as i32,
             row: nodes.superblock_row as i32,
-            side: side as i32,
+            side: match (side, settings.sides) {
+                (1, Sides::Mean) => BACK_OR_FRONT,
+                _ => side as i32,
+            },
         }),
         vec![
             Use::bound(0, receiver_depth, Access::SampledCompute),
@@ -358,7 +376,8 @@ fn gather_pixels(
     let gbuffer = inputs.gbuffer;
     let [width, height] = gbuffer.extent;
     let occluders = inputs.occluders;
-    let two = i32::from(settings.sides == Sides::Two);
+    let two = i32::from(sides(settings).len() == 2);
+    let mean = i32::from(settings.sides == Sides::Mean);
     graph.push(compute(
         "soft_shadow_map.gather_pixels",
         shaders::GATHER_PIXELS,
@@ -376,7 +395,7 @@ fn gather_pixels(
             snap: inputs.snap,
             depth_error: inputs.depth_error as f32,
             row: nodes.superblock_row as i32,
-            flags: i32::from(gbuffer.mask.is_some()) | two << 1,
+            flags: i32::from(gbuffer.mask.is_some()) | two << 1 | mean << 2,
         }),
         vec![
             Use::bound(0, gbuffer.depth, Access::SampledCompute),

@@ -12,8 +12,9 @@ pub struct Blocks {
     pub row: i32,
     /// 1 over the near plane's distance, 1/m.
     pub inv_near: f32,
-    /// 1: front texels take the back layer's distance where it has one.
-    pub bottom: i32,
+    /// 0: both layers as they are; 1: front texels take the back layer's distance where it has one; 2:
+    /// back texels behind a front that is flatter by far are left out.
+    pub faces: i32,
 }
 
 /// `superblocks.comp`
@@ -72,7 +73,7 @@ pub struct GatherPixels {
     pub snap: f32,
     /// Superblocks a row.
     pub row: i32,
-    /// Bit 0: the mask is there; bit 1: two sides.
+    /// Bit 0: the mask is there; bit 1: two sides; bit 2: their mean.
     pub flags: i32,
     /// How far off an occluder's w may be beyond its rounding, 1/m.
     pub depth_error: f32,

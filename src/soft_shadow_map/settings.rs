@@ -25,14 +25,19 @@ pub enum Sides {
     /// The nearest faces' texels at the distance of the furthest back faces (Fig. 11b).
     Bottom,
     /// The larger shadow of the nearest faces and of the furthest back faces (section 3.5).
-    #[default]
     Two,
+    /// The mean of the shadow of the nearest faces and of that of the furthest back faces, where each
+    /// back face that does not lie before the receiver is stood in for by the front face before it.
+    /// Gaps between the patches of the one are overlaps of the other, and cancel (see the module).
+    /// Blending, which cannot choose by receiver, takes the larger shadow instead.
+    #[default]
+    Mean,
 }
 
 impl Sides {
     /// Every choice and its name.
     pub const ALL: &[(&str, Self)] =
-        &[("one", Self::One), ("bottom", Self::Bottom), ("two", Self::Two)];
+        &[("one", Self::One), ("bottom", Self::Bottom), ("two", Self::Two), ("mean", Self::Mean)];
 }
 
 /// How micro-patches are added up.

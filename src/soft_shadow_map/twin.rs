@@ -71,6 +71,39 @@ pub fn occlusion(map: &OccluderMap, t: [f32; 2], w_r: f32) -> f64 {
         .sum()
 }
 
+/// The back layer as the mean uses it: w of each back texel, 0 where there is none or where the front is
+/// flatter than it by `FLATTER` and there is nothing to cancel.
+pub fn backs_of_mean(front: &[f32], back: &[f32], side: usize) -> Vec<f32> {
+    const FLATTER: f32 = 30.0;
+    const ROUNDING: f32 = 1e-4;
+    let steepness = |w: &[f32], at: usize| {
+        let (x, y) = (at % side, at / side);
+        let other = |inside: bool, i: usize| (inside && w[i] > 0.0).then(|| (w[i] - w[at]).abs());
+        let lesser = |a: Option<f32>, b: Option<f32>| match (a, b) {
+            (Some(a), Some(b)) => Some(a.min(b)),
+            (a, b) => a.or(b),
+        };
+        let along_x =
+            lesser(other(x > 0, at.wrapping_sub(1)), other(x + 1 < side, at.wrapping_add(1)));
+        let along_y =
+            lesser(other(y > 0, at.wrapping_sub(side)), other(y + 1 < side, at.wrapping_add(side)));
+        along_x.unwrap_or(0.0).max(along_y.unwrap_or(0.0))
+    };
+    (0..back.len())
+        .map(|i| {
+            let noise = back[i] > 0.0
+                && steepness(back, i) > FLATTER * steepness(front, i) + ROUNDING * back[i];
+            if noise { 0.0 } else { back[i] }
+        })
+        .collect()
+}
+
+/// What one receiver sees of both layers in pairs: each back texel that lies before it, and the front
+/// texel where the back does not.
+pub fn back_or_front(front: &[f32], back: &[f32], w_r: f32) -> Vec<f32> {
+    front.iter().zip(back).map(|(&f, &b)| if b > 0.0 && b > w_r { b } else { f }).collect()
+}
+
 /// The sum of k² over texels whose w is `mean` + d, with `s` = (count, Σd, Σd², Σd³), by the series of
 /// the module's derivation.
 pub fn series<T: Float>(s: [T; 4], mean: T, w_r: T) -> T {

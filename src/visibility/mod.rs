@@ -56,8 +56,8 @@ pub struct ResolvePush {
     pub receiver_inv_near: f32,
     /// The map's side in texels.
     pub receiver_map: i32,
-    /// 1 where the mask is there.
-    pub masked: i32,
+    /// Bit 0: the mask is there; bit 1: the mean of both maps, not their maximum.
+    pub flags: i32,
 }
 
 /// What is resolved.
@@ -69,6 +69,8 @@ pub struct Resolve<'a> {
     pub view: &'a MapView,
     /// Occlusion of both sides; the same twice where there is one.
     pub maps: [ResourceId; 2],
+    /// Their mean is the occlusion, not their maximum.
+    pub mean: bool,
 }
 
 /// Declares the visibility image: the node's own, or `lent` by the host.
@@ -118,7 +120,7 @@ pub fn resolve(
             background: gbuffer.background,
             receiver_inv_near: (1.0 / what.view.near) as f32,
             receiver_map: what.view.side as i32,
-            masked: i32::from(gbuffer.mask.is_some()),
+            flags: i32::from(gbuffer.mask.is_some()) | i32::from(what.mean) << 1,
         }),
         work: Work::Dispatch { shader: shaders::RESOLVE, groups: grid(gbuffer.extent) },
         need: need.clone(),
