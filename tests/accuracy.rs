@@ -72,8 +72,8 @@ fn a_card_is_within_half_a_percent_of_the_closed_form() {
 struct Entry {
     model: &'static str,
     light: f64,
-    /// N, one pass, two passes.
-    expected: [(u32, f64, f64); 3],
+    /// N, one pass, two passes, their mean.
+    expected: [(u32, f64, f64, f64); 3],
 }
 
 const fn entry(
@@ -82,22 +82,28 @@ const fn entry(
     n64: (f64, f64),
     n128: (f64, f64),
     n256: (f64, f64),
+    mean: [f64; 3],
 ) -> Entry {
     Entry {
         model,
         light,
-        expected: [(64, n64.0, n64.1), (128, n128.0, n128.1), (256, n256.0, n256.1)],
+        expected: [
+            (64, n64.0, n64.1, mean[0]),
+            (128, n128.0, n128.1, mean[1]),
+            (256, n256.0, n256.1, mean[2]),
+        ],
     }
 }
 
-/// Measured by an independent prototype with a truth noise of about 0.3 points.
+/// Measured by an independent prototype with a truth noise of about 0.3 points; the mean, which the
+/// paper does not have, by this program.
 const TABLE: &[Entry] = &[
-    entry("card", 0.1, (2.9, 2.9), (0.4, 0.4), (0.4, 0.4)),
-    entry("card", 0.4, (2.7, 2.7), (0.3, 0.3), (0.3, 0.3)),
-    entry("card", 1.0, (1.7, 1.7), (0.3, 0.3), (0.3, 0.3)),
-    entry("tall box", 1.0, (6.4, 3.0), (6.4, 5.5), (6.4, 5.0)),
-    entry("bunny", 0.4, (3.3, 2.3), (3.3, 2.2), (3.3, 2.2)),
-    entry("bunny", 1.0, (3.2, 2.6), (3.4, 2.7), (3.4, 2.7)),
+    entry("card", 0.1, (2.9, 2.9), (0.4, 0.4), (0.4, 0.4), [3.7, 0.4, 0.4]),
+    entry("card", 0.4, (2.7, 2.7), (0.3, 0.3), (0.3, 0.3), [2.7, 0.3, 0.3]),
+    entry("card", 1.0, (1.7, 1.7), (0.3, 0.3), (0.3, 0.3), [1.8, 0.2, 0.2]),
+    entry("tall box", 1.0, (6.4, 3.0), (6.4, 5.5), (6.4, 5.0), [4.5, 5.1, 5.1]),
+    entry("bunny", 0.4, (3.3, 2.3), (3.3, 2.2), (3.3, 2.2), [1.4, 1.4, 1.2]),
+    entry("bunny", 1.0, (3.2, 2.6), (3.4, 2.7), (3.4, 2.7), [1.7, 1.8, 1.7]),
 ];
 
 /// How far a measurement may lie above the table.
@@ -129,8 +135,8 @@ fn the_published_table_is_reached() {
         };
         let setup = Setup { window: Some(window(&scene)), ..Setup::ground(&scene, 2.2, 128) };
         let mut truth = None;
-        for (side, one, two) in expected {
-            for (sides, expected) in [("one", one), ("two", two)] {
+        for (side, one, two, mean) in expected {
+            for (sides, expected) in [("one", one), ("two", two), ("mean", mean)] {
                 let mut stage = setup.stage(&device, &format!("map={side} sides={sides}"));
                 let image = setup.visibility(&mut stage);
                 let (truth, noise) = truth.get_or_insert_with(|| match *name {
@@ -158,7 +164,7 @@ fn the_published_table_is_reached() {
 
 /// Real models as their files are, every pixel that they show, self-shadows included.
 #[test]
-fn real_models_are_within_three_percent() {
+fn real_models_are_within_two_and_a_half_percent() {
     let device = device();
     for name in ["bunny", "suzanne"] {
         let scene = model(name);
@@ -179,7 +185,7 @@ fn real_models_are_within_three_percent() {
             100.0 * s.lit_error,
             100.0 * noise
         );
-        assert!(s.mean_abs_error <= 0.03, "{name}: {:.2} %", 100.0 * s.mean_abs_error);
+        assert!(s.mean_abs_error <= 0.025, "{name}: {:.2} %", 100.0 * s.mean_abs_error);
     }
 }
 

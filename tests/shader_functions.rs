@@ -4,7 +4,8 @@
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use antumbra::soft_shadow_map::twin::{
-    Kind, Node, Tile, classify, magnification, overlap, patch_occlusion, rectangle_mask, series,
+    Kind, Node, Tile, classify, magnification, merged_sides, overlap, patch_occlusion,
+    rectangle_mask, series,
 };
 use antumbra::visibility::twin::{
     dehomogenize, fraction_above, plane_normal, towards_viewer, unproject,
@@ -66,6 +67,24 @@ fn occlusion_by_a_patch() {
         .f32(Tolerance::absolute(2e-6), twin::<f32>)
         .f64(Tolerance::absolute(2e-6), twin::<f64>)
         .check(&device());
+}
+
+#[test]
+fn both_sides_merged() {
+    let any = (0.0..1.3_f32, 0.0..1.3_f32, 0.0..1.3_f32, 0.0..1.3_f32);
+    fn twin<T: Float>(x: &[T]) -> Vec<T> {
+        (0..4).map(|i| merged_sides(x[i], x[4 + i])).collect()
+    }
+    // The mean; umbra by either; half way between; a sum above 1.
+    Function::new("soft_shadow_map/merge.glsl", "vec4 merged_sides(vec4 front, vec4 back)")
+        .case(((0.2, 1.0, 0.95, 1.2), (0.4, 0.5, 0.55, 1.0)))
+        .random(10_000, (any.clone(), any))
+        .f32(Tolerance::absolute(2e-6), twin::<f32>)
+        .f64(Tolerance::absolute(2e-6), twin::<f64>)
+        .check(&device());
+    assert!((merged_sides(0.2_f64, 0.4) - 0.3).abs() < 1e-12);
+    assert!((merged_sides(1.0_f64, 0.5) - 1.0).abs() < 1e-12);
+    assert!((merged_sides(0.95_f64, 0.55) - 0.85).abs() < 1e-12);
 }
 
 #[test]

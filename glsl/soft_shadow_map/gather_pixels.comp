@@ -80,6 +80,7 @@ int plane_side(Node node, vec2 lo, float side, Receivers r)
 }
 
 #include "soft_shadow_map/gather.glsl"
+#include "soft_shadow_map/merge.glsl"
 
 void main()
 {
@@ -118,10 +119,9 @@ void main()
     bool mean = (push.flags & 4) != 0;
     for (int side = 0; side <= ((push.flags >> 1) & 1); ++side) {
         // Where nothing of the light is left to hide, another side need not be asked.
-        r.w = mix(r.w, vec4(NOTHING), greaterThanEqual(mean ? below : hidden, vec4(1.0)));
-        vec4 sum = gather(map, side == 1 && mean ? BACK_OR_FRONT : side, r);
-        hidden = side == 0 ? below + sum
-                           : mean ? 0.5 * (hidden + below + sum) : max(hidden, below + sum);
+        r.w = mix(r.w, vec4(NOTHING), greaterThanEqual(hidden, vec4(1.0)));
+        vec4 sum = below + gather(map, side == 1 && mean ? BACK_OR_FRONT : side, r);
+        hidden = side == 1 && mean ? merged_sides(hidden, sum) : max(hidden, sum);
     }
     vec4 v = 1.0 - min(hidden, vec4(1.0));
     for (int i = 0; i < 4; ++i) {

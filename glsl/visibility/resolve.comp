@@ -3,7 +3,8 @@
 #extension GL_EXT_samplerless_texture_functions : require
 
 // The soft shadow map projected onto the G-buffer's pixels (Atty 2006, section 3.1), bilinear over the
-// texels whose receiver lies on the pixel's own plane; the larger of both sides (section 3.5).
+// texels whose receiver lies on the pixel's own plane; the larger of both sides (section 3.5), or
+// their mean.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -15,6 +16,7 @@ layout(set = 0, binding = 4) uniform texture2D back_map;
 layout(set = 0, binding = 5, r32f) writeonly uniform image2D visibility;
 
 #include "common/gbuffer.glsl"
+#include "soft_shadow_map/merge.glsl"
 
 layout(push_constant) uniform Push {
     mat4 light_from_ndc;
@@ -31,7 +33,7 @@ float occlusion_at(ivec2 texel)
 {
     float front = texelFetch(front_map, texel, 0).x;
     float back = texelFetch(back_map, texel, 0).x;
-    return (push.flags & 2) != 0 ? 0.5 * (front + back) : max(front, back);
+    return (push.flags & 2) != 0 ? merged_sides(vec4(front), vec4(back)).x : max(front, back);
 }
 
 // The share of the plane's own slope over a texel by which a texel on it may be off: half a texel in

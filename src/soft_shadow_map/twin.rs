@@ -104,6 +104,14 @@ pub fn back_or_front(front: &[f32], back: &[f32], w_r: f32) -> Vec<f32> {
     front.iter().zip(back).map(|(&f, &b)| if b > 0.0 && b > w_r { b } else { f }).collect()
 }
 
+/// The occlusion by both sides from that by either, as in `merge.glsl`.
+pub fn merged_sides<T: Float>(front: T, back: T) -> T {
+    let tenth = T::one() / (half::<T>() * T::from(20.0).unwrap_or_else(T::nan));
+    let larger = front.max(back);
+    let umbra = clamp((larger - (T::one() - tenth)) / tenth, T::zero(), T::one());
+    half::<T>() * (front + back) * (T::one() - umbra) + larger * umbra
+}
+
 /// The sum of k² over texels whose w is `mean` + d, with `s` = (count, Σd, Σd², Σd³), by the series of
 /// the module's derivation.
 pub fn series<T: Float>(s: [T; 4], mean: T, w_r: T) -> T {
