@@ -21,6 +21,8 @@ pub enum Access {
     SampledFragment,
     /// A storage image that a compute shader writes, every texel once.
     ImageWrite,
+    /// A storage image that a compute shader reads and writes, each texel by one invocation.
+    ImageUpdate,
     /// A storage buffer that a compute shader reads.
     BufferReadCompute,
     /// A storage buffer that a compute shader writes.
@@ -119,10 +121,11 @@ impl Scope {
 
 impl Access {
     /// Every access, for tests by table.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::SampledCompute,
         Self::SampledFragment,
         Self::ImageWrite,
+        Self::ImageUpdate,
         Self::BufferReadCompute,
         Self::BufferWriteCompute,
         Self::BufferReadVertex,
@@ -135,8 +138,17 @@ impl Access {
     pub fn writes(self) -> bool {
         matches!(
             self,
-            Self::ImageWrite | Self::BufferWriteCompute | Self::DepthTarget | Self::ColorTarget
+            Self::ImageWrite
+                | Self::ImageUpdate
+                | Self::BufferWriteCompute
+                | Self::DepthTarget
+                | Self::ColorTarget
         )
+    }
+
+    /// Whether what it finds there matters: an earlier pass of the frame must have written it.
+    pub fn reads(self) -> bool {
+        self == Self::ImageUpdate || !self.writes()
     }
 
     /// The stages, access bits and layout of it.
@@ -150,6 +162,7 @@ impl Access {
                 (S::FRAGMENT_SHADER, A::SHADER_READ, L::SHADER_READ_ONLY_OPTIMAL)
             }
             Self::ImageWrite => (S::COMPUTE_SHADER, A::SHADER_WRITE, L::GENERAL),
+            Self::ImageUpdate => (S::COMPUTE_SHADER, A::SHADER_READ | A::SHADER_WRITE, L::GENERAL),
             Self::BufferReadCompute => (S::COMPUTE_SHADER, A::SHADER_READ, L::UNDEFINED),
             Self::BufferWriteCompute => (S::COMPUTE_SHADER, A::SHADER_WRITE, L::UNDEFINED),
             Self::BufferReadVertex => (S::VERTEX_SHADER, A::SHADER_READ, L::UNDEFINED),
@@ -172,7 +185,7 @@ impl Access {
     pub fn image_usage(self) -> vk::ImageUsageFlags {
         match self {
             Self::SampledCompute | Self::SampledFragment => vk::ImageUsageFlags::SAMPLED,
-            Self::ImageWrite => vk::ImageUsageFlags::STORAGE,
+            Self::ImageWrite | Self::ImageUpdate => vk::ImageUsageFlags::STORAGE,
             Self::DepthTarget => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
             Self::ColorTarget => vk::ImageUsageFlags::COLOR_ATTACHMENT,
             _ => vk::ImageUsageFlags::empty(),
@@ -194,7 +207,7 @@ impl Access {
     pub fn descriptor(self) -> Option<vk::DescriptorType> {
         match self {
             Self::SampledCompute | Self::SampledFragment => Some(vk::DescriptorType::SAMPLED_IMAGE),
-            Self::ImageWrite => Some(vk::DescriptorType::STORAGE_IMAGE),
+            Self::ImageWrite | Self::ImageUpdate => Some(vk::DescriptorType::STORAGE_IMAGE),
             Self::BufferReadCompute | Self::BufferWriteCompute | Self::BufferReadVertex => {
                 Some(vk::DescriptorType::STORAGE_BUFFER)
             }
