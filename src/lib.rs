@@ -19,7 +19,7 @@
 //!   the host: visibility × unshadowed irradiance
 //! ```
 //! [`baseline`] has what users would pick instead, from the same inputs to the same result: a hard
-//! shadow map, PCSS, many lights.
+//! shadow map, PCSS, back-projection, many lights.
 //!
 //! Values go down and never back up. Each of these modules declares its passes as rows of data in a
 //! [`graph`]; [`ShadowNode::plan`] keeps the rows that the frame in front of it needs and derives

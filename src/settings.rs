@@ -15,6 +15,8 @@ pub enum Technique {
     Pcss,
     /// The mean of hard shadow maps from points all over the light.
     ManyLights,
+    /// Occluder texels projected back onto the light, gaps filled (Guennebaud 2006).
+    BackProjection,
     /// Micro-patches back-projected onto the light (Atty 2006).
     #[default]
     SoftShadowMap,
@@ -26,6 +28,7 @@ impl Technique {
         ("hard", Self::Hard),
         ("pcss", Self::Pcss),
         ("many-lights", Self::ManyLights),
+        ("back-projection", Self::BackProjection),
         ("soft-shadow-map", Self::SoftShadowMap),
     ];
 
@@ -35,6 +38,7 @@ impl Technique {
             Self::Hard => "hard",
             Self::Pcss => "pcss",
             Self::ManyLights => "many-lights",
+            Self::BackProjection => "back-projection",
             Self::SoftShadowMap => "soft-shadow-map",
         }
     }

@@ -46,6 +46,12 @@ pub const TAKE: Module = module!("depth_layers/take.comp");
 pub const HARD: Module = module!("baseline/hard.comp");
 /// Percentage-closer soft shadows.
 pub const PCSS: Module = module!("baseline/pcss.comp");
+/// The least and largest w of 2×2 texels.
+pub const FINEST_LEVEL: Module = module!("baseline/finest_level.comp");
+/// A level of those from the one before.
+pub const NEXT_LEVEL: Module = module!("baseline/next_level.comp");
+/// Texels projected back onto the light.
+pub const BACK_PROJECTION: Module = module!("baseline/back_projection.comp");
 /// The G-buffer in light space.
 pub const RECEIVERS: Module = module!("baseline/receivers.comp");
 /// Whether each pixel sees one point of the light.
@@ -88,6 +94,9 @@ pub const ALL: &[Module] = &[
     TAKE,
     HARD,
     PCSS,
+    FINEST_LEVEL,
+    NEXT_LEVEL,
+    BACK_PROJECTION,
     RECEIVERS,
     ADD_POINT,
     AVERAGE,

@@ -24,6 +24,7 @@ fn descriptions() -> Vec<(String, Description)> {
         "receivers=map accumulate=blend-fp16 sides=one",
         "technique=hard",
         "technique=pcss taps=8",
+        "technique=back-projection map=100",
         "technique=many-lights samples=3 map=65",
     ] {
         for (mask_format, occluder_maps) in

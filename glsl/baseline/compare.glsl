@@ -29,17 +29,25 @@ MapPlane map_plane(vec3 position, vec3 normal, vec2 texels_per_uv, vec2 first, f
 }
 
 // How far a texel's surface, w_o at its centre `at`, lies above the receiver's plane beyond what the
-// receiver's own surface may rise that far away; no texel is known better than to half its diagonal.
-float clearance(MapPlane m, vec2 at, float w_o)
+// receiver's own surface may rise over a distance of `reach` in u and v; no texel is known better than to
+// half its diagonal.
+float clearance(MapPlane m, vec2 at, float w_o, float reach)
 {
     float above = dot(at, m.n) + m.n_0 - m.c * w_o;
-    return above - OWN_SLOPE * max(0.5 * length(m.texel), length((at - m.t) * m.texel));
+    return above - OWN_SLOPE * max(0.5 * length(m.texel), reach);
 }
 
-// The receiver-plane depth bias: whether the texel's surface hides the receiver.
+// Whether a texel's surface hides what lies behind the texel itself: the receiver-plane depth bias.
 bool in_front(MapPlane m, vec2 at, float w_o)
 {
-    return w_o > m.w && clearance(m, at, w_o) > m.rounding;
+    return w_o > m.w && clearance(m, at, w_o, 0.0) > m.rounding;
+}
+
+// The same where the texel is one of a filter around the receiver and stands for all of it: the receiver's
+// own surface must not, however far away it is within the filter.
+bool in_front_of_filter(MapPlane m, vec2 at, float w_o)
+{
+    return w_o > m.w && clearance(m, at, w_o, length((at - m.t) * m.texel)) > m.rounding;
 }
 
 #endif

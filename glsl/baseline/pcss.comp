@@ -17,7 +17,7 @@ float blocker_distance(MapPlane m, vec2 reach, float turn)
         vec2 at = m.t + reach * disc_to_square(disc_point(i, push.count) + vec2(0.0, turn));
         ivec2 texel = ivec2(floor(at));
         float w_o = w_of(texel);
-        if (in_front(m, vec2(texel) + 0.5, w_o)) {
+        if (in_front_of_filter(m, vec2(texel) + 0.5, w_o)) {
             sum += 1.0 / w_o;
             found += 1.0;
         }

@@ -55,10 +55,10 @@ float w_of(ivec2 texel)
     return outside ? 0.0 : texelFetch(front_depth, texel, 0).x * push.inv_near;
 }
 
-// Whether the texel's surface hides the receiver, as 1 or 0.
+// Whether the texel's surface hides the receiver of a filter, as 1 or 0.
 float hides(MapPlane m, ivec2 texel)
 {
-    return in_front(m, vec2(texel) + 0.5, w_of(texel)) ? 1.0 : 0.0;
+    return in_front_of_filter(m, vec2(texel) + 0.5, w_of(texel)) ? 1.0 : 0.0;
 }
 
 // The four texels around a place, each compared for itself and weighted as a bilinear filter does.

@@ -13,5 +13,5 @@ use crate::shaders;
 
 /// Adds the row that turns the map `front` into `visibility`.
 pub fn declare(graph: &mut Graph, front: ResourceId, visibility: ResourceId, inputs: &Inputs) {
-    one_map(graph, "baseline.hard", shaders::HARD, front, visibility, 0, inputs);
+    one_map(graph, "baseline.hard", shaders::HARD, (front, visibility), 0, &[], inputs);
 }

@@ -7,18 +7,20 @@
 //! |---|---|---|
 //! | [`hard`] | a shadow map from the light's centre, 3×3 percentage-closer filtered | Reeves 1987 |
 //! | [`pcss`] | a filter as wide as the blockers' mean distance says | Fernando 2005 |
+//! | [`back_projection`] | occluder texels projected back onto the light, gaps filled | Guennebaud 2006 |
 //! | [`many_lights`] | the mean of hard shadow maps from points all over the light | the GPU's own truth |
 //!
 //! **One bias for all of them.** A texel's surface hides a pixel where it lies above the pixel's own
 //! plane, which the G-buffer's depth gives: the receiver-plane bias, exact for flat receivers at any
 //! slope and filter width. It may be off by the rounding of that test and by how far the raster moves a
 //! vertex, and a bent surface of the pixel's own rises above its plane by up to 0.3 of the distance
-//! within the map (`glsl/common/plane.glsl`); that much higher a texel must lie. Nothing is to be tuned.
-//! The same share keeps what lies under a 17° slope around the pixel from blocking light that comes in
-//! under it.
+//! within the map (`glsl/common/plane.glsl`); that much higher a texel must lie. The distance is half a
+//! texel's diagonal where a texel stands for itself, and how far away it is where it stands for a whole
+//! filter. Nothing is to be tuned.
 //!
-//! **Limits.** The maps of [`hard`] and [`pcss`] see what the light's centre sees.
+//! **Limits.** The maps of all but [`many_lights`] see what the light's centre sees.
 
+pub mod back_projection;
 pub mod hard;
 pub mod many_lights;
 pub mod pcss;
@@ -68,14 +70,14 @@ fn compute(
 }
 
 /// Adds the row that turns the map from the light's centre into visibility, as `pixels.glsl` has it;
-/// `count` is the technique's own.
+/// `count` and the uses beyond the common ones are the technique's own.
 fn one_map(
     graph: &mut Graph,
     name: &'static str,
     shader: Module,
-    front: ResourceId,
-    visibility: ResourceId,
+    (front, visibility): (ResourceId, ResourceId),
     count: u32,
+    more: &[Use],
     inputs: &Inputs,
 ) {
     let Inputs { occluders, gbuffer, .. } = inputs;
@@ -93,12 +95,13 @@ fn one_map(
         masked: i32::from(gbuffer.mask.is_some()),
         count: count as i32,
     };
-    let uses = vec![
+    let mut uses = vec![
         Use::bound(0, gbuffer.depth, Access::SampledCompute),
         Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
         Use::bound(2, front, Access::SampledCompute),
         Use::bound(3, visibility, Access::ImageWrite),
     ];
+    uses.extend(more);
     let push = Push::new(&push);
     graph.push(compute(name, shader, pixels(gbuffer.extent), push, uses, inputs.need));
 }

@@ -38,5 +38,5 @@ pub fn declare(
     taps: u32,
     inputs: &Inputs,
 ) {
-    one_map(graph, "baseline.pcss", shaders::PCSS, front, visibility, taps, inputs);
+    one_map(graph, "baseline.pcss", shaders::PCSS, (front, visibility), taps, &[], inputs);
 }

@@ -28,8 +28,28 @@ pub struct Pixels {
     pub map: i32,
     /// 1 where the mask is there.
     pub masked: i32,
-    /// Of taps.
+    /// Of taps or levels.
     pub count: i32,
+}
+
+/// `finest_level.comp`
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct FinestLevel {
+    /// The map's side in texels.
+    pub map: i32,
+    /// 1 over the map's near plane, 1/m.
+    pub inv_near: f32,
+}
+
+/// `next_level.comp`
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct NextLevel {
+    /// The map's side in texels.
+    pub map: i32,
+    /// The level to make, 2 and up.
+    pub level: i32,
 }
 
 /// `receivers.comp`

@@ -61,7 +61,7 @@ pub(super) fn wanted(settings: &Settings) -> depth_layers::Wanted {
     let map = settings.map;
     match settings.technique {
         Technique::SoftShadowMap => soft_shadow_map::wanted(&settings.soft_shadow_map, map),
-        Technique::Hard | Technique::Pcss | Technique::ManyLights => {
+        Technique::Hard | Technique::Pcss | Technique::ManyLights | Technique::BackProjection => {
             depth_layers::Wanted { map, back: false, receiver_map: None }
         }
     }
@@ -171,6 +171,10 @@ pub(super) fn build(
             let front = layers(&mut graph).front;
             let taps = settings.baseline.taps;
             baseline::pcss::declare(&mut graph, front, visibility, taps, &baseline);
+        }
+        Technique::BackProjection => {
+            let front = layers(&mut graph).front;
+            baseline::back_projection::declare(&mut graph, front, visibility, &baseline);
         }
         Technique::ManyLights => {
             baseline::many_lights::declare(&mut graph, visibility, &views.points, &baseline);

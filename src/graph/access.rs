@@ -27,6 +27,8 @@ pub enum Access {
     BufferReadCompute,
     /// A storage buffer that a compute shader writes.
     BufferWriteCompute,
+    /// A storage buffer that a compute shader reads and writes, each part by one invocation.
+    BufferUpdate,
     /// A storage buffer that a vertex shader reads.
     BufferReadVertex,
     /// A buffer that holds the arguments of an indirect draw or dispatch.
@@ -121,13 +123,14 @@ impl Scope {
 
 impl Access {
     /// Every access, for tests by table.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::SampledCompute,
         Self::SampledFragment,
         Self::ImageWrite,
         Self::ImageUpdate,
         Self::BufferReadCompute,
         Self::BufferWriteCompute,
+        Self::BufferUpdate,
         Self::BufferReadVertex,
         Self::Indirect,
         Self::DepthTarget,
@@ -141,6 +144,7 @@ impl Access {
             Self::ImageWrite
                 | Self::ImageUpdate
                 | Self::BufferWriteCompute
+                | Self::BufferUpdate
                 | Self::DepthTarget
                 | Self::ColorTarget
         )
@@ -148,7 +152,7 @@ impl Access {
 
     /// Whether what it finds there matters: an earlier pass of the frame must have written it.
     pub fn reads(self) -> bool {
-        self == Self::ImageUpdate || !self.writes()
+        matches!(self, Self::ImageUpdate | Self::BufferUpdate) || !self.writes()
     }
 
     /// The stages, access bits and layout of it.
@@ -165,6 +169,9 @@ impl Access {
             Self::ImageUpdate => (S::COMPUTE_SHADER, A::SHADER_READ | A::SHADER_WRITE, L::GENERAL),
             Self::BufferReadCompute => (S::COMPUTE_SHADER, A::SHADER_READ, L::UNDEFINED),
             Self::BufferWriteCompute => (S::COMPUTE_SHADER, A::SHADER_WRITE, L::UNDEFINED),
+            Self::BufferUpdate => {
+                (S::COMPUTE_SHADER, A::SHADER_READ | A::SHADER_WRITE, L::UNDEFINED)
+            }
             Self::BufferReadVertex => (S::VERTEX_SHADER, A::SHADER_READ, L::UNDEFINED),
             Self::Indirect => (S::DRAW_INDIRECT, A::INDIRECT_COMMAND_READ, L::UNDEFINED),
             Self::DepthTarget => (
@@ -195,9 +202,10 @@ impl Access {
     /// What a buffer must have been created for.
     pub fn buffer_usage(self) -> vk::BufferUsageFlags {
         match self {
-            Self::BufferReadCompute | Self::BufferWriteCompute | Self::BufferReadVertex => {
-                vk::BufferUsageFlags::STORAGE_BUFFER
-            }
+            Self::BufferReadCompute
+            | Self::BufferWriteCompute
+            | Self::BufferUpdate
+            | Self::BufferReadVertex => vk::BufferUsageFlags::STORAGE_BUFFER,
             Self::Indirect => vk::BufferUsageFlags::INDIRECT_BUFFER,
             _ => vk::BufferUsageFlags::empty(),
         }
@@ -208,9 +216,10 @@ impl Access {
         match self {
             Self::SampledCompute | Self::SampledFragment => Some(vk::DescriptorType::SAMPLED_IMAGE),
             Self::ImageWrite | Self::ImageUpdate => Some(vk::DescriptorType::STORAGE_IMAGE),
-            Self::BufferReadCompute | Self::BufferWriteCompute | Self::BufferReadVertex => {
-                Some(vk::DescriptorType::STORAGE_BUFFER)
-            }
+            Self::BufferReadCompute
+            | Self::BufferWriteCompute
+            | Self::BufferUpdate
+            | Self::BufferReadVertex => Some(vk::DescriptorType::STORAGE_BUFFER),
             Self::Indirect | Self::DepthTarget | Self::ColorTarget => None,
         }
     }
