@@ -18,6 +18,9 @@
 //!        ▼
 //!   the host: visibility × unshadowed irradiance
 //! ```
+//! [`baseline`] has what users would pick instead, from the same inputs to the same result: a hard
+//! shadow map, PCSS, back-projection, many lights.
+//!
 //! Values go down and never back up. Each of these modules declares its passes as rows of data in a
 //! [`graph`]; [`ShadowNode::plan`] keeps the rows that the frame in front of it needs and derives
 //! their barriers; [`ShadowNode::record`] turns the plan into commands.
@@ -58,6 +61,7 @@
 //! | measure error | `truth` (feature `truth`) |
 //! | run without a window | `gpu::headless` (feature `headless`) |
 
+pub mod baseline;
 pub mod depth_layers;
 #[doc = include_str!("../docs/embedding.md")]
 pub mod embedding {}

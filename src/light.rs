@@ -56,6 +56,11 @@ impl RectangleLight {
         Self { center: DVec3::ZERO, axes: DMat3::IDENTITY, half_extents: [0.5; 2] }
     }
 
+    /// The same light with its centre at a point of its own plane, in metres along its x and y.
+    pub(crate) fn moved(&self, [x, y]: [f64; 2]) -> Self {
+        Self { center: self.center + self.axes * DVec3::new(x, y, 0.0), ..*self }
+    }
+
     /// Half the light's width and height, in metres.
     pub fn half_extents(&self) -> [f64; 2] {
         self.half_extents

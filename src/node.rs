@@ -3,6 +3,7 @@
 use crate::frame::{self, Description, Frame, FrameGraph, FramePlan, Limits, Stamp};
 use crate::gpu::{Allocator, Host, HostDraw, NodeObjects, Requirements, Retired};
 use crate::graph::{Draw, Layer, Owner, Pass, Shape, Work};
+use crate::settings::Technique;
 use crate::soft_shadow_map::Accumulate;
 use crate::{Error, depth_layers};
 use ash::vk;
@@ -20,8 +21,8 @@ pub struct ShadowNode {
     limits: Limits,
     objects: NodeObjects,
     visibility: crate::graph::ResourceId,
-    /// The rows that the objects were made for.
-    rows: Vec<&'static str>,
+    /// The names of the kinds of row that the objects were made for.
+    kinds: Vec<&'static str>,
     /// What plans for these objects carry.
     stamp: Stamp,
 }
@@ -86,8 +87,10 @@ impl ShadowNode {
         let requirements = Requirements::of(&host);
         requirements.met()?;
         description.check()?;
-        let settings = &description.settings.soft_shadow_map;
-        if settings.accumulate == Accumulate::Blend && !requirements.blends_f32 {
+        let settings = &description.settings;
+        let blends = settings.technique == Technique::SoftShadowMap
+            && settings.soft_shadow_map.accumulate == Accumulate::Blend;
+        if blends && !requirements.blends_f32 {
             return Err(Error::Setting {
                 key: "accumulate".into(),
                 problem: format!(
@@ -99,8 +102,8 @@ impl ShadowNode {
         let limits = Limits { snap: 0.5f32.powi(requirements.sub_pixel_bits.min(16) as i32) };
         let FrameGraph { graph, visibility, .. } = frame::nominal(&description, limits);
         let objects = NodeObjects::new(&host, allocator, &graph, &description)?;
-        let rows = graph.passes().iter().map(|p| p.name).collect();
-        Ok(Self { host, description, limits, objects, visibility, rows, stamp: next_stamp() })
+        let kinds = graph.kinds().map(|p| p.name).collect();
+        Ok(Self { host, description, limits, objects, visibility, kinds, stamp: next_stamp() })
     }
 
     /// What the node was made for.
@@ -159,10 +162,9 @@ impl ShadowNode {
     /// such layer.
     pub fn layer_pass(&self, layer: Layer) -> Option<LayerPass> {
         let FrameGraph { graph, .. } = frame::nominal(&self.description, self.limits);
-        let draws =
-            |p: &Pass| matches!(p.work, Work::Raster { draw: Draw::Layer(l), .. } if l == layer);
-        let row = graph.passes().iter().position(draws)?;
-        let (render_pass, extent) = self.objects.render_pass(row)?;
+        let draws = |p: &Pass| matches!(p.work, Work::Raster { draw: Draw::Layer { layer: l, .. }, .. } if l == layer);
+        let kind = graph.kinds().position(draws)?;
+        let (render_pass, extent) = self.objects.render_pass(kind)?;
         Some(LayerPass { render_pass, extent, raster: depth_layers::raster_of(layer) })
     }
 
@@ -209,12 +211,12 @@ impl ShadowNode {
         Ok(Retired::everything(old.host, old.objects))
     }
 
-    /// Name and milliseconds of each pass that `slot` recorded last; none until the host knows that
+    /// Name and milliseconds of each pass that `slot` recorded last, rows of one name summed; none until the host knows that
     /// its commands are done, where the queue family has no timestamps, or when the device is lost.
     /// Never waits.
     pub fn timings(&self, slot: u32) -> Option<Vec<(&'static str, f64)>> {
-        let rows = self.objects.timings(&self.host, slot)?;
-        Some(rows.into_iter().map(|(row, ms)| (self.rows[row], ms)).collect())
+        let sums = self.objects.timings(&self.host, slot)?;
+        Some(sums.into_iter().map(|(kind, ms)| (self.kinds[kind], ms)).collect())
     }
 
     /// The node's own images that a plan writes, and the layout they are in behind it; they can be

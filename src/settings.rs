@@ -1,6 +1,7 @@
 //! Every knob: unit, range, default, and what 0 means.
 
 use crate::Error;
+use crate::baseline::Settings as Baseline;
 use crate::soft_shadow_map::{Accumulate, Receivers, Settings as SoftShadowMap, Sides};
 use std::fmt::Display;
 use std::str::FromStr;
@@ -8,6 +9,14 @@ use std::str::FromStr;
 /// How the visible fraction is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Technique {
+    /// A shadow map from the light's centre, 3×3 percentage-closer filtered.
+    Hard,
+    /// Percentage-closer soft shadows (Fernando 2005).
+    Pcss,
+    /// The mean of hard shadow maps from points all over the light.
+    ManyLights,
+    /// Occluder texels projected back onto the light, gaps filled (Guennebaud 2006).
+    BackProjection,
     /// Micro-patches back-projected onto the light (Atty 2006).
     #[default]
     SoftShadowMap,
@@ -15,11 +24,21 @@ pub enum Technique {
 
 impl Technique {
     /// Every technique, with the name it has on a command line.
-    pub const ALL: &[(&str, Self)] = &[("soft-shadow-map", Self::SoftShadowMap)];
+    pub const ALL: &[(&str, Self)] = &[
+        ("hard", Self::Hard),
+        ("pcss", Self::Pcss),
+        ("many-lights", Self::ManyLights),
+        ("back-projection", Self::BackProjection),
+        ("soft-shadow-map", Self::SoftShadowMap),
+    ];
 
     /// The name it has on a command line.
     pub fn name(self) -> &'static str {
         match self {
+            Self::Hard => "hard",
+            Self::Pcss => "pcss",
+            Self::ManyLights => "many-lights",
+            Self::BackProjection => "back-projection",
             Self::SoftShadowMap => "soft-shadow-map",
         }
     }
@@ -34,12 +53,27 @@ impl FromStr for Technique {
 }
 
 /// The technique and its knobs.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// How the visible fraction is computed.
     pub technique: Technique,
-    /// The knobs of [`Technique::SoftShadowMap`].
+    /// The side of the light-space maps, texels, 16 to 4096; 256 by default.
+    pub map: u32,
+    /// The other knobs of [`Technique::SoftShadowMap`].
     pub soft_shadow_map: SoftShadowMap,
+    /// The other knobs of what users would pick instead.
+    pub baseline: Baseline,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            technique: Technique::default(),
+            map: 256,
+            soft_shadow_map: SoftShadowMap::default(),
+            baseline: Baseline::default(),
+        }
+    }
 }
 
 /// One knob, as data.
@@ -47,6 +81,8 @@ pub struct Settings {
 pub struct Knob {
     /// The key, as in `--set key=value`.
     pub key: &'static str,
+    /// The techniques that have it; empty for all of them.
+    pub techniques: &'static [Technique],
     /// The unit of the value.
     pub unit: &'static str,
     /// The values that are legal.
@@ -57,17 +93,34 @@ pub struct Knob {
     pub about: &'static str,
 }
 
+impl Knob {
+    /// Whether a technique has it.
+    pub fn serves(&self, technique: Technique) -> bool {
+        self.techniques.is_empty() || self.techniques.contains(&technique)
+    }
+
+    /// The names of the techniques that have it, or `all`.
+    pub fn techniques(&self) -> String {
+        match self.techniques {
+            [] => "all".into(),
+            some => some.iter().map(|t| t.name()).collect::<Vec<_>>().join(", "),
+        }
+    }
+}
+
 /// The knobs of every technique.
 pub const KNOBS: &[Knob] = &[
     Knob {
         key: "map",
+        techniques: &[],
         unit: "texels",
         range: "16 to 4096",
         default: "256",
-        about: "side of the occluder map; any whole number",
+        about: "side of the occluder map, or of each of them; any whole number",
     },
     Knob {
         key: "receiver_map",
+        techniques: &[Technique::SoftShadowMap],
         unit: "texels",
         range: "16 to 4096",
         default: "256",
@@ -75,6 +128,7 @@ pub const KNOBS: &[Knob] = &[
     },
     Knob {
         key: "receivers",
+        techniques: &[Technique::SoftShadowMap],
         unit: "choice",
         range: "pixels, map",
         default: "pixels",
@@ -83,6 +137,7 @@ pub const KNOBS: &[Knob] = &[
     },
     Knob {
         key: "sides",
+        techniques: &[Technique::SoftShadowMap],
         unit: "choice",
         range: "one, bottom, two, mean",
         default: "mean",
@@ -92,6 +147,7 @@ pub const KNOBS: &[Knob] = &[
     },
     Knob {
         key: "accumulate",
+        techniques: &[Technique::SoftShadowMap],
         unit: "choice",
         range: "gather, blend, blend-fp16",
         default: "gather",
@@ -100,48 +156,88 @@ pub const KNOBS: &[Knob] = &[
     },
     Knob {
         key: "tolerance",
+        techniques: &[Technique::SoftShadowMap],
         unit: "visible fraction",
         range: "0 to 0.1",
         default: "0.0001",
         about: "most that the gather's shortcut for far texels may add to the error; 0 uses it \
                 only where it is exact",
     },
+    Knob {
+        key: "taps",
+        techniques: &[Technique::Pcss],
+        unit: "taps",
+        range: "1 to 64",
+        default: "16",
+        about: "places of the map that a pixel looks at to find blockers, and as many again to filter",
+    },
+    Knob {
+        key: "samples",
+        techniques: &[Technique::ManyLights],
+        unit: "points",
+        range: "1 to 4096",
+        default: "256",
+        about: "points on the light, each with a map of its own; any whole number",
+    },
+    Knob {
+        key: "seed",
+        techniques: &[Technique::ManyLights],
+        unit: "whole number",
+        range: "0 to 4294967295",
+        default: "1",
+        about: "which random places the points take in their cells of the light; 0 puts them into the \
+                middle",
+    },
 ];
 
 impl Settings {
-    /// Sets one knob by its key.
+    /// Sets one knob of the technique by its key.
     ///
     /// # Errors
-    /// [`Error::Setting`] for an unknown key (names the known ones) or a value outside its range.
+    /// [`Error::Setting`] for a key that the technique does not have (names those it has) or a value
+    /// outside its range.
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), Error> {
         let s = &mut self.soft_shadow_map;
+        let technique = self.technique;
         match key {
-            "map" => s.map = number(key, value)?,
+            _ if !KNOBS.iter().any(|k| k.key == key && k.serves(technique)) => {
+                let known = KNOBS.iter().filter(|k| k.serves(technique));
+                let known: Vec<_> = known.map(|k| k.key).collect();
+                let name = technique.name();
+                let problem = format!("{name} has no such setting; it has {}", known.join(", "));
+                return Err(Error::Setting { key: key.into(), problem });
+            }
+            "map" => self.map = number(key, value)?,
             "receiver_map" => s.receiver_map = number(key, value)?,
             "receivers" => s.receivers = choose(key, value, Receivers::ALL)?,
             "sides" => s.sides = choose(key, value, Sides::ALL)?,
             "accumulate" => s.accumulate = choose(key, value, Accumulate::ALL)?,
             "tolerance" => s.tolerance = number(key, value)?,
-            _ => {
-                let known: Vec<_> = KNOBS.iter().map(|k| k.key).collect();
-                let name = self.technique.name();
-                let problem = format!("{name} has no such setting; it has {}", known.join(", "));
-                return Err(Error::Setting { key: key.into(), problem });
-            }
+            "taps" => self.baseline.taps = number(key, value)?,
+            "samples" => self.baseline.samples = number(key, value)?,
+            _ => self.baseline.seed = number(key, value)?,
         }
-        s.check_range(key)
+        self.check_range(key)
     }
 
-    /// The value of one knob, as [`Self::set`] takes it; none for an unknown key.
+    /// The value of one knob of the technique, as [`Self::set`] takes it; none for other keys.
     pub fn get(&self, key: &str) -> Option<String> {
+        KNOBS.iter().find(|k| k.key == key && k.serves(self.technique))?;
+        self.value(key)
+    }
+
+    fn value(&self, key: &str) -> Option<String> {
         let s = &self.soft_shadow_map;
         Some(match key {
-            "map" => s.map.to_string(),
+            "map" => self.map.to_string(),
             "receiver_map" => s.receiver_map.to_string(),
             "receivers" => name_of(Receivers::ALL, s.receivers),
             "sides" => name_of(Sides::ALL, s.sides),
             "accumulate" => name_of(Accumulate::ALL, s.accumulate),
             "tolerance" => s.tolerance.to_string(),
+            "taps" => self.baseline.taps.to_string(),
+            "samples" => self.baseline.samples.to_string(),
+            "seed" => self.baseline.seed.to_string(),
             _ => return None,
         })
     }
@@ -151,8 +247,26 @@ impl Settings {
     /// # Errors
     /// [`Error::Setting`] for the first that is wrong.
     pub fn check(&self) -> Result<(), Error> {
-        KNOBS.iter().try_for_each(|k| self.soft_shadow_map.check_range(k.key))?;
-        self.soft_shadow_map.check_agreement()
+        let mut knobs = KNOBS.iter().filter(|k| k.serves(self.technique));
+        knobs.try_for_each(|k| self.check_range(k.key))?;
+        match self.technique {
+            Technique::SoftShadowMap => self.soft_shadow_map.check_agreement(),
+            _ => Ok(()),
+        }
+    }
+
+    /// Checks the knob with this key against its range.
+    fn check_range(&self, key: &str) -> Result<(), Error> {
+        let good = match key {
+            "map" => (16..=4096).contains(&self.map),
+            _ => self.soft_shadow_map.in_range(key) && self.baseline.in_range(key),
+        };
+        if good {
+            return Ok(());
+        }
+        let value = self.value(key).unwrap_or_default();
+        let problem = format!("{value} is outside its range; {}", legal(key));
+        Err(Error::Setting { key: key.into(), problem })
     }
 }
 
@@ -179,7 +293,7 @@ fn choose<T: Copy>(key: &str, value: &str, all: &[(&str, T)]) -> Result<T, Error
 }
 
 /// The legal values of a knob, as part of a sentence.
-pub(crate) fn legal(key: &str) -> String {
+fn legal(key: &str) -> String {
     KNOBS
         .iter()
         .find(|k| k.key == key)
@@ -193,20 +307,31 @@ mod tests {
     #[test]
     fn every_knob_takes_its_default_and_has_it() {
         for knob in KNOBS {
-            let mut settings = Settings::default();
-            settings.set(knob.key, knob.default).unwrap();
-            assert_eq!(settings, Settings::default(), "{}", knob.key);
-            assert_eq!(settings.get(knob.key).as_deref(), Some(knob.default));
+            for &(name, technique) in Technique::ALL {
+                let plain = Settings { technique, ..Settings::default() };
+                let mut settings = plain;
+                if knob.serves(technique) {
+                    settings.set(knob.key, knob.default).unwrap();
+                    assert_eq!(settings, plain, "{name}: {}", knob.key);
+                    assert_eq!(settings.get(knob.key).as_deref(), Some(knob.default));
+                } else {
+                    assert!(settings.set(knob.key, knob.default).is_err());
+                    assert_eq!(settings.get(knob.key), None);
+                }
+                plain.check().unwrap();
+            }
         }
-        Settings::default().check().unwrap();
     }
 
     #[test]
     fn the_readme_lists_every_knob() {
         let readme = include_str!("../README.md");
         for k in KNOBS {
-            let row =
-                format!("| `{}` | {} | {} | {} | {} |", k.key, k.unit, k.range, k.default, k.about);
+            let techniques = k.techniques();
+            let row = format!(
+                "| `{}` | {techniques} | {} | {} | {} | {} |",
+                k.key, k.unit, k.range, k.default, k.about
+            );
             assert!(readme.contains(&row), "README.md's table of settings lacks this row:\n{row}");
         }
     }
@@ -221,6 +346,14 @@ mod tests {
         assert!(refuse("tolerance", "NaN").contains("0 to 0.1"));
         assert!(refuse("sides", "three").contains("one, bottom, two, mean"));
         assert!(refuse("rays", "4").contains("it has map"));
+        assert!(refuse("taps", "8").contains("it has map"));
+        let refuse = |technique, key: &str, value: &str| {
+            let mut settings = Settings { technique, ..Settings::default() };
+            settings.set(key, value).unwrap_err().to_string()
+        };
+        assert!(refuse(Technique::Pcss, "taps", "65").contains("1 to 64"));
+        assert!(refuse(Technique::ManyLights, "samples", "0").contains("1 to 4096"));
+        assert!(refuse(Technique::ManyLights, "seed", "-1").contains("4294967295"));
         let mut both = Settings::default();
         both.set("accumulate", "blend").unwrap();
         assert!(both.check().unwrap_err().to_string().contains("receivers=map"));

@@ -42,6 +42,22 @@ macro_rules! module {
 pub const DEPTH_VERT: Module = module!("depth_layers/depth.vert");
 /// A host's occluder map to a layer.
 pub const TAKE: Module = module!("depth_layers/take.comp");
+/// A hard shadow map, 3×3 filtered.
+pub const HARD: Module = module!("baseline/hard.comp");
+/// Percentage-closer soft shadows.
+pub const PCSS: Module = module!("baseline/pcss.comp");
+/// The least and largest w of 2×2 texels.
+pub const FINEST_LEVEL: Module = module!("baseline/finest_level.comp");
+/// A level of those from the one before.
+pub const NEXT_LEVEL: Module = module!("baseline/next_level.comp");
+/// Texels projected back onto the light.
+pub const BACK_PROJECTION: Module = module!("baseline/back_projection.comp");
+/// The G-buffer in light space.
+pub const RECEIVERS: Module = module!("baseline/receivers.comp");
+/// Whether each pixel sees one point of the light.
+pub const ADD_POINT: Module = module!("baseline/add_point.comp");
+/// The share of the points that each pixel sees.
+pub const AVERAGE: Module = module!("baseline/average.comp");
 /// Occluder map to blocks of texels with their moments.
 pub const BLOCKS: Module = module!("soft_shadow_map/blocks.comp");
 /// Blocks to superblocks.
@@ -79,6 +95,14 @@ pub const GBUFFER_FRAG: Module = module!("headless/gbuffer.frag");
 pub const ALL: &[Module] = &[
     DEPTH_VERT,
     TAKE,
+    HARD,
+    PCSS,
+    FINEST_LEVEL,
+    NEXT_LEVEL,
+    BACK_PROJECTION,
+    RECEIVERS,
+    ADD_POINT,
+    AVERAGE,
     BLOCKS,
     SUPERBLOCKS,
     GATHER_MAP,

@@ -21,6 +21,10 @@ const WAYS: &[&str] = &[
     "receivers=map sides=mean map=33 receiver_map=47",
     "receivers=map sides=two accumulate=blend map=64 receiver_map=40",
     "receivers=map sides=one accumulate=blend-fp16 map=16 receiver_map=16",
+    "technique=hard map=64",
+    "technique=pcss map=65",
+    "technique=back-projection map=50",
+    "technique=many-lights samples=30 map=33",
 ];
 
 fn spheres() -> Scene {

@@ -16,7 +16,7 @@ struct Arguments {
     /// The folder for the results; made where it does not exist
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// How the visible fraction is computed: soft-shadow-map
+    /// How the visible fraction is computed
     #[arg(long, value_name = "T", default_value = "soft-shadow-map")]
     technique: String,
     /// A setting of the technique, repeatable; see below
@@ -80,11 +80,12 @@ fn knobs() -> String {
     let mut text = String::from("Settings (--set KEY=VALUE):\n");
     for k in KNOBS {
         text.push_str(&format!(
-            "  {:<14} {} [{}; default {}]\n",
+            "  {:<14} {} [{}; default {}; {}]\n",
             k.key,
             k.about,
             if k.unit == "choice" { k.range.into() } else { format!("{}, {}", k.range, k.unit) },
-            k.default
+            k.default,
+            if k.techniques.is_empty() { "all techniques".into() } else { k.techniques() }
         ));
     }
     text
@@ -95,7 +96,11 @@ fn knobs() -> String {
 /// # Errors
 /// The help text where it was asked for; one line for anything wrong.
 pub fn parse(arguments: impl Iterator<Item = OsString>) -> Result<Options, Stop> {
-    let command = Arguments::command().after_help(knobs());
+    let names: Vec<_> = Technique::ALL.iter().map(|(name, _)| *name).collect();
+    let technique = format!("How the visible fraction is computed: {}", names.join(", "));
+    let command = Arguments::command()
+        .mut_arg("technique", |argument| argument.help(technique))
+        .after_help(knobs());
     let matches = command.try_get_matches_from(arguments).map_err(|e| {
         if e.use_stderr() {
             // The first paragraph names the argument; usage and tips follow it.

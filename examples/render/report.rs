@@ -64,12 +64,12 @@ impl Report<'_> {
         let passes: Vec<_> = self
             .plan
             .plan
-            .steps
+            .runs()
             .iter()
-            .map(|step| {
-                let pass = &graph.passes()[step.pass];
-                let (Need::Yes(why) | Need::No(why)) = &pass.need;
-                json!({ "name": pass.name, "ms": self.pass_ms(pass.name), "why": why })
+            .map(|run| {
+                let name = run.pass.name;
+                let (Need::Yes(why) | Need::No(why)) = &run.pass.need;
+                json!({ "name": name, "ms": self.pass_ms(name), "times": run.times, "why": why })
             })
             .collect();
         let skipped: Vec<_> = self

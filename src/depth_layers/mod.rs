@@ -167,7 +167,7 @@ fn drawn(graph: &mut Graph, layer: Layer, side: u32, need: &Need) -> ResourceId 
             fragment: None,
             cull,
             target: Target::Depth { clear, compare },
-            draw: Draw::Layer(layer),
+            draw: Draw::Layer { layer, view: 0 },
         },
         need: need.clone(),
     });

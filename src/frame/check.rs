@@ -1,8 +1,8 @@
 //! What a frame's numbers and images must be, each refusal a sentence in the host's words.
 
+use super::rows::wanted;
 use super::{Description, Frame, HostImage, Visibility};
 use crate::graph::is_depth_format;
-use crate::soft_shadow_map::Sides;
 use crate::{Error, visibility};
 use ash::vk::{self, ImageLayout as Layout, ImageUsageFlags as Usage};
 
@@ -97,12 +97,12 @@ impl Frame<'_> {
         if self.window.is_some() {
             return bad("the occluder maps have a window of their own; give no other");
         }
-        let settings = &description.settings.soft_shadow_map;
-        let sides = [settings.map; 2];
+        let wanted = wanted(&description.settings);
+        let sides = [wanted.map; 2];
         check_image(&maps.front, &read("occluder_maps.front", format, sides))?;
         match &maps.back {
             Some(back) => check_image(back, &read("occluder_maps.back", format, sides)),
-            None if settings.sides == Sides::One => Ok(()),
+            None if !wanted.back => Ok(()),
             None => bad("occluder_maps.back is missing; lend it, or set sides=one"),
         }
     }

@@ -4,6 +4,7 @@ mod accesses;
 mod check;
 mod host;
 mod plan;
+mod rows;
 #[cfg(test)]
 mod tests;
 
@@ -11,11 +12,13 @@ pub use accesses::{BufferAccess, HostAccess, ImageBarrier, NodeUse};
 pub use host::{
     BorderBarriers, Geometry, HostImage, MeshBuffers, MeshInstance, OccluderMaps, Visibility,
 };
-pub use plan::{Faces, FramePlan, Limits, MeshDraw, full_graph, plan};
-pub(crate) use plan::{FrameGraph, Stamp, nominal};
+pub(crate) use plan::Stamp;
+pub use plan::{Faces, FramePlan, MeshDraw, plan};
+pub(crate) use rows::{FrameGraph, nominal};
+pub use rows::{Limits, full_graph};
 
 use crate::graph::{self, Scope};
-use crate::settings::Settings;
+use crate::settings::{Settings, Technique};
 use crate::{Error, RectangleLight};
 use ash::vk;
 use glam::DMat4;
@@ -83,6 +86,13 @@ impl Description {
                 return Err(Error::Frame(format!("{whose} format {format:?} holds no depth")));
             }
         }
+        if self.occluder_maps.is_some() && self.settings.technique == Technique::ManyLights {
+            return Err(Error::Frame(
+                "many-lights sees the occluders from points all over the light, and occluder maps \
+                 from its centre alone; lend meshes, or choose another technique"
+                    .into(),
+            ));
+        }
         match self.position_strides.iter().find(|&&s| s < 12 || s % 4 != 0 || s > 2048) {
             Some(s) => Err(Error::Frame(format!(
                 "a position stride of {s} bytes does not work; three floats take 12, and strides \
@@ -119,7 +129,8 @@ pub struct Frame<'a> {
     /// The host's own depth images of the occluders, exactly where the description has a format for
     /// them. [`Self::meshes`] then only says where receivers are.
     pub occluder_maps: Option<OccluderMaps>,
-    /// Least and largest tangent (u, v) of the occluder map; none fits it to the occluders.
+    /// Least and largest tangent (u, v) of the occluder map; none fits it to the occluders. The
+    /// technique `many-lights` fits each of its maps, whatever this says.
     pub window: Option<[[f64; 2]; 2]>,
     /// Which of the frames in flight this is, 0 and up. The frame that last had the same number
     /// must be done before this one is recorded.

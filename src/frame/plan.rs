@@ -1,14 +1,15 @@
 //! From one frame to what it records.
 
 use super::accesses::{self, BufferAccess, HostAccess, ImageBarrier, NodeUse};
+use super::rows::{Limits, PLACEHOLDER, Views, build, wanted};
 use super::{
     BorderBarriers, Description, Frame, Geometry, HostImage, MeshBuffers, MeshInstance, Visibility,
 };
-use crate::depth_layers::{self, HostMapView, MapView};
-use crate::graph::{self, Border, Graph, MeshList, Need, Owner, ResourceId};
+use crate::baseline::many_lights;
+use crate::depth_layers::{self, HostMapView};
+use crate::graph::{self, Border, MeshList, Need, ResourceId};
 use crate::settings::Technique;
-use crate::visibility::{self, GBuffer};
-use crate::{Error, RectangleLight, scene::Role, soft_shadow_map};
+use crate::{Error, scene::Role};
 use ash::vk;
 use glam::DMat4;
 
@@ -23,7 +24,7 @@ pub enum Faces {
     Both,
 }
 
-/// A mesh in one list's clip space, ready to be drawn.
+/// A mesh of a list, ready to be drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshDraw {
     /// The host's mesh.
@@ -32,8 +33,33 @@ pub struct MeshDraw {
     pub stride: usize,
     /// Which faces are fronts.
     pub faces: Faces,
-    /// Mesh space to clip space, by column.
-    pub clip_from_mesh: [f32; 16],
+}
+
+/// The meshes of a list, and the matrices that bring them into each view of it.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct DrawList {
+    meshes: Vec<MeshDraw>,
+    /// Mesh space to clip space, by column; view by view, mesh by mesh.
+    clip_from_mesh: Vec<[f32; 16]>,
+}
+
+impl DrawList {
+    /// The meshes as each of some views sees them.
+    fn new(
+        description: &Description,
+        meshes: &[MeshInstance],
+        views: &[DMat4],
+    ) -> Result<Self, Error> {
+        let matrix =
+            |clip: &DMat4, m: &MeshInstance| (*clip * m.world_from_mesh).as_mat4().to_cols_array();
+        Ok(Self {
+            clip_from_mesh: views
+                .iter()
+                .flat_map(|clip| meshes.iter().map(move |m| matrix(clip, m)))
+                .collect(),
+            meshes: meshes.iter().map(|m| draw_of(description, m)).collect::<Result<_, _>>()?,
+        })
+    }
 }
 
 /// Which node a plan was made by, and since which resize; none for a plan made without a node.
@@ -53,8 +79,8 @@ pub struct FramePlan {
     pub slot: u32,
     pub(crate) stamp: Stamp,
     accesses: Vec<HostAccess>,
-    occluders: Vec<MeshDraw>,
-    receivers: Vec<MeshDraw>,
+    occluders: DrawList,
+    receivers: DrawList,
 }
 
 impl FramePlan {
@@ -82,11 +108,26 @@ impl FramePlan {
     /// The vertex and index buffers that this frame reads, each once. The node places no barrier for
     /// them: what was written to them must be visible to these scopes.
     pub fn buffer_accesses(&self) -> Vec<BufferAccess> {
-        accesses::of_buffers(self.occluders.iter().chain(&self.receivers))
+        accesses::of_buffers(self.occluders.meshes.iter().chain(&self.receivers.meshes))
     }
 
     /// The meshes of a list.
     pub fn meshes(&self, list: MeshList) -> &[MeshDraw] {
+        &self.list(list).meshes
+    }
+
+    /// The meshes of a list with their matrices in one of its views: mesh space to clip space, by
+    /// column.
+    pub fn draws(
+        &self,
+        list: MeshList,
+        view: u32,
+    ) -> impl Iterator<Item = (&MeshDraw, &[f32; 16])> {
+        let DrawList { meshes, clip_from_mesh } = self.list(list);
+        meshes.iter().zip(clip_from_mesh.iter().skip(view as usize * meshes.len()))
+    }
+
+    fn list(&self, list: MeshList) -> &DrawList {
         match list {
             MeshList::Occluders => &self.occluders,
             MeshList::Receivers => &self.receivers,
@@ -95,7 +136,7 @@ impl FramePlan {
 
     /// Whether some of its meshes are the host's to draw.
     pub fn has_host_draws(&self) -> bool {
-        let mut all = self.occluders.iter().chain(&self.receivers);
+        let mut all = self.occluders.meshes.iter().chain(&self.receivers.meshes);
         all.any(|d| matches!(d.mesh.geometry, Geometry::HostDrawn(_)))
     }
 
@@ -110,131 +151,6 @@ impl FramePlan {
         }
         self
     }
-}
-
-/// What a device's limits mean to a plan.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
-    /// 2^−(sub-pixel bits): how far rasters move a vertex, in texels.
-    pub snap: f32,
-}
-
-impl Default for Limits {
-    /// The least that Vulkan guarantees: 4 sub-pixel bits.
-    fn default() -> Self {
-        Self { snap: 1.0 / 16.0 }
-    }
-}
-
-/// The graph of one frame with the resources the host needs to find again.
-pub(crate) struct FrameGraph {
-    pub graph: Graph,
-    pub depth: ResourceId,
-    pub mask: Option<ResourceId>,
-    pub occluder_maps: [Option<ResourceId>; 2],
-    pub visibility: ResourceId,
-}
-
-/// A view for rows that do not run.
-const PLACEHOLDER: MapView =
-    MapView { min: [-1.0; 2], max: [1.0; 2], near: 1.0, far: 2.0, side: 16 };
-
-/// What the rows depend on, beyond the description.
-struct Views {
-    occluders: MapView,
-    host_maps: Option<HostMapView>,
-    receivers: Option<MapView>,
-    need: Need,
-    light_from_ndc: [f32; 16],
-    background: f32,
-}
-
-/// Every row that any frame of this description could run; what a node makes its objects from.
-pub(crate) fn nominal(description: &Description, limits: Limits) -> FrameGraph {
-    let side = description.settings.soft_shadow_map.map;
-    let view = MapView { side, ..PLACEHOLDER };
-    let views = Views {
-        occluders: view,
-        host_maps: description.occluder_maps.map(|_| HostMapView {
-            view,
-            flip: [false; 2],
-            scale: 1.0,
-            offset: 0.0,
-            far_value: 0.0,
-            near_value: 1.0,
-            error: 0.0,
-        }),
-        receivers: Some(view),
-        need: Need::Yes("nominal".into()),
-        light_from_ndc: DMat4::IDENTITY.as_mat4().to_cols_array(),
-        background: 0.0,
-    };
-    build(description, limits, &RectangleLight::unit(), &views)
-}
-
-/// The graph of a description with every row that any of its frames could run; the numbers in its
-/// push constants mean nothing.
-pub fn full_graph(description: &Description) -> Graph {
-    nominal(description, Limits::default()).graph
-}
-
-fn build(
-    description: &Description,
-    limits: Limits,
-    light: &RectangleLight,
-    views: &Views,
-) -> FrameGraph {
-    let mut graph = Graph::new();
-    let depth =
-        graph.image("gbuffer.depth", description.depth_format, description.extent, Owner::Imported);
-    let mask = description
-        .mask_format
-        .map(|format| graph.image("gbuffer.mask", format, description.extent, Owner::Imported));
-    let settings = &description.settings.soft_shadow_map;
-    let wanted = soft_shadow_map::wanted(settings);
-    let map = |graph: &mut Graph, name| {
-        description
-            .occluder_maps
-            .map(|format| graph.image(name, format, [settings.map; 2], Owner::Imported))
-    };
-    let front = map(&mut graph, "occluder_maps.front");
-    let back = if wanted.back { map(&mut graph, "occluder_maps.back") } else { None };
-    let visibility =
-        visibility::declare(&mut graph, description.extent, description.lent_visibility);
-    let gbuffer = GBuffer {
-        depth,
-        mask,
-        extent: description.extent,
-        light_from_ndc: views.light_from_ndc,
-        background: views.background,
-    };
-    match description.settings.technique {
-        Technique::SoftShadowMap => {
-            let occluders = match (front, &views.host_maps) {
-                (Some(front), Some(camera)) => {
-                    depth_layers::Occluders::Maps { front, back, camera }
-                }
-                _ => depth_layers::Occluders::Meshes,
-            };
-            let layers = depth_layers::declare(&mut graph, wanted, &occluders, &views.need);
-            let inputs = soft_shadow_map::Inputs {
-                light,
-                occluders: &views.occluders,
-                receivers: views.receivers.as_ref(),
-                gbuffer: &gbuffer,
-                snap: limits.snap,
-                depth_error: views.host_maps.map_or(0.0, |m| m.error),
-                need: &views.need,
-            };
-            soft_shadow_map::declare(&mut graph, &layers, visibility, settings, &inputs);
-        }
-    }
-    let lit = match &views.need {
-        Need::Yes(_) => Need::No("something can be shadowed, and is written elsewhere".into()),
-        Need::No(why) => Need::Yes(why.clone()),
-    };
-    visibility::lit(&mut graph, visibility, description.extent, lit);
-    FrameGraph { graph, depth, mask, occluder_maps: [front, back], visibility }
 }
 
 /// Plans one frame: fits the maps, decides what runs, derives the barriers. Pure: no Vulkan calls.
@@ -282,11 +198,12 @@ pub fn plan(description: &Description, limits: Limits, frame: &Frame) -> Result<
     let plan = graph::compile(built.graph, &borders, place)?;
 
     let to_light = light.light_from_world();
-    let draws = |meshes: &[MeshInstance], view: &MapView| {
-        let clip = view.clip_from_light() * to_light;
-        meshes.iter().map(|m| draw_of(description, m, &clip)).collect::<Result<Vec<_>, _>>()
+    let wanted = wanted(&description.settings);
+    let occluder_clips: Vec<_> = views.occluder_clips().map(|clip| clip * to_light).collect();
+    let receiver_clip = match (wanted.receiver_map, &views.receivers) {
+        (Some(_), Some(view)) => Some(view.clip_from_light() * to_light),
+        _ => None,
     };
-    let wanted = soft_shadow_map::wanted(&description.settings.soft_shadow_map);
     Ok(FramePlan {
         accesses: borders.iter().map(|b| access_of(&plan, b, &imports)).collect(),
         plan,
@@ -294,11 +211,11 @@ pub fn plan(description: &Description, limits: Limits, frame: &Frame) -> Result<
         visibility: built.visibility,
         slot: frame.slot,
         stamp: Stamp::default(),
-        occluders: draws(&occluders, &views.occluders)?,
-        receivers: match (wanted.receiver_map, &views.receivers) {
-            (Some(_), Some(view)) => draws(&receivers, view)?,
-            _ => Vec::new(),
-        },
+        occluders: DrawList::new(description, &occluders, &occluder_clips)?,
+        receivers: receiver_clip.map_or_else(
+            || Ok(DrawList::default()),
+            |clip| DrawList::new(description, &receivers, &[clip]),
+        )?,
     })
 }
 
@@ -317,7 +234,7 @@ fn look(
     receivers: &[MeshInstance],
 ) -> Result<Views, Error> {
     let light = &frame.light;
-    let settings = &description.settings.soft_shadow_map;
+    let settings = &description.settings;
     let boxes = |meshes: &[MeshInstance]| {
         meshes.iter().map(|m| (m.bounds, m.world_from_mesh)).collect::<Vec<_>>()
     };
@@ -339,7 +256,7 @@ fn look(
         depth_layers::fit_occluders(light, &boxes(occluders), frame.window, settings.map)
     };
     let receiver_fit = fit.as_ref().and_then(|view| {
-        let side = soft_shadow_map::wanted(settings).receiver_map.unwrap_or(settings.map);
+        let side = wanted(settings).receiver_map.unwrap_or(settings.map);
         depth_layers::fit_receivers(light, &receiver_boxes, view, side)
     });
     let need = match (&fit, &receiver_fit) {
@@ -362,8 +279,16 @@ fn look(
             .into(),
         ),
     };
+    let points = match settings.technique {
+        Technique::ManyLights if matches!(need, Need::Yes(_)) => {
+            let centre = fit.as_ref().unwrap_or(&PLACEHOLDER);
+            many_lights::points(light, &boxes(occluders), &settings.baseline, centre)
+        }
+        _ => Vec::new(),
+    };
     let light_from_ndc = light.light_from_world() * frame.world_from_ndc;
     Ok(Views {
+        points,
         occluders: fit.unwrap_or(PLACEHOLDER),
         host_maps,
         receivers: Some(receiver_fit.unwrap_or(PLACEHOLDER)),
@@ -392,11 +317,7 @@ fn access_of(
     }
 }
 
-fn draw_of(
-    description: &Description,
-    mesh: &MeshInstance,
-    clip_from_world: &DMat4,
-) -> Result<MeshDraw, Error> {
+fn draw_of(description: &Description, mesh: &MeshInstance) -> Result<MeshDraw, Error> {
     let strides = &description.position_strides;
     let stride = match mesh.geometry {
         Geometry::HostDrawn(_) => 0,
@@ -416,6 +337,5 @@ fn draw_of(
     } else {
         Faces::CounterClockwise
     };
-    let clip_from_mesh = (*clip_from_world * mesh.world_from_mesh).as_mat4().to_cols_array();
-    Ok(MeshDraw { mesh: *mesh, stride, faces, clip_from_mesh })
+    Ok(MeshDraw { mesh: *mesh, stride, faces })
 }

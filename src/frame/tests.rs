@@ -160,7 +160,7 @@ fn every_bad_description_is_one_sentence() {
     assert!(refuse(|d| d.frames_in_flight = 0).contains("1 to 8"));
     assert!(refuse(|d| d.depth_format = vk::Format::R8_UNORM).contains("no depth"));
     assert!(refuse(|d| d.position_strides = vec![12, 8]).contains("8 bytes"));
-    assert!(refuse(|d| d.settings.soft_shadow_map.map = 7).contains("16 to 4096"));
+    assert!(refuse(|d| d.settings.map = 7).contains("16 to 4096"));
 }
 
 /// What a host may get wrong of an image, each named by the image, what it is and what it should be.
@@ -318,4 +318,60 @@ fn a_plan_is_shown_as_a_table_and_as_a_picture() {
     assert!(dot.starts_with("digraph") && dot.trim_end().ends_with('}'), "{dot}");
     assert!(dot.contains("depth_layers.front_depth\\n256×256 D32_SFLOAT"), "{dot}");
     assert_eq!(dot.matches("shape=box").count(), plan.steps.len());
+}
+
+fn of_technique(technique: Technique, words: &[(&str, &str)]) -> Description {
+    let mut description = Description::new([64, 48]);
+    description.settings.technique = technique;
+    for (key, value) in words {
+        description.settings.set(key, value).unwrap();
+    }
+    description
+}
+
+#[test]
+fn every_point_of_many_lights_has_a_view_of_its_own() {
+    let meshes = meshes();
+    let description = of_technique(Technique::ManyLights, &[("samples", "9")]);
+    let plan = make(&description, &frame(&meshes));
+    let rows = ran(&plan);
+    assert_eq!(rows.len(), 2 + 2 * 9);
+    assert_eq!(
+        rows[..4],
+        ["baseline.receivers", "baseline.point_depth", "baseline.add_point", rows[1]]
+    );
+    assert_eq!(rows.last(), Some(&"baseline.average"));
+    let matrices: Vec<_> =
+        (0..9).flat_map(|view| plan.draws(MeshList::Occluders, view)).map(|d| d.1).collect();
+    assert_eq!(matrices.len(), 9, "one occluder, nine views");
+    assert!((1..9).all(|i| matrices[i] != matrices[0]));
+    assert_eq!(plan.draws(MeshList::Occluders, 9).count(), 0);
+    assert!(plan.plan.table().contains("×9"));
+    let lines = plan.plan.table().lines().filter(|l| l.starts_with("run")).count();
+    assert_eq!(lines, 4, "{}", plan.plan.table());
+}
+
+/// What a node makes its objects from is the same kinds of row as any frame of it has.
+#[test]
+fn frames_have_the_kinds_that_the_node_was_made_for() {
+    let meshes = meshes();
+    for &(name, technique) in Technique::ALL {
+        let description = of_technique(technique, &[]);
+        let full = full_graph(&description);
+        let names = |graph: &graph::Graph| graph.kinds().map(|p| p.name).collect::<Vec<_>>();
+        for meshes in [&meshes[..], &[]] {
+            let plan = make(&description, &frame(meshes));
+            assert_eq!(names(&plan.plan.graph), names(&full), "{name}");
+            assert!(plan.plan.graph.passes().len() <= full.passes().len(), "{name}");
+            assert!(!plan.plan.skipped.is_empty(), "{name}: lit, or the rest");
+        }
+    }
+}
+
+#[test]
+fn many_lights_take_no_ready_made_maps() {
+    let mut description = of_technique(Technique::ManyLights, &[]);
+    description.occluder_maps = Some(vk::Format::D32_SFLOAT);
+    let error = description.check().unwrap_err().to_string();
+    assert!(error.contains("lend meshes"), "{error}");
 }

@@ -1,4 +1,6 @@
-//! Descriptor sets: one a row and frame slot, written each time they are recorded.
+//! Descriptor sets: one a kind of row and frame slot, written each time a plan is recorded, at the
+//! kind's first row. Its other rows touch the same resources (`graph::compile` sees to that), and a set
+//! must not be written again while commands that use it are recorded.
 //!
 //! Remembering what they point at would save a microsecond, and be wrong where the host destroys a
 //! view and gets the same handle for its next one.
@@ -13,11 +15,11 @@ use ash::vk;
 /// No row binds more than this.
 const MAX_BINDINGS: usize = 8;
 
-/// The sets of all rows, slot by slot.
+/// The sets of all kinds, slot by slot.
 pub(crate) struct Descriptors {
     pool: vk::DescriptorPool,
     sets: Vec<vk::DescriptorSet>,
-    rows: usize,
+    kinds: usize,
 }
 
 impl Descriptors {
@@ -28,9 +30,7 @@ impl Descriptors {
         rows: &[RowPipeline],
         slots: u32,
     ) -> Result<Self, Error> {
-        if let Some(pass) =
-            graph.passes().iter().find(|p| bound(p).any(|b| b.0 as usize >= MAX_BINDINGS))
-        {
+        if let Some(pass) = graph.kinds().find(|p| bound(p).any(|b| b.0 as usize >= MAX_BINDINGS)) {
             return Err(Error::Frame(format!(
                 "{}: a binding is beyond the {MAX_BINDINGS} that a row may have",
                 pass.name
@@ -44,7 +44,7 @@ impl Descriptors {
         let sizes: Vec<_> = kinds
             .iter()
             .map(|&ty| {
-                let uses = graph.passes().iter().flat_map(|p| &p.uses);
+                let uses = graph.kinds().flat_map(|p| &p.uses);
                 let count = uses.filter(|u| u.access.descriptor() == Some(ty)).count() as u32;
                 vk::DescriptorPoolSize { ty, descriptor_count: (count * slots).max(1) }
             })
@@ -55,7 +55,7 @@ impl Descriptors {
         // SAFETY: the device is valid (Host::borrow).
         let pool = unsafe { host.device.create_descriptor_pool(&create, None) }
             .map_err(Error::vulkan("creating the descriptor pool"))?;
-        let mut made = Self { pool, sets: Vec::new(), rows: rows.len() };
+        let mut made = Self { pool, sets: Vec::new(), kinds: rows.len() };
         let layouts: Vec<_> = (0..slots).flat_map(|_| rows.iter().map(|r| r.set_layout)).collect();
         let allocate =
             vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(&layouts);
@@ -72,17 +72,20 @@ impl Descriptors {
         }
     }
 
-    /// The set of a row in a slot, pointing at what `look_up` says; none for rows that bind nothing.
-    pub fn set(
+    /// The set of a kind in a slot; none for rows that bind nothing.
+    pub fn set(&self, pass: &Pass, kind: usize, slot: u32) -> Option<vk::DescriptorSet> {
+        bound(pass).next()?;
+        self.sets.get(slot as usize * self.kinds + kind).copied()
+    }
+
+    /// Points a row's set at what `look_up` says.
+    pub fn write(
         &self,
         host: &Host,
         pass: &Pass,
-        row: usize,
-        slot: u32,
+        set: vk::DescriptorSet,
         look_up: impl Fn(&crate::graph::Use) -> (Object, vk::ImageLayout),
-    ) -> Option<vk::DescriptorSet> {
-        bound(pass).next()?;
-        let set = *self.sets.get(slot as usize * self.rows + row)?;
+    ) {
         let mut images = [vk::DescriptorImageInfo::default(); MAX_BINDINGS];
         let mut buffers = [vk::DescriptorBufferInfo::default(); MAX_BINDINGS];
         for u in &pass.uses {
@@ -114,10 +117,9 @@ impl Descriptors {
             };
             count += 1;
         }
-        // SAFETY: Host::borrow's promise: the slot's earlier commands are done, so no command uses
-        // this set; views and buffers are alive.
+        // SAFETY: Host::borrow's promise: the slot's earlier commands are done, and this
+        // frame's first use of the set comes later, so no command uses it; views and buffers are alive.
         unsafe { host.device.update_descriptor_sets(&writes[..count], &[]) };
-        Some(set)
     }
 
     /// Destroys the sets; no command may use them any more.

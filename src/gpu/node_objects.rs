@@ -13,7 +13,7 @@ use crate::graph::{Graph, Pass, ResourceId, Shape, Work};
 use ash::vk;
 use std::ffi::CString;
 
-/// Resources, pipelines, descriptor sets, timestamps and labels, row by row.
+/// Resources; pipelines, descriptor sets and labels for each kind of row; timestamps.
 pub(crate) struct NodeObjects {
     objects: Objects,
     shapes: Vec<Shape>,
@@ -33,10 +33,9 @@ impl NodeObjects {
         description: &Description,
     ) -> Result<Self, Error> {
         let objects = Objects::new(host, allocator, graph, description.inspect)?;
-        let mut rows: Vec<RowPipeline> = Vec::with_capacity(graph.passes().len());
+        let mut rows: Vec<RowPipeline> = Vec::with_capacity(graph.kinds().len());
         let made = graph
-            .passes()
-            .iter()
+            .kinds()
             .try_for_each(|pass| {
                 let strides = &description.position_strides;
                 rows.push(RowPipeline::new(host, graph, pass, &objects, strides)?);
@@ -45,7 +44,7 @@ impl NodeObjects {
             .and_then(|()| {
                 let slots = description.frames_in_flight;
                 let descriptors = Descriptors::new(host, graph, &rows, slots)?;
-                match Timing::new(host, slots, rows.len()) {
+                match Timing::new(host, slots, rows.len(), graph.passes().len()) {
                     Ok(timing) => Ok((descriptors, timing)),
                     Err(e) => {
                         descriptors.destroy(host);
@@ -58,7 +57,7 @@ impl NodeObjects {
                 objects,
                 shapes: graph.resources().iter().map(|r| r.shape).collect(),
                 rows,
-                labels: graph.passes().iter().map(|p| label(p.name)).collect(),
+                labels: graph.kinds().map(|p| label(p.name)).collect(),
                 descriptors,
                 timing,
                 slots: description.frames_in_flight,
@@ -128,13 +127,13 @@ impl NodeObjects {
         .record(plan);
     }
 
-    /// The render pass of a row and the size of its target; none for rows that draw nothing.
-    pub fn render_pass(&self, row: usize) -> Option<(vk::RenderPass, vk::Extent2D)> {
-        let row = self.rows.get(row).filter(|r| r.render_pass != vk::RenderPass::null())?;
+    /// The render pass of a kind of row and the size of its target; none for those that draw nothing.
+    pub fn render_pass(&self, kind: usize) -> Option<(vk::RenderPass, vk::Extent2D)> {
+        let row = self.rows.get(kind).filter(|r| r.render_pass != vk::RenderPass::null())?;
         Some((row.render_pass, row.extent))
     }
 
-    /// Row and milliseconds of what a slot recorded last.
+    /// Each kind of row that a slot recorded last, and the milliseconds of all of its rows.
     pub fn timings(&self, host: &Host, slot: u32) -> Option<Vec<(usize, f64)>> {
         self.timing.as_ref()?.read(host, slot)
     }

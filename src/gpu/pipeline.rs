@@ -1,4 +1,4 @@
-//! A pipeline, its layouts and, for rasters, its render pass, from a row.
+//! A pipeline, its layouts and, for rasters, its render pass, from a row: one for all of its kind.
 
 use super::host::Host;
 use super::objects::{Object, Objects, name};
@@ -76,7 +76,7 @@ impl RowPipeline {
 
         let (stages, push_bytes) = match pass.work {
             Work::Dispatch { .. } => (vk::ShaderStageFlags::COMPUTE, pass.push.bytes().len()),
-            Work::Raster { draw: Draw::Layer(_), .. } => {
+            Work::Raster { draw: Draw::Layer { .. }, .. } => {
                 (vk::ShaderStageFlags::VERTEX, size_of::<DepthPush>())
             }
             Work::Raster { .. } => (
@@ -184,7 +184,7 @@ impl RowPipeline {
         let variants: Vec<(Option<u32>, vk::CullModeFlags, vk::FrontFace)> = match draw {
             Draw::Indirect { .. } => vec![(None, cull, vk::FrontFace::COUNTER_CLOCKWISE)],
             // In the order of `variant`.
-            Draw::Layer(_) => strides
+            Draw::Layer { .. } => strides
                 .iter()
                 .flat_map(|&s| {
                     [

@@ -35,6 +35,7 @@ pub struct HostDraw {
 pub(crate) struct Recorder<'a> {
     pub host: &'a Host,
     pub objects: &'a Objects,
+    /// One a kind of row, as are the labels.
     pub rows: &'a [RowPipeline],
     pub labels: &'a [CString],
     pub descriptors: &'a Descriptors,
@@ -52,28 +53,31 @@ impl Recorder<'_> {
         }
         for (nth, step) in plan.steps.iter().enumerate() {
             let pass = &plan.graph.passes()[step.pass];
-            self.label(step.pass);
+            let kind = plan.graph.kind_of(step.pass);
+            self.label(kind);
             self.barriers(frame, &step.barriers);
-            self.pass(frame, step.pass, pass);
+            self.pass(frame, kind, pass, step.first);
             self.unlabel();
             if let Some(timing) = self.timing {
-                timing.end_row(self.host, self.cmd, frame.slot, (nth, step.pass));
+                timing.end_row(self.host, self.cmd, frame.slot, (nth, kind));
             }
         }
         self.barriers(frame, &plan.handover);
     }
 
-    fn pass(&mut self, frame: &FramePlan, index: usize, pass: &Pass) {
-        let (host, cmd, row) = (self.host, self.cmd, &self.rows[index]);
+    fn pass(&mut self, frame: &FramePlan, kind: usize, pass: &Pass, first: bool) {
+        let (host, cmd, row) = (self.host, self.cmd, &self.rows[kind]);
         let device = &host.device;
         let objects = self.objects;
-        let set =
-            self.descriptors.set(host, pass, index, frame.slot, |u| look_up(objects, frame, u));
+        let set = self.descriptors.set(pass, kind, frame.slot);
         let point = match pass.work {
             Work::Dispatch { .. } => vk::PipelineBindPoint::COMPUTE,
             Work::Raster { .. } => vk::PipelineBindPoint::GRAPHICS,
         };
         if let Some(set) = set {
+            if first {
+                self.descriptors.write(host, pass, set, |u| look_up(objects, frame, u));
+            }
             // SAFETY: Host::borrow's promise: cmd is recording. The set was made for this layout.
             unsafe { device.cmd_bind_descriptor_sets(cmd, point, row.layout, 0, &[set], &[]) };
         }
@@ -93,11 +97,17 @@ impl Recorder<'_> {
             Work::Raster { target, draw, .. } => {
                 self.begin_render_pass(row, target);
                 match draw {
-                    Draw::Layer(layer) => {
-                        for draw in frame.meshes(layer.meshes()) {
+                    Draw::Layer { layer, view } => {
+                        for (draw, matrix) in frame.draws(layer.meshes(), view) {
                             match &draw.mesh.geometry {
-                                Geometry::Buffers(buffers) => self.mesh(row, draw, buffers),
-                                &Geometry::HostDrawn(mesh) => self.host_mesh(layer, draw, mesh),
+                                Geometry::Buffers(buffers) => self.mesh(row, draw, matrix, buffers),
+                                &Geometry::HostDrawn(mesh) => (self.draw)(&HostDraw {
+                                    cmd,
+                                    mesh,
+                                    layer,
+                                    clip_from_mesh: *matrix,
+                                    faces: draw.faces,
+                                }),
                             }
                         }
                     }
@@ -128,19 +138,9 @@ impl Recorder<'_> {
         }
     }
 
-    fn host_mesh(&mut self, layer: Layer, draw: &MeshDraw, mesh: u64) {
-        (self.draw)(&HostDraw {
-            cmd: self.cmd,
-            mesh,
-            layer,
-            clip_from_mesh: draw.clip_from_mesh,
-            faces: draw.faces,
-        });
-    }
-
-    fn mesh(&self, row: &RowPipeline, draw: &MeshDraw, mesh: &MeshBuffers) {
+    fn mesh(&self, row: &RowPipeline, draw: &MeshDraw, matrix: &[f32; 16], mesh: &MeshBuffers) {
         let (device, cmd) = (&self.host.device, self.cmd);
-        let matrix: &[u8] = bytemuck::cast_slice(&draw.clip_from_mesh);
+        let matrix: &[u8] = bytemuck::cast_slice(matrix);
         let pipeline = row.pipelines[variant(draw.stride, draw.faces)];
         // SAFETY: inside the row's render pass, with a pipeline made for it.
         unsafe { device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::GRAPHICS, pipeline) };
@@ -226,8 +226,8 @@ impl Recorder<'_> {
         }
     }
 
-    fn label(&self, row: usize) {
-        if let (Some(debug_utils), Some(label)) = (&self.host.debug_utils, self.labels.get(row)) {
+    fn label(&self, kind: usize) {
+        if let (Some(debug_utils), Some(label)) = (&self.host.debug_utils, self.labels.get(kind)) {
             let info = vk::DebugUtilsLabelEXT::default().label_name(label);
             // SAFETY: Host::borrow's promise: cmd is recording; `unlabel` follows.
             unsafe { debug_utils.cmd_begin_debug_utils_label(self.cmd, &info) };

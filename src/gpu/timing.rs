@@ -3,9 +3,9 @@
 use super::host::Host;
 use crate::Error;
 use ash::vk;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicU16, AtomicU32, Ordering};
 
-/// One pool of timestamps a frame slot: one before the first pass, one behind each.
+/// One pool of timestamps a frame slot: one before the first row, one behind each.
 pub(crate) struct Timing {
     pools: Vec<vk::QueryPool>,
     /// Nanoseconds a tick.
@@ -14,13 +14,22 @@ pub(crate) struct Timing {
     mask: u64,
     /// Queries a pool.
     queries: u32,
-    /// Which rows each slot recorded last; rows are recorded in their order.
-    recorded: Vec<Vec<AtomicBool>>,
+    /// What each slot recorded last.
+    recorded: Vec<Recorded>,
+    /// Kinds of row.
+    kinds: usize,
+}
+
+/// The rows that a slot recorded: how many, and the kind of each.
+struct Recorded {
+    count: AtomicU32,
+    kinds: Vec<AtomicU16>,
 }
 
 impl Timing {
-    /// Makes pools for `rows` rows, or none where the queue family has no timestamps.
-    pub fn new(host: &Host, slots: u32, rows: usize) -> Result<Option<Self>, Error> {
+    /// Makes pools for up to `rows` rows of `kinds` kinds a frame, or none where the queue family has
+    /// no timestamps.
+    pub fn new(host: &Host, slots: u32, kinds: usize, rows: usize) -> Result<Option<Self>, Error> {
         let (instance, physical) = (&host.instance, host.physical_device);
         // SAFETY: Host::borrow's promise: the handles are valid and belong together.
         let families = unsafe { instance.get_physical_device_queue_family_properties(physical) };
@@ -36,8 +45,12 @@ impl Timing {
             mask: if bits >= 64 { u64::MAX } else { (1 << bits) - 1 },
             queries: rows as u32 + 1,
             recorded: (0..slots)
-                .map(|_| (0..rows).map(|_| AtomicBool::new(false)).collect())
+                .map(|_| Recorded {
+                    count: AtomicU32::new(0),
+                    kinds: (0..rows).map(|_| AtomicU16::new(0)).collect(),
+                })
                 .collect(),
+            kinds,
         };
         for _ in 0..slots {
             let create = vk::QueryPoolCreateInfo::default()
@@ -58,7 +71,7 @@ impl Timing {
     /// Starts a slot anew: resets its pool and takes the first timestamp.
     pub fn begin(&self, host: &Host, cmd: vk::CommandBuffer, slot: u32) {
         let pool = self.pools[slot as usize];
-        self.recorded[slot as usize].iter().for_each(|row| row.store(false, Ordering::Relaxed));
+        self.recorded[slot as usize].count.store(0, Ordering::Relaxed);
         // SAFETY: Host::borrow's promise: cmd is recording outside a render pass, and the slot's
         // earlier commands are done.
         unsafe { host.device.cmd_reset_query_pool(cmd, pool, 0, self.queries) };
@@ -68,15 +81,17 @@ impl Timing {
         };
     }
 
-    /// Takes the timestamp behind a row, the `nth` of the slot from 0.
+    /// Takes the timestamp behind a row of a kind, the `nth` of the slot from 0.
     pub fn end_row(
         &self,
         host: &Host,
         cmd: vk::CommandBuffer,
         slot: u32,
-        (nth, row): (usize, usize),
+        (nth, kind): (usize, usize),
     ) {
-        self.recorded[slot as usize][row].store(true, Ordering::Relaxed);
+        let recorded = &self.recorded[slot as usize];
+        recorded.kinds[nth].store(kind as u16, Ordering::Relaxed);
+        recorded.count.store(nth as u32 + 1, Ordering::Relaxed);
         let (pool, query) = (self.pools[slot as usize], nth as u32 + 1);
         // SAFETY: as in `begin`; each row takes the next query, and there is one for every row.
         unsafe {
@@ -85,15 +100,15 @@ impl Timing {
         };
     }
 
-    /// Milliseconds of each row that the slot recorded last; none until its commands are done.
+    /// Each kind of row that the slot recorded last and the milliseconds of all of its rows, in the
+    /// order of the first ones; none until its commands are done.
     pub fn read(&self, host: &Host, slot: u32) -> Option<Vec<(usize, f64)>> {
-        let recorded = self.recorded.get(slot as usize)?.iter().enumerate();
-        let rows: Vec<usize> =
-            recorded.filter(|(_, r)| r.load(Ordering::Relaxed)).map(|(row, _)| row).collect();
-        let mut ticks = vec![0u64; rows.len() + 1];
-        if rows.is_empty() {
+        let recorded = self.recorded.get(slot as usize)?;
+        let count = recorded.count.load(Ordering::Relaxed) as usize;
+        if count == 0 {
             return None;
         }
+        let mut ticks = vec![0u64; count + 1];
         // SAFETY: the pool holds as many queries as were recorded; without WAIT the call returns
         // NOT_READY instead of blocking.
         unsafe {
@@ -107,7 +122,17 @@ impl Timing {
         .ok()?;
         let ms =
             |pair: &[u64]| (pair[1].wrapping_sub(pair[0]) & self.mask) as f64 * self.period * 1e-6;
-        Some(rows.iter().copied().zip(ticks.windows(2).map(ms)).collect())
+        let mut of_kind = vec![None; self.kinds];
+        let mut sums: Vec<(usize, f64)> = Vec::new();
+        for (kind, pair) in recorded.kinds.iter().zip(ticks.windows(2)) {
+            let kind = usize::from(kind.load(Ordering::Relaxed));
+            let at = *of_kind.get_mut(kind)?.get_or_insert_with(|| {
+                sums.push((kind, 0.0));
+                sums.len() - 1
+            });
+            sums[at].1 += ms(pair);
+        }
+        Some(sums)
     }
 
     /// Destroys the pools; no command may use them any more.

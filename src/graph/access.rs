@@ -21,10 +21,14 @@ pub enum Access {
     SampledFragment,
     /// A storage image that a compute shader writes, every texel once.
     ImageWrite,
+    /// A storage image that a compute shader reads and writes, each texel by one invocation.
+    ImageUpdate,
     /// A storage buffer that a compute shader reads.
     BufferReadCompute,
     /// A storage buffer that a compute shader writes.
     BufferWriteCompute,
+    /// A storage buffer that a compute shader reads and writes, each part by one invocation.
+    BufferUpdate,
     /// A storage buffer that a vertex shader reads.
     BufferReadVertex,
     /// A buffer that holds the arguments of an indirect draw or dispatch.
@@ -119,12 +123,14 @@ impl Scope {
 
 impl Access {
     /// Every access, for tests by table.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 11] = [
         Self::SampledCompute,
         Self::SampledFragment,
         Self::ImageWrite,
+        Self::ImageUpdate,
         Self::BufferReadCompute,
         Self::BufferWriteCompute,
+        Self::BufferUpdate,
         Self::BufferReadVertex,
         Self::Indirect,
         Self::DepthTarget,
@@ -135,8 +141,18 @@ impl Access {
     pub fn writes(self) -> bool {
         matches!(
             self,
-            Self::ImageWrite | Self::BufferWriteCompute | Self::DepthTarget | Self::ColorTarget
+            Self::ImageWrite
+                | Self::ImageUpdate
+                | Self::BufferWriteCompute
+                | Self::BufferUpdate
+                | Self::DepthTarget
+                | Self::ColorTarget
         )
+    }
+
+    /// Whether what it finds there matters: an earlier pass of the frame must have written it.
+    pub fn reads(self) -> bool {
+        matches!(self, Self::ImageUpdate | Self::BufferUpdate) || !self.writes()
     }
 
     /// The stages, access bits and layout of it.
@@ -150,8 +166,12 @@ impl Access {
                 (S::FRAGMENT_SHADER, A::SHADER_READ, L::SHADER_READ_ONLY_OPTIMAL)
             }
             Self::ImageWrite => (S::COMPUTE_SHADER, A::SHADER_WRITE, L::GENERAL),
+            Self::ImageUpdate => (S::COMPUTE_SHADER, A::SHADER_READ | A::SHADER_WRITE, L::GENERAL),
             Self::BufferReadCompute => (S::COMPUTE_SHADER, A::SHADER_READ, L::UNDEFINED),
             Self::BufferWriteCompute => (S::COMPUTE_SHADER, A::SHADER_WRITE, L::UNDEFINED),
+            Self::BufferUpdate => {
+                (S::COMPUTE_SHADER, A::SHADER_READ | A::SHADER_WRITE, L::UNDEFINED)
+            }
             Self::BufferReadVertex => (S::VERTEX_SHADER, A::SHADER_READ, L::UNDEFINED),
             Self::Indirect => (S::DRAW_INDIRECT, A::INDIRECT_COMMAND_READ, L::UNDEFINED),
             Self::DepthTarget => (
@@ -172,7 +192,7 @@ impl Access {
     pub fn image_usage(self) -> vk::ImageUsageFlags {
         match self {
             Self::SampledCompute | Self::SampledFragment => vk::ImageUsageFlags::SAMPLED,
-            Self::ImageWrite => vk::ImageUsageFlags::STORAGE,
+            Self::ImageWrite | Self::ImageUpdate => vk::ImageUsageFlags::STORAGE,
             Self::DepthTarget => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
             Self::ColorTarget => vk::ImageUsageFlags::COLOR_ATTACHMENT,
             _ => vk::ImageUsageFlags::empty(),
@@ -182,9 +202,10 @@ impl Access {
     /// What a buffer must have been created for.
     pub fn buffer_usage(self) -> vk::BufferUsageFlags {
         match self {
-            Self::BufferReadCompute | Self::BufferWriteCompute | Self::BufferReadVertex => {
-                vk::BufferUsageFlags::STORAGE_BUFFER
-            }
+            Self::BufferReadCompute
+            | Self::BufferWriteCompute
+            | Self::BufferUpdate
+            | Self::BufferReadVertex => vk::BufferUsageFlags::STORAGE_BUFFER,
             Self::Indirect => vk::BufferUsageFlags::INDIRECT_BUFFER,
             _ => vk::BufferUsageFlags::empty(),
         }
@@ -194,10 +215,11 @@ impl Access {
     pub fn descriptor(self) -> Option<vk::DescriptorType> {
         match self {
             Self::SampledCompute | Self::SampledFragment => Some(vk::DescriptorType::SAMPLED_IMAGE),
-            Self::ImageWrite => Some(vk::DescriptorType::STORAGE_IMAGE),
-            Self::BufferReadCompute | Self::BufferWriteCompute | Self::BufferReadVertex => {
-                Some(vk::DescriptorType::STORAGE_BUFFER)
-            }
+            Self::ImageWrite | Self::ImageUpdate => Some(vk::DescriptorType::STORAGE_IMAGE),
+            Self::BufferReadCompute
+            | Self::BufferWriteCompute
+            | Self::BufferUpdate
+            | Self::BufferReadVertex => Some(vk::DescriptorType::STORAGE_BUFFER),
             Self::Indirect | Self::DepthTarget | Self::ColorTarget => None,
         }
     }

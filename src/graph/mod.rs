@@ -23,6 +23,7 @@ pub use pass::{Draw, Layer, MeshList, Need, PUSH_BYTES, Pass, Push, Target, Use,
 pub use plan::{Border, BoundaryUse, Plan, ResourceBarrier, Skipped, Step, compile};
 pub(crate) use resource::aspects;
 pub use resource::{Owner, Resource, ResourceId, Shape, is_depth_format};
+pub use show::Run;
 
 use ash::vk;
 
@@ -31,6 +32,10 @@ use ash::vk;
 pub struct Graph {
     resources: Vec<Resource>,
     passes: Vec<Pass>,
+    /// Each row's kind.
+    kinds: Vec<u16>,
+    /// The first row of each kind.
+    firsts: Vec<usize>,
 }
 
 impl Graph {
@@ -64,7 +69,31 @@ impl Graph {
 
     /// Appends a row.
     pub fn push(&mut self, pass: Pass) {
+        // Repeated rows come close together, so the search ends soon.
+        let known = self.firsts.iter().rposition(|&first| self.passes[first].name == pass.name);
+        let kind = known.unwrap_or_else(|| {
+            self.firsts.push(self.passes.len());
+            self.firsts.len() - 1
+        });
+        self.kinds.push(kind as u16);
         self.passes.push(pass);
+    }
+
+    /// A row's kind: rows of one name have the same, from 0 in the order in which names first appear.
+    pub fn kind_of(&self, row: usize) -> usize {
+        usize::from(self.kinds[row])
+    }
+
+    /// The first row of each kind.
+    pub fn kinds(&self) -> impl ExactSizeIterator<Item = &Pass> {
+        self.firsts.iter().map(|&row| &self.passes[row])
+    }
+
+    /// A row of each kind whose descriptors and pipeline would not serve a later one of its name.
+    pub(super) fn mismatched_row(&self) -> Option<&Pass> {
+        let mut rows = self.passes.iter().zip(&self.kinds);
+        let first = |kind: u16| &self.passes[self.firsts[usize::from(kind)]];
+        rows.find(|(pass, kind)| !pass.is_kind_of(first(**kind))).map(|(pass, _)| pass)
     }
 
     /// All resources; [`ResourceId::index`] is the place.
@@ -82,7 +111,7 @@ impl Graph {
         ResourceId(index as u16)
     }
 
-    /// All rows, dropped ones included; a row's place is the same in every frame.
+    /// All rows, dropped ones included.
     pub fn passes(&self) -> &[Pass] {
         &self.passes
     }

@@ -74,7 +74,12 @@ pub enum Target {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Draw {
     /// The meshes of a depth layer, positions at location 0, one matrix pushed each.
-    Layer(Layer),
+    Layer {
+        /// The layer.
+        layer: Layer,
+        /// Which of the frame's views of its meshes: 0 where there is one.
+        view: u32,
+    },
     /// Vertices without a vertex buffer, their count read from a `VkDrawIndirectCommand`.
     Indirect {
         /// The buffer that holds the command, at offset 0.
@@ -147,6 +152,9 @@ pub enum Need {
 }
 
 /// One row of the graph.
+///
+/// Rows of one name are one **kind**: the same work on the same resources, again with other push
+/// constants and another view of the meshes. They share a pipeline and a descriptor set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pass {
     /// `room.pass`; the debug label is this behind `antumbra.`.
@@ -162,6 +170,20 @@ pub struct Pass {
 }
 
 impl Pass {
+    /// Whether a row of its name can be recorded with what was made for this one.
+    pub fn is_kind_of(&self, other: &Self) -> bool {
+        let same_work = match (self.work, other.work) {
+            (Work::Dispatch { shader: a, .. }, Work::Dispatch { shader: b, .. }) => a == b,
+            (
+                Work::Raster { draw: Draw::Layer { layer: a, .. }, .. },
+                Work::Raster { draw: Draw::Layer { layer: b, .. }, .. },
+            ) => a == b,
+            (a, b) => a == b,
+        };
+        let same_push = self.push.bytes().len() == other.push.bytes().len();
+        self.name == other.name && self.uses == other.uses && same_work && same_push
+    }
+
     /// The resources it writes.
     pub fn writes(&self) -> impl Iterator<Item = ResourceId> + '_ {
         self.uses.iter().filter(|u| u.access.writes()).map(|u| u.resource)
@@ -169,6 +191,6 @@ impl Pass {
 
     /// The resources it reads.
     pub fn reads(&self) -> impl Iterator<Item = ResourceId> + '_ {
-        self.uses.iter().filter(|u| !u.access.writes()).map(|u| u.resource)
+        self.uses.iter().filter(|u| u.access.reads()).map(|u| u.resource)
     }
 }

@@ -46,6 +46,8 @@ pub struct ResourceBarrier {
 pub struct Step {
     /// The row's place in [`Graph::passes`].
     pub pass: usize,
+    /// No earlier step is of its kind: later ones find their descriptors written.
+    pub first: bool,
     /// What must happen first.
     pub barriers: Vec<ResourceBarrier>,
 }
@@ -80,9 +82,16 @@ pub struct Plan {
 /// holds the barriers at the border too, without it the host places them from [`Plan::boundary`].
 ///
 /// # Errors
-/// [`Error::Frame`] where a row reads what none has written, touches one resource twice, or a
-/// resource of the host's has no border.
+/// [`Error::Frame`] where a row reads what none has written, touches one resource twice, or does other
+/// work than an earlier one of its name, or where a resource of the host's has no border.
 pub fn compile(graph: Graph, borders: &[Border], place_borders: bool) -> Result<Plan, Error> {
+    if let Some(pass) = graph.mismatched_row() {
+        return Err(Error::Frame(format!(
+            "{}: rows of one name must touch the same resources in the same way with one shader; \
+             give this one another name",
+            pass.name
+        )));
+    }
     let (kept, skipped) = select(&graph)?;
     let mut states = Vec::with_capacity(graph.resources().len());
     for (index, resource) in graph.resources().iter().enumerate() {
@@ -107,7 +116,8 @@ pub fn compile(graph: Graph, borders: &[Border], place_borders: bool) -> Result<
     }
 
     let mut boundary: Vec<BoundaryUse> = Vec::new();
-    let mut steps = Vec::with_capacity(kept.len());
+    let mut steps: Vec<Step> = Vec::with_capacity(kept.len());
+    let mut recorded = vec![false; graph.kinds().len()];
     for &index in &kept {
         let mut barriers = Vec::new();
         for u in &graph.passes()[index].uses {
@@ -156,7 +166,8 @@ pub fn compile(graph: Graph, borders: &[Border], place_borders: bool) -> Result<
                 b.writes |= u.access.writes();
             }
         }
-        steps.push(Step { pass: index, barriers });
+        let first = !std::mem::replace(&mut recorded[graph.kind_of(index)], true);
+        steps.push(Step { pass: index, first, barriers });
     }
 
     for b in &mut boundary {
@@ -203,7 +214,7 @@ fn select(graph: &Graph) -> Result<(Vec<usize>, Vec<Skipped>), Error> {
                     pass.name
                 )));
             }
-            if !u.access.writes() && !written[u.resource.index()] {
+            if u.access.reads() && !written[u.resource.index()] {
                 return Err(Error::Frame(format!(
                     "{}: reads {name}, which no earlier pass of this frame writes",
                     pass.name

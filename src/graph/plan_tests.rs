@@ -21,22 +21,22 @@ fn plan_of(reads: &[Access], place_borders: bool) -> (Plan, ResourceId) {
     let depth = graph.image("depth", vk::Format::D32_SFLOAT, extent, Owner::Imported);
     let result = graph.image("result", vk::Format::R32_SFLOAT, extent, Owner::Exported);
     let middle = graph.buffer("middle", 4);
-    let row = |uses| Pass {
-        name: "row",
+    let row = |name, uses| Pass {
+        name,
         uses,
         push: Push::NONE,
         work: Work::Dispatch { shader: shaders::LIT, groups: [1; 3] },
         need: Need::Yes("test".into()),
     };
-    for &read in reads {
+    for (&read, name) in reads.iter().zip(["one", "two"]) {
         let write = Use::fixed(middle, Access::BufferWriteCompute);
-        graph.push(row(vec![Use::fixed(depth, read), write]));
+        graph.push(row(name, vec![Use::fixed(depth, read), write]));
     }
     let mut last = vec![Use::fixed(result, Access::ImageWrite)];
     if !reads.is_empty() {
         last.push(Use::fixed(middle, Access::BufferReadCompute));
     }
-    graph.push(row(last));
+    graph.push(row("last", last));
     let borders =
         [depth, result].map(|resource| Border { resource, before: DRAWN, after: FETCHED });
     (compile(graph, &borders, place_borders).unwrap(), depth)
@@ -132,4 +132,80 @@ fn a_lent_image_without_a_border_is_refused() {
     graph.push(row("result", vec![Use::fixed(result, Access::ImageWrite)], needed()));
     let error = compile(graph, &[], true).unwrap_err().to_string();
     assert!(error.contains("result") && error.contains("host must say"), "{error}");
+}
+
+/// A map that is drawn and added n times: rows of one name, with other numbers.
+fn repeated(times: u32) -> (Graph, ResourceId) {
+    use Access::{
+        BufferReadCompute as R, BufferWriteCompute as W, ImageUpdate as U, ImageWrite as I,
+    };
+    let (mut graph, [map, _], result) = buffers();
+    let sum = graph.image("sum", vk::Format::R32_SFLOAT, [4; 2], Owner::Transient);
+    graph.push(row("clear", vec![Use::bound(0, sum, I)], needed()));
+    for nth in 0..times {
+        let push = Push::new(&nth);
+        let draw = row("draw", vec![Use::bound(0, map, W)], needed());
+        graph.push(Pass { push, ..draw });
+        let add = row("add", vec![Use::bound(0, map, R), Use::bound(1, sum, U)], needed());
+        graph.push(Pass { push, ..add });
+    }
+    let uses = vec![Use::bound(0, sum, Access::SampledCompute), Use::bound(1, result, I)];
+    graph.push(row("average", uses, needed()));
+    (graph, result)
+}
+
+#[test]
+fn rows_of_one_name_are_one_kind_and_one_line() {
+    let (graph, result) = repeated(5);
+    assert_eq!(graph.passes().len(), 12);
+    assert_eq!(
+        graph.kinds().map(|p| p.name).collect::<Vec<_>>(),
+        ["clear", "draw", "add", "average"]
+    );
+    let plan = compiled(graph, result).unwrap();
+    assert_eq!(plan.steps.len(), 12);
+    let first: Vec<_> = plan.steps.iter().filter(|s| s.first).map(|s| s.pass).collect();
+    assert_eq!(first, [0, 1, 2, 11], "descriptors are written once a kind");
+    let runs: Vec<_> = plan.runs().iter().map(|r| (r.pass.name, r.times)).collect();
+    assert_eq!(runs, [("clear", 1), ("draw", 5), ("add", 5), ("average", 1)]);
+    let table = plan.table();
+    assert_eq!(table.lines().count(), 4, "{table}");
+    assert!(table.contains("×5"), "{table}");
+    assert_eq!(plan.graphviz().matches("label=\"add\"").count(), 1);
+}
+
+/// The second map is drawn when the first has been read; each sum waits for the one before.
+#[test]
+fn a_row_that_repeats_waits_for_itself() {
+    let (graph, result) = repeated(2);
+    let plan = compiled(graph, result).unwrap();
+    let of = |step: usize, name: &str| {
+        let named = |b: &&ResourceBarrier| plan.graph.resource(b.resource).name == name;
+        plan.steps[step].barriers.iter().find(named).map(|b| b.barrier)
+    };
+    let again = of(3, "a").unwrap();
+    assert_eq!((again.src_stage, again.dst_access), (S::COMPUTE_SHADER, A::SHADER_WRITE));
+    let sum = of(4, "sum").unwrap();
+    assert_eq!((sum.src_access, sum.old_layout), (A::SHADER_WRITE, L::GENERAL));
+    assert!(sum.dst_access.contains(A::SHADER_READ | A::SHADER_WRITE));
+}
+
+#[test]
+fn what_is_updated_must_have_been_written() {
+    let (mut graph, _, result) = buffers();
+    let uses = vec![Use::fixed(result, Access::ImageUpdate)];
+    graph.push(row("add", uses, needed()));
+    let error = compiled(graph, result).unwrap_err().to_string();
+    assert!(error.contains("add: reads result"), "{error}");
+}
+
+#[test]
+fn one_name_for_two_kinds_of_work_is_refused() {
+    let (mut graph, [a, b], result) = buffers();
+    for id in [a, b] {
+        graph.push(row("writer", vec![Use::bound(0, id, Access::BufferWriteCompute)], needed()));
+    }
+    graph.push(row("result", vec![Use::fixed(result, Access::ImageWrite)], needed()));
+    let error = compiled(graph, result).unwrap_err().to_string();
+    assert!(error.contains("writer: rows of one name"), "{error}");
 }

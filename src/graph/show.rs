@@ -1,23 +1,51 @@
 //! A plan as text: a table for people, Graphviz for pictures.
 
-use super::{Graph, Need, Owner, Plan, Shape, Work};
+use super::{Graph, Need, Owner, Pass, Plan, Shape, Work};
 use std::fmt::Write as _;
 
+/// The steps of one kind, as a reader sees them: once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Run<'a> {
+    /// The first of them.
+    pub pass: &'a Pass,
+    /// How many there are.
+    pub times: usize,
+    /// Barriers before all of them together.
+    pub barriers: usize,
+}
+
 impl Plan {
-    /// One line a row: what runs and why, what does not and why not.
+    /// What runs, a line for each kind of row, in the order of their first steps.
+    pub fn runs(&self) -> Vec<Run<'_>> {
+        let mut runs: Vec<Run> = Vec::new();
+        let mut of_kind = vec![None; self.graph.kinds().len()];
+        for step in &self.steps {
+            let at = *of_kind[self.graph.kind_of(step.pass)].get_or_insert_with(|| {
+                let pass = &self.graph.passes()[step.pass];
+                runs.push(Run { pass, times: 0, barriers: 0 });
+                runs.len() - 1
+            });
+            runs[at].times += 1;
+            runs[at].barriers += step.barriers.len();
+        }
+        runs
+    }
+
+    /// One line a kind of row: what runs, how often and why, what does not and why not.
     pub fn table(&self) -> String {
         let mut text = String::new();
-        let width = self.graph.passes().iter().map(|p| p.name.len()).max().unwrap_or(0);
-        for step in &self.steps {
-            let pass = &self.graph.passes()[step.pass];
+        let width = self.graph.kinds().map(|p| p.name.len()).max().unwrap_or(0);
+        for Run { pass, times, barriers } in self.runs() {
             let Need::Yes(why) = &pass.need else { continue };
-            let work = work_of(&self.graph, &pass.work);
+            let mut work = work_of(&self.graph, &pass.work);
+            if times > 1 {
+                work.push_str(&format!(" ×{times}"));
+            }
             // Writing to a String cannot fail.
             let _ = writeln!(
                 text,
-                "run   {:width$}  {work:<24}  {:>2} barriers  {why}",
-                pass.name,
-                step.barriers.len()
+                "run   {:width$}  {work:<24}  {barriers:>2} barriers  {why}",
+                pass.name
             );
         }
         for skipped in &self.skipped {
@@ -27,12 +55,12 @@ impl Plan {
         text
     }
 
-    /// The rows that run and the resources between them, for `dot -Tsvg`.
+    /// The rows that run, each kind once, and the resources between them, for `dot -Tsvg`.
     pub fn graphviz(&self) -> String {
         let mut text =
             String::from("digraph plan {\n  rankdir=LR; node [fontname=\"sans-serif\"];\n");
         let mut touched = vec![false; self.graph.resources().len()];
-        for step in &self.steps {
+        for step in self.steps.iter().filter(|s| s.first) {
             let pass = &self.graph.passes()[step.pass];
             let _ = writeln!(text, "  p{} [shape=box label=\"{}\"];", step.pass, pass.name);
             for u in &pass.uses {
@@ -66,7 +94,7 @@ impl Plan {
 fn work_of(graph: &Graph, work: &Work) -> String {
     match work {
         Work::Dispatch { groups: [x, y, z], .. } => format!("dispatch {x}×{y}×{z}"),
-        Work::Raster { draw: super::Draw::Layer(layer), .. } => {
+        Work::Raster { draw: super::Draw::Layer { layer, .. }, .. } => {
             format!("draw {:?}", layer.meshes()).to_lowercase()
         }
         Work::Raster { draw: super::Draw::Indirect { arguments }, .. } => {

@@ -42,10 +42,10 @@ pub struct Inputs<'a> {
     pub need: &'a Need,
 }
 
-/// The depth layers that these settings read.
-pub fn wanted(settings: &Settings) -> Wanted {
+/// The depth layers that these settings read, with occluder maps of `map` texels a side.
+pub fn wanted(settings: &Settings, map: u32) -> Wanted {
     Wanted {
-        map: settings.map,
+        map,
         back: settings.sides != Sides::One,
         receiver_map: (settings.receivers == Receivers::Map).then_some(settings.receiver_map),
     }
@@ -128,7 +128,7 @@ fn declare_nodes(
     superblocks_too: bool,
 ) -> Nodes {
     let sides = sides(settings).len() as u32;
-    let superblock_row = settings.map.div_ceil(SUPERBLOCK);
+    let superblock_row = inputs.occluders.side.div_ceil(SUPERBLOCK);
     let block_row = superblock_row * (SUPERBLOCK / BLOCK);
     let count = |row: u32| u64::from(row) * u64::from(row) * u64::from(sides);
     let node_bytes = 2 * size_of::<[f32; 4]>() as u64;
@@ -150,7 +150,7 @@ fn declare_nodes(
         shaders::BLOCKS,
         [block_row.div_ceil(8), block_row.div_ceil(8), sides],
         Push::new(&push::Blocks {
-            map: settings.map as i32,
+            map: inputs.occluders.side as i32,
             row: block_row as i32,
             inv_near: (1.0 / inputs.occluders.near) as f32,
             faces: match combination(settings) {
@@ -294,7 +294,7 @@ fn blend_map(
     let map = graph.image(map_name, format, [settings.receiver_map; 2], Owner::Transient);
     let blocks = nodes.block_row * nodes.block_row;
     let groups = blocks.div_ceil(GROUP);
-    let texels = u64::from(settings.map) * u64::from(settings.map);
+    let texels = u64::from(inputs.occluders.side).pow(2);
     let [counts, offsets, arguments, patches] = BUFFERS[side as usize];
     let counts = graph.buffer(counts, u64::from(groups) * 4);
     let offsets = graph.buffer(offsets, u64::from(groups) * 4);

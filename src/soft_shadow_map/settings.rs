@@ -1,6 +1,6 @@
 //! The knobs of soft shadow maps, and the gather's tolerance.
 
-use crate::{Error, settings::legal};
+use crate::Error;
 
 /// Where visibility is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -61,8 +61,6 @@ impl Accumulate {
 /// Every knob of soft shadow maps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// The occluder map's side, texels, 16 to 4096; 256 by default.
-    pub map: u32,
     /// The soft shadow map's side, texels, 16 to 4096; 256 by default. Unused at the pixels.
     pub receiver_map: u32,
     /// Where visibility is computed.
@@ -79,7 +77,6 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            map: 256,
             receiver_map: 256,
             receivers: Receivers::default(),
             sides: Sides::default(),
@@ -90,24 +87,13 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Checks the knob with this key against its range; keys of other techniques pass.
-    pub(crate) fn check_range(&self, key: &str) -> Result<(), Error> {
-        let good = match key {
-            "map" => (16..=4096).contains(&self.map),
+    /// Whether the knob with this key is within its range; keys of other techniques pass.
+    pub(crate) fn in_range(&self, key: &str) -> bool {
+        match key {
             "receiver_map" => (16..=4096).contains(&self.receiver_map),
             "tolerance" => (0.0..=0.1).contains(&self.tolerance),
             _ => true,
-        };
-        let value = match key {
-            "map" => self.map.to_string(),
-            "receiver_map" => self.receiver_map.to_string(),
-            _ => self.tolerance.to_string(),
-        };
-        if good {
-            return Ok(());
         }
-        let problem = format!("{value} is outside its range; {}", legal(key));
-        Err(Error::Setting { key: key.into(), problem })
     }
 
     /// Checks the knobs that depend on each other.

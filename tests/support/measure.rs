@@ -6,7 +6,8 @@ use antumbra::truth::{ErrorSummary, Receiver, Sampling, Tracer};
 use antumbra::{RectangleLight, Settings};
 use glam::DVec3;
 
-/// Settings from the words of a command line: `"map=64 sides=one"`.
+/// Settings from the words of a command line: `"map=64 sides=one"`, or with a technique first:
+/// `"technique=pcss taps=32"`.
 ///
 /// # Panics
 /// If a setting is refused.
@@ -14,7 +15,11 @@ pub fn settings(words: &str) -> Settings {
     let mut settings = Settings::default();
     for word in words.split_whitespace() {
         let (key, value) = word.split_once('=').expect("KEY=VALUE");
-        settings.set(key, value).unwrap_or_else(|e| panic!("{e}"));
+        if key == "technique" {
+            settings.technique = value.parse().unwrap_or_else(|e| panic!("{e}"));
+        } else {
+            settings.set(key, value).unwrap_or_else(|e| panic!("{e}"));
+        }
     }
     settings
 }

@@ -1,0 +1,17 @@
+//! A hard shadow map from the light's centre, 3×3 percentage-closer filtered.
+//!
+//! Reeves, Salesin, Cook 1987: compare first, then filter. The filter is the mean of nine comparisons a
+//! texel apart, each bilinear over four texels, as hardware does them; by fetches, because a comparison
+//! sampler filters depth formats on some devices only. Together that is 4×4 texels, compared each with
+//! the pixel's plane at its own place.
+//!
+//! **Limits.** The light is a point: no penumbra but the filter's three texels.
+
+use super::{Inputs, one_map};
+use crate::graph::{Graph, ResourceId};
+use crate::shaders;
+
+/// Adds the row that turns the map `front` into `visibility`.
+pub fn declare(graph: &mut Graph, front: ResourceId, visibility: ResourceId, inputs: &Inputs) {
+    one_map(graph, "baseline.hard", shaders::HARD, (front, visibility), 0, &[], inputs);
+}

@@ -1,0 +1,189 @@
+//! Every row that a description calls for, with one frame's numbers in them.
+
+use super::Description;
+use crate::baseline::{self, many_lights::LightPoint};
+use crate::depth_layers::{self, HostMapView, MapView};
+use crate::graph::{Graph, Need, Owner, ResourceId};
+use crate::settings::{Settings, Technique};
+use crate::visibility::{self, GBuffer};
+use crate::{RectangleLight, soft_shadow_map};
+use glam::DMat4;
+
+/// What a device's limits mean to a plan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// 2^−(sub-pixel bits): how far rasters move a vertex, in texels.
+    pub snap: f32,
+}
+
+impl Default for Limits {
+    /// The least that Vulkan guarantees: 4 sub-pixel bits.
+    fn default() -> Self {
+        Self { snap: 1.0 / 16.0 }
+    }
+}
+
+/// The graph of one frame with the resources the host needs to find again.
+pub(crate) struct FrameGraph {
+    pub graph: Graph,
+    pub depth: ResourceId,
+    pub mask: Option<ResourceId>,
+    pub occluder_maps: [Option<ResourceId>; 2],
+    pub visibility: ResourceId,
+}
+
+/// A view for rows that do not run.
+pub(super) const PLACEHOLDER: MapView =
+    MapView { min: [-1.0; 2], max: [1.0; 2], near: 1.0, far: 2.0, side: 16 };
+
+/// What the rows depend on, beyond the description.
+pub(super) struct Views {
+    pub occluders: MapView,
+    /// Those of many lights; empty for other techniques, and where nothing can be shadowed.
+    pub points: Vec<LightPoint>,
+    pub host_maps: Option<HostMapView>,
+    pub receivers: Option<MapView>,
+    pub need: Need,
+    pub light_from_ndc: [f32; 16],
+    pub background: f32,
+}
+
+impl Views {
+    /// Light space to the clip space of each view of the occluders.
+    pub fn occluder_clips(&self) -> impl Iterator<Item = DMat4> {
+        let centre = self.points.is_empty().then(|| self.occluders.clip_from_light());
+        centre.into_iter().chain(self.points.iter().map(LightPoint::clip_from_light))
+    }
+}
+
+/// The layers that are drawn from the light's centre.
+pub(super) fn wanted(settings: &Settings) -> depth_layers::Wanted {
+    let map = settings.map;
+    match settings.technique {
+        Technique::SoftShadowMap => soft_shadow_map::wanted(&settings.soft_shadow_map, map),
+        Technique::Hard | Technique::Pcss | Technique::ManyLights | Technique::BackProjection => {
+            depth_layers::Wanted { map, back: false, receiver_map: None }
+        }
+    }
+}
+
+/// Every row that any frame of this description could run; what a node makes its objects from.
+pub(crate) fn nominal(description: &Description, limits: Limits) -> FrameGraph {
+    let settings = &description.settings;
+    let side = settings.map;
+    let view = MapView { side, ..PLACEHOLDER };
+    let points = match settings.technique {
+        Technique::ManyLights => settings.baseline.samples,
+        _ => 0,
+    };
+    let views = Views {
+        occluders: view,
+        points: (0..points).map(|_| LightPoint { at: [0.0; 2], view }).collect(),
+        host_maps: description.occluder_maps.map(|_| HostMapView {
+            view,
+            flip: [false; 2],
+            scale: 1.0,
+            offset: 0.0,
+            far_value: 0.0,
+            near_value: 1.0,
+            error: 0.0,
+        }),
+        receivers: Some(view),
+        need: Need::Yes("nominal".into()),
+        light_from_ndc: DMat4::IDENTITY.as_mat4().to_cols_array(),
+        background: 0.0,
+    };
+    build(description, limits, &RectangleLight::unit(), &views)
+}
+
+/// The graph of a description with every row that any of its frames could run; the numbers in its
+/// push constants mean nothing.
+pub fn full_graph(description: &Description) -> Graph {
+    nominal(description, Limits::default()).graph
+}
+
+pub(super) fn build(
+    description: &Description,
+    limits: Limits,
+    light: &RectangleLight,
+    views: &Views,
+) -> FrameGraph {
+    let mut graph = Graph::new();
+    let depth =
+        graph.image("gbuffer.depth", description.depth_format, description.extent, Owner::Imported);
+    let mask = description
+        .mask_format
+        .map(|format| graph.image("gbuffer.mask", format, description.extent, Owner::Imported));
+    let settings = &description.settings;
+    let wanted = wanted(settings);
+    let map = |graph: &mut Graph, name| {
+        description
+            .occluder_maps
+            .map(|format| graph.image(name, format, [settings.map; 2], Owner::Imported))
+    };
+    let front = map(&mut graph, "occluder_maps.front");
+    let back = if wanted.back { map(&mut graph, "occluder_maps.back") } else { None };
+    let visibility =
+        visibility::declare(&mut graph, description.extent, description.lent_visibility);
+    let gbuffer = GBuffer {
+        depth,
+        mask,
+        extent: description.extent,
+        light_from_ndc: views.light_from_ndc,
+        background: views.background,
+    };
+    let occluders = match (front, &views.host_maps) {
+        (Some(front), Some(camera)) => depth_layers::Occluders::Maps { front, back, camera },
+        _ => depth_layers::Occluders::Meshes,
+    };
+    let snap = limits.snap;
+    let depth_error = views.host_maps.map_or(0.0, |m| m.error);
+    let need = &views.need;
+    let baseline = baseline::Inputs {
+        light,
+        occluders: &views.occluders,
+        gbuffer: &gbuffer,
+        snap,
+        depth_error,
+        need,
+    };
+    let layers = |graph: &mut Graph| depth_layers::declare(graph, wanted, &occluders, need);
+    match settings.technique {
+        Technique::SoftShadowMap => {
+            let layers = layers(&mut graph);
+            let settings = &settings.soft_shadow_map;
+            let inputs = soft_shadow_map::Inputs {
+                light,
+                occluders: &views.occluders,
+                receivers: views.receivers.as_ref(),
+                gbuffer: &gbuffer,
+                snap,
+                depth_error,
+                need,
+            };
+            soft_shadow_map::declare(&mut graph, &layers, visibility, settings, &inputs);
+        }
+        Technique::Hard => {
+            let front = layers(&mut graph).front;
+            baseline::hard::declare(&mut graph, front, visibility, &baseline);
+        }
+        Technique::Pcss => {
+            let front = layers(&mut graph).front;
+            let taps = settings.baseline.taps;
+            baseline::pcss::declare(&mut graph, front, visibility, taps, &baseline);
+        }
+        Technique::BackProjection => {
+            let front = layers(&mut graph).front;
+            baseline::back_projection::declare(&mut graph, front, visibility, &baseline);
+        }
+        Technique::ManyLights => {
+            baseline::many_lights::declare(&mut graph, visibility, &views.points, &baseline);
+        }
+    }
+    let lit = match &views.need {
+        Need::Yes(_) => Need::No("something can be shadowed, and is written elsewhere".into()),
+        Need::No(why) => Need::Yes(why.clone()),
+    };
+    visibility::lit(&mut graph, visibility, description.extent, lit);
+    FrameGraph { graph, depth, mask, occluder_maps: [front, back], visibility }
+}
