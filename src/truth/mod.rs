@@ -28,6 +28,9 @@ pub mod closed_form;
 pub mod metrics;
 pub mod trace;
 
+mod blockers;
+mod pyramid;
+
 pub use closed_form::{visible_fraction_of_polygon, visible_fraction_of_quad};
 pub use metrics::ErrorSummary;
 pub use trace::{Estimate, Receiver, Sampling, Traced, Tracer};
