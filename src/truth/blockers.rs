@@ -114,7 +114,8 @@ fn triangle_corners(scene: &Scene, instance: &Instance) -> Result<Vec<[DVec3; 3]
         })?;
         let mesh_space = DVec3::from_array(position.map(f64::from));
         let world = instance.world_from_mesh.transform_point3(mesh_space);
-        if world.abs().max_element() <= LARGEST_COORDINATE {
+        // The largest element alone would pass over a NaN beside it.
+        if world.is_finite() && world.abs().max_element() <= LARGEST_COORDINATE {
             Ok(world)
         } else {
             Err(refuse(format!(
