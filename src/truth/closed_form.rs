@@ -1,7 +1,7 @@
 //! The exact visible fraction behind one convex polygon.
 //!
 //! The part of the polygon that blocks is the part inside the pyramid from the receiver to the
-//! light, found in homogeneous form ([`super::pyramid`]); the area is the shoelace sum. All in f64.
+//! light, clipped in homogeneous form; its area on the light is the shoelace sum. All in f64.
 
 use super::pyramid::{Apex, Frame, clip};
 use crate::RectangleLight;

@@ -16,11 +16,16 @@
 //! within η = 16 · 2⁻⁵³ · D / h, where D is the distance from the receiver to that place: three
 //! products and sums in each of the two light-space vectors, one product, sum and quotient more.
 //! The area is then off by at most η / 4 times the length of the uncovered part's outline in
-//! half-extents, ℓ (of 4, the square's area). The grid of [`super::union`] is finer. For h = D / 20
+//! half-extents, ℓ (of 4, the square's area). The grid of the union (2⁻⁶⁰) is finer. For h = D / 20
 //! and ℓ = 100 that is 9 · 10⁻¹³; it passes 10⁻⁹ where ℓ · D / h is above 2 · 10⁶.
 //! The corners themselves are as exact as f64 holds them relative to the scene's centre, which
 //! counts for more the nearer an occluder is to the receiver: 2⁻⁵³ of the scene's extent over the
 //! distance between them, times D / h.
+//!
+//! Time goes with the triangles in the pyramid: of a mesh, where neighbours share corners, the edges
+//! between them cancel and only outlines meet (0.3 ms a point in the penumbra of 5,650 triangles,
+//! 11 ms of 360,000); loose triangles that all overlap cross each other, and time goes with the
+//! crossings, hence with the square (14 ms for 1,000, 120 ms for 3,000).
 
 use super::blockers::Blockers;
 use super::polygon_light::PolygonLight;

@@ -152,6 +152,26 @@ fn a_fan_of_slivers_leaves_no_crack() {
 }
 
 #[test]
+fn thousands_of_polygons_add_up_whichever_way_the_library_looks_for_crossings() {
+    // It lists below 2,000 edges, keeps a tree beyond, and cuts the plane up beyond 32,000.
+    let mut random = Random(34);
+    let cell: Vec<[DVec2; 3]> = (0..4).map(|_| [(); 3].map(|()| point(&mut random, 1.0))).collect();
+    let covered = 1.0 - by_slabs(&square(), &cell);
+    for side in [1, 10, 30, 60] {
+        let scale = 1.0 / f64::from(side);
+        let centers = (0..side * side).map(|i| {
+            let at = |i: i32| f64::from(2 * i + 1) * scale - 1.0;
+            DVec2::new(at(i % side), at(i / side))
+        });
+        let all: Vec<[DVec2; 3]> = centers
+            .flat_map(|center| cell.iter().map(move |t| t.map(|p| center + p * scale)))
+            .collect();
+        let seen = by_library(&LightOutline::square(), &all);
+        assert!((1.0 - seen - covered).abs() < ROUNDING, "{side}: {seen} and {covered}");
+    }
+}
+
+#[test]
 fn what_has_no_area_covers_nothing_and_what_is_not_finite_does_not_panic() {
     let o = DVec2::ZERO;
     let nothing = [[o; 3], [o, DVec2::X, DVec2::X * 0.5], [o, DVec2::Y, o]];
