@@ -37,6 +37,7 @@ use crate::scene::Scene;
 use glam::DVec3;
 use obvhs::aabb::Aabb;
 use rayon::prelude::*;
+use std::fmt;
 
 /// Receivers further from the light than this many half-extents of it are refused: products of
 /// coordinates would overflow.
@@ -87,6 +88,7 @@ impl Exact {
         light: &PolygonLight,
         receiver: &Receiver,
     ) -> Result<f64, Error> {
+        check(receiver, "the receiver")?;
         self.of_receiver(light, receiver, &mut Union::new())
     }
 
@@ -115,6 +117,9 @@ impl Exact {
         light: &PolygonLight,
         receivers: &[Receiver],
     ) -> Result<Vec<f64>, Error> {
+        for (i, receiver) in receivers.iter().enumerate() {
+            check(receiver, format_args!("receiver {i}"))?;
+        }
         receivers
             .par_iter()
             .map_init(Union::new, |union, receiver| self.of_receiver(light, receiver, union))
@@ -127,12 +132,6 @@ impl Exact {
         receiver: &Receiver,
         union: &mut Union,
     ) -> Result<f64, Error> {
-        if !(receiver.position.is_finite() && receiver.normal.is_finite()) {
-            return Err(Error::Frame(format!(
-                "a receiver must have a finite position and normal (they are {} and {})",
-                receiver.position, receiver.normal
-            )));
-        }
         let Some(normal) = receiver.normal.try_normalize() else { return Ok(1.0) };
         let offset = self.offset(light, receiver.position);
         let from = receiver.position - self.blockers.origin + normal * offset;
@@ -198,6 +197,16 @@ impl Exact {
             }
         }
     }
+}
+
+fn check(receiver: &Receiver, name: impl fmt::Display) -> Result<(), Error> {
+    if receiver.position.is_finite() && receiver.normal.is_finite() {
+        return Ok(());
+    }
+    Err(Error::Frame(format!(
+        "{name} must have a finite position and normal (they are {} and {})",
+        receiver.position, receiver.normal
+    )))
 }
 
 /// The planes of the pyramid from a receiver to the light's bounding rectangle.

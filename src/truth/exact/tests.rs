@@ -137,6 +137,30 @@ fn parallel_cards_at_many_heights_cover_what_a_grid_of_their_edges_says() {
 }
 
 #[test]
+fn the_error_is_within_what_is_derived_for_lights_of_any_size() {
+    // A light 2 m away, turned out of every axis; a card half way whose shadow is the light moved.
+    let mut random = Random(45);
+    for half in [1.0, 1e-2, 1e-4, 1e-6] {
+        // The module's η.
+        let placement = 16.0 * 2.0_f64.powi(-53) * 2.0 / half;
+        let mut worst = 0.0_f64;
+        for _ in 0..300 {
+            let [x, y, z] = random.frame();
+            let light = RectangleLight::new(z, x * half, y * half).unwrap();
+            let moved = [random.within(-0.9, 0.9), random.within(-0.9, 0.9)];
+            let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+                .map(|[s, t]| (x * (s + moved[0] * 2.0) + y * (t + moved[1] * 2.0)) * (half / 2.0));
+            let expected = 1.0 - moved.iter().map(|m| 1.0 - m.abs()).product::<f64>();
+            let v = seen(&halves(corners), &PolygonLight::from(&light), -z);
+            worst = worst.max((v - expected).abs());
+        }
+        println!("half-extent {half:e}: worst error {worst:.1e}, {placement:.1e} a corner");
+        // An outline of at most 8 half-extents, of 4; as much again for the inputs' own rounding.
+        assert!(worst < 2.0 * 2.0 * placement, "{worst} for half-extents of {half}");
+    }
+}
+
+#[test]
 fn disjoint_triangles_add_and_copies_or_turned_ones_change_nothing() {
     let light = PolygonLight::from(&ceiling());
     let left = [[-0.2, 0.9, 0.0], [-0.05, 1.0, 0.1], [-0.1, 1.1, -0.15]].map(DVec3::from_array);

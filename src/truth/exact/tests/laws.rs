@@ -197,10 +197,15 @@ fn unusable_input_is_refused_with_a_sentence() {
             [Receiver { position: DVec3::ZERO, normal: DVec3::Y }, Receiver { position, normal }];
         exact.visible_fractions(&light, &receivers).unwrap_err().to_string()
     };
-    assert!(refused(DVec3::NAN, DVec3::Y).contains("finite position"));
-    assert!(refused(DVec3::ZERO, DVec3::INFINITY).contains("finite position"));
+    assert!(refused(DVec3::NAN, DVec3::Y).contains("receiver 1 must have a finite position"));
+    assert!(
+        refused(DVec3::ZERO, DVec3::INFINITY).contains("receiver 1 must have a finite position")
+    );
     assert!(refused(DVec3::splat(1e120), DVec3::Y).contains("light sizes"));
-    assert!(refused(DVec3::new(0.0, f64::NAN, 0.0), DVec3::Y).contains("finite position"));
+    assert!(
+        refused(DVec3::new(0.0, f64::NAN, 0.0), DVec3::Y)
+            .contains("receiver 1 must have a finite position")
+    );
     let torn = exact.visible_from(&light, DVec3::new(f64::NAN, 0.0, 0.0));
     assert!(torn.unwrap_err().to_string().contains("finite"));
     assert!(exact.visible_from(&light, DVec3::NAN).unwrap_err().to_string().contains("finite"));
