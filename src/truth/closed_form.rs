@@ -1,13 +1,9 @@
 //! The exact visible fraction behind one convex polygon.
 //!
-//! The part of the polygon that blocks is the part inside the pyramid with its apex at the
-//! receiver and the light as its base. Clipping to that pyramid comes first, projecting onto the
-//! light second: a clipped point can only be at the projection's pole by being the receiver
-//! itself, so no near distance has to be invented for polygons that pass by or behind the receiver.
-//!
-//! Clipping is that of Sutherland and Hodgman 1974 ("Reentrant polygon clipping"), against the
-//! pyramid's four sides and the light's plane; the area is the shoelace sum. All in f64.
+//! The part of the polygon that blocks is the part inside the pyramid from the receiver to the
+//! light, clipped in homogeneous form; its area on the light is the shoelace sum. All in f64.
 
+use super::pyramid::{Apex, Frame, clip};
 use crate::RectangleLight;
 use glam::{DVec2, DVec3};
 
@@ -38,90 +34,20 @@ pub fn visible_fraction_of_polygon(
         return f64::NAN;
     }
     let frame = Frame::of(light);
-    let receiver = frame.local(receiver);
-    if receiver.z <= 0.0 {
+    let apex = Apex::new(&frame, receiver);
+    if apex.local.z <= 0.0 {
         return 1.0;
     }
-    let rays: Vec<Ray> =
-        polygon.iter().map(|&corner| Ray::through(receiver, frame.local(corner))).collect();
+    let rays: Vec<_> = polygon.iter().map(|&corner| apex.ray_through(corner)).collect();
     // A panel in the light's plane is not before it; the clip alone would keep it whole.
     if rays.iter().all(|ray| ray.z <= 0.0) {
         return 1.0;
     }
-    // The sides x = ±w and y = ±w together imply w ≥ 0: nothing behind the receiver survives.
-    let sides: [fn(&Ray) -> f64; 5] =
-        [|r| r.z, |r| r.w - r.x, |r| r.w + r.x, |r| r.w - r.y, |r| r.w + r.y];
-    let inside = sides.iter().fold(rays, |rays, side| clip(&rays, side));
     // w = 0 is the receiver itself, where an edge-on polygon passes through it.
-    let shadow: Vec<DVec2> =
-        inside.iter().filter(|r| r.w > 0.0).map(|r| DVec2::new(r.x, r.y) / r.w).collect();
+    let inside = clip(rays, 1.0).into_iter().filter(|ray| ray.w > 0.0);
+    let shadow: Vec<DVec2> = inside.map(|ray| ray.projected()).collect();
     // The light is the square −1..1 here.
     (1.0 - area(&shadow) / 4.0).clamp(0.0, 1.0)
-}
-
-/// Light space with f64 dot products about the light's centre: no matrix that holds a far
-/// translation, hence no cancellation 20 km from the world's origin.
-struct Frame {
-    center: DVec3,
-    /// x and y are divided by the light's half-extents.
-    rows: [DVec3; 3],
-}
-
-impl Frame {
-    fn of(light: &RectangleLight) -> Self {
-        let axes = light.world_from_light();
-        let [width, height] = light.half_extents();
-        let axis = |column: DVec3, unit: f64| axes.transform_vector3(column) / unit;
-        Self {
-            center: light.center(),
-            rows: [axis(DVec3::X, width), axis(DVec3::Y, height), axis(DVec3::Z, 1.0)],
-        }
-    }
-
-    fn local(&self, world: DVec3) -> DVec3 {
-        let from_center = world - self.center;
-        DVec3::from_array(self.rows.map(|row| row.dot(from_center)))
-    }
-}
-
-/// A point of the polygon, its back-projection onto the light plane held as (x, y) / w.
-#[derive(Clone, Copy)]
-struct Ray {
-    x: f64,
-    y: f64,
-    /// Above 0 nearer to the light plane than the receiver.
-    w: f64,
-    /// The point's distance in front of the light.
-    z: f64,
-}
-
-impl Ray {
-    /// From the receiver r through p: the line meets z = 0 at (p r_z − r p_z) / (r_z − p_z).
-    fn through(r: DVec3, p: DVec3) -> Self {
-        Self { x: p.x * r.z - r.x * p.z, y: p.y * r.z - r.y * p.z, w: r.z - p.z, z: p.z }
-    }
-
-    /// All four members are affine in the point, so they interpolate along an edge alike.
-    fn between(a: &Self, b: &Self, t: f64) -> Self {
-        let mix = |a: f64, b: f64| a + (b - a) * t;
-        Self { x: mix(a.x, b.x), y: mix(a.y, b.y), w: mix(a.w, b.w), z: mix(a.z, b.z) }
-    }
-}
-
-/// One side of Sutherland and Hodgman: keeps where `distance` is not negative.
-fn clip(polygon: &[Ray], distance: impl Fn(&Ray) -> f64) -> Vec<Ray> {
-    let mut kept = Vec::with_capacity(polygon.len() + 1);
-    let edges = polygon.iter().zip(polygon.iter().cycle().skip(1));
-    for (from, to) in edges {
-        let (d_from, d_to) = (distance(from), distance(to));
-        if d_from >= 0.0 {
-            kept.push(*from);
-        }
-        if (d_from >= 0.0) != (d_to >= 0.0) {
-            kept.push(Ray::between(from, to, d_from / (d_from - d_to)));
-        }
-    }
-    kept
 }
 
 /// The area of a polygon of either winding, by the shoelace sum about its first corner.

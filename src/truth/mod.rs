@@ -12,10 +12,11 @@
 //! where two methods could have disagreed.
 //!
 //! - [`closed_form`]: one convex polygon before a rectangle light, exact to rounding.
+//! - [`exact`]: whole scenes and any polygonal light, exact to rounding.
 //! - [`trace`]: whole scenes by stratified rays, with an estimate of its own noise.
 //! - [`metrics`]: the error of an image as Atty 2006 section 5.2.1 counts it, and what that hides.
 //!
-//! Three conventions hold for both methods, so that they agree with each other and with what a
+//! Three conventions hold for all three methods, so that they agree with each other and with what a
 //! rasterizing technique can reproduce:
 //!
 //! - A receiver at or behind the light's plane is not lit by it; there is nothing to shadow and
@@ -25,11 +26,19 @@
 //! - Blockers are two-sided, whatever their winding.
 
 pub mod closed_form;
+pub mod exact;
 pub mod metrics;
 pub mod trace;
 
+mod blockers;
+mod polygon_light;
+mod pyramid;
+mod union;
+
 pub use closed_form::{visible_fraction_of_polygon, visible_fraction_of_quad};
+pub use exact::Exact;
 pub use metrics::ErrorSummary;
+pub use polygon_light::PolygonLight;
 pub use trace::{Estimate, Receiver, Sampling, Traced, Tracer};
 
 #[cfg(test)]

@@ -1,42 +1,20 @@
 //! The visible fraction by rays through a bounding volume hierarchy.
 //!
-//! The hierarchy's boxes are f32 and padded beyond their rounding; the triangles are f64 and so is
-//! the test against them. Both are relative to the scene's centre, so a scene far from the world's
-//! origin loses nothing. f32 triangles would not do: the plane of a long thin one is known only to
-//! 2⁻²⁴ × length² / width, and a floor made of such triangles would shadow itself.
+//! The triangles are f64 and so is the test against them. f32 would not do: the plane of a long
+//! thin triangle is known only to 2⁻²⁴ × length² / width, and a floor made of such triangles would
+//! shadow itself.
 
-use crate::scene::{Instance, Scene};
+use super::blockers::{Blockers, F32_ROUNDING, PAD_ROUNDINGS};
+use crate::scene::Scene;
 use crate::{Error, RectangleLight};
 use glam::DVec3;
-use obvhs::aabb::Aabb;
-use obvhs::bvh2::Bvh2;
-use obvhs::bvh2::leaf_collapser::collapse;
-use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
-use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use obvhs::ray::Ray;
 use rayon::prelude::*;
 
 mod sampling;
 pub use sampling::Sampling;
+pub(super) use sampling::check_position_error;
 use sampling::{LightFrame, Stream};
-
-/// The relative error of one rounding to f32.
-const F32_ROUNDING: f64 = 1.0 / (1 << 24) as f64;
-
-/// How many roundings of the largest coordinate a receiver's position may be off by: a vertex
-/// transform in f32 is three products and three sums, its interpolation over a triangle two more.
-const POSITION_ROUNDINGS: f64 = 8.0;
-
-/// Offset over position error. A normal that leans 75° from the geometric one (interpolated
-/// normals do, on coarse meshes) still moves the point off its surface by a quarter.
-const OFFSET_PER_ERROR: f64 = 4.0;
-
-/// Padding of the boxes, in roundings of the scene's extent: the ray's origin, its direction and
-/// the slab test take three, for rays up to five times as long as the scene.
-const PAD_ROUNDINGS: f64 = 16.0;
-
-/// Beyond this, in metres, the areas of the hierarchy's f32 boxes overflow.
-const LARGEST_COORDINATE: f64 = 1e18;
 
 /// A point that is asked how much of the light it sees.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,12 +54,7 @@ pub struct Traced {
 
 /// The blocking triangles of a scene, ready to be asked.
 pub struct Tracer {
-    /// World space; everything below is relative to it.
-    origin: DVec3,
-    /// The largest coordinate of any instance or light, relative to `origin`.
-    extent: f64,
-    triangles: Vec<Triangle>,
-    tree: Option<Bvh2>,
+    blockers: Blockers<Triangle>,
 }
 
 impl Tracer {
@@ -91,32 +64,7 @@ impl Tracer {
     /// [`Error::Scene`] where an instance names a mesh or vertex that does not exist, or puts a
     /// vertex at a position that is not finite (or beyond 10¹⁸ m).
     pub fn new(scene: &Scene) -> Result<Self, Error> {
-        let (mut low, mut high) = (DVec3::MAX, DVec3::MIN);
-        let mut include = |point: DVec3| (low, high) = (low.min(point), high.max(point));
-        let mut corners = Vec::new();
-        for instance in &scene.instances {
-            let world = triangle_corners(scene, instance)?;
-            world.iter().flatten().for_each(|&corner| include(corner));
-            if instance.role.blocks() {
-                corners.extend(world);
-            }
-        }
-        for light in &scene.lights {
-            LightFrame::of(&light.light, DVec3::ZERO).corners().into_iter().for_each(&mut include);
-        }
-        let (origin, extent) = if low.cmple(high).all() {
-            ((low + high) / 2.0, ((high - low) / 2.0).max_element())
-        } else {
-            (DVec3::ZERO, 0.0)
-        };
-        let triangles: Vec<Triangle> = corners
-            .into_iter()
-            .map(|world| Triangle::new(world.map(|corner| corner - origin)))
-            .filter(|triangle| triangle.normal != DVec3::ZERO)
-            .collect();
-        let pad = PAD_ROUNDINGS * F32_ROUNDING * extent;
-        let boxes: Vec<Aabb> = triangles.iter().map(|triangle| triangle.bounds(pad)).collect();
-        Ok(Self { origin, extent, tree: build(&boxes), triangles })
+        Ok(Self { blockers: Blockers::new(scene, Triangle::new)? })
     }
 
     /// How far a receiver is moved off its surface along its normal, in metres, before its rays
@@ -128,9 +76,7 @@ impl Tracer {
     /// leave below the surface then hit it: where the surface blocks light, the part of the light
     /// under its horizon is hidden, as it should be; where it is only a receiver, it is not.
     pub fn offset(&self, light: &RectangleLight, position: DVec3, sampling: &Sampling) -> f64 {
-        let largest = |world: DVec3| (world - self.origin).abs().max_element();
-        let reach = self.extent.max(largest(position)).max(largest(light.center()));
-        OFFSET_PER_ERROR * (POSITION_ROUNDINGS * F32_ROUNDING * reach + sampling.position_error())
+        self.blockers.offset(light.center(), position, sampling.position_error())
     }
 
     /// The visible fraction from one receiver: the share of stratified points on the light from
@@ -157,8 +103,8 @@ impl Tracer {
         let unshadowed = Estimate { visible: 1.0, half_difference: 0.0 };
         let Some(normal) = receiver.normal.try_normalize() else { return Ok(unshadowed) };
         let offset = self.offset(light, receiver.position, sampling);
-        let from = receiver.position - self.origin + normal * offset;
-        let frame = LightFrame::of(light, self.origin);
+        let from = receiver.position - self.blockers.origin + normal * offset;
+        let frame = LightFrame::of(light, self.blockers.origin);
         let distance = frame.distance(from);
         if distance <= offset {
             return Ok(unshadowed);
@@ -213,8 +159,8 @@ impl Tracer {
     /// The triangle that blocked the receiver's last ray is asked first: any blocker will do, and
     /// neighbouring rays mostly share theirs.
     fn blocked(&self, from: DVec3, along: DVec3, last_hit: &mut Option<usize>) -> bool {
-        let Some(tree) = &self.tree else { return false };
-        if last_hit.is_some_and(|i| self.triangles[i].crosses(from, along)) {
+        let Blockers { triangles, tree: Some(tree), .. } = &self.blockers else { return false };
+        if last_hit.is_some_and(|i| triangles[i].crosses(from, along)) {
             return true;
         }
         let length = along.length();
@@ -228,7 +174,7 @@ impl Tracer {
         let mut hit = None;
         tree.ray_traverse_miss(ray, |_, leaf| {
             let i = tree.primitive_indices[leaf] as usize;
-            if self.triangles[i].crosses(from, along) {
+            if triangles[i].crosses(from, along) {
                 hit = Some(i);
                 return 0.0;
             }
@@ -253,13 +199,6 @@ impl Triangle {
         Self { corner: a, edges, normal: edges[0].cross(edges[1]) }
     }
 
-    fn bounds(&self, pad: f64) -> Aabb {
-        let others = self.edges.map(|edge| self.corner + edge);
-        let low = self.corner.min(others[0]).min(others[1]) - pad;
-        let high = self.corner.max(others[0]).max(others[1]) + pad;
-        Aabb::new(low.as_vec3a(), high.as_vec3a())
-    }
-
     /// Whether the segment from `from` to `from + along` meets the triangle, from either side.
     fn crosses(&self, from: DVec3, along: DVec3) -> bool {
         let facing = self.normal.dot(along);
@@ -272,54 +211,6 @@ impl Triangle {
         // A segment in the triangle's plane sees it edge-on.
         facing > 0.0 && u >= 0.0 && v >= 0.0 && u + v <= facing && t >= 0.0 && t <= facing
     }
-}
-
-/// The corners of an instance's triangles in world space.
-fn triangle_corners(scene: &Scene, instance: &Instance) -> Result<Vec<[DVec3; 3]>, Error> {
-    let refuse = |problem: String| Error::Scene(format!("{}: {problem}", instance.name));
-    let mesh = scene.meshes.get(instance.mesh).ok_or_else(|| {
-        refuse(format!("mesh {} does not exist (there are {})", instance.mesh, scene.meshes.len()))
-    })?;
-    let corner = |&index: &u32| {
-        let position = mesh.positions.get(index as usize).ok_or_else(|| {
-            refuse(format!("index {index} is past its {} positions", mesh.positions.len()))
-        })?;
-        let mesh_space = DVec3::from_array(position.map(f64::from));
-        let world = instance.world_from_mesh.transform_point3(mesh_space);
-        if world.abs().max_element() <= LARGEST_COORDINATE {
-            Ok(world)
-        } else {
-            Err(refuse(format!(
-                "vertex {index} must be within {LARGEST_COORDINATE:e} m (it is at {world})"
-            )))
-        }
-    };
-    mesh.indices
-        .chunks_exact(3)
-        .map(|triangle| Ok([corner(&triangle[0])?, corner(&triangle[1])?, corner(&triangle[2])?]))
-        .collect()
-}
-
-/// A hierarchy over the boxes: obvhs's medium preset, without the validation that its own
-/// `build_bvh2` runs (and panics in) where debug assertions are on.
-fn build(boxes: &[Aabb]) -> Option<Bvh2> {
-    if boxes.is_empty() {
-        return None;
-    }
-    let mut tree = PlocBuilder::with_capacity(boxes.len()).build(
-        PlocSearchDistance::Medium,
-        boxes,
-        (0..boxes.len() as u32).collect(),
-        SortPrecision::U64,
-        3,
-    );
-    let mut reinsertion = ReinsertionOptimizer::default();
-    reinsertion.run(&mut tree, 0.05, None);
-    collapse(&mut tree, 8, 3.0);
-    reinsertion.run(&mut tree, 0.1, None);
-    // Reinsertion can deepen the tree, and its traversal stack overwrites what does not fit.
-    tree.max_depth = tree.max_depth.max(tree.depth(0) + 2);
-    Some(tree)
 }
 
 #[cfg(test)]

@@ -49,12 +49,7 @@ impl Sampling {
     /// # Errors
     /// [`Error::Setting`] for an error that is negative or not finite.
     pub fn with_position_error(self, metres: f64) -> Result<Self, Error> {
-        if !(metres >= 0.0 && metres.is_finite()) {
-            return Err(Error::Setting {
-                key: "position_error".into(),
-                problem: format!("it must be finite and at least 0 m (it is {metres})"),
-            });
-        }
+        check_position_error(metres)?;
         Ok(Self { position_error: metres, ..self })
     }
 
@@ -76,6 +71,17 @@ impl Sampling {
     }
 }
 
+/// Refuses a position error that is negative or not finite.
+pub(in crate::truth) fn check_position_error(metres: f64) -> Result<(), Error> {
+    if metres >= 0.0 && metres.is_finite() {
+        return Ok(());
+    }
+    Err(Error::Setting {
+        key: "position_error".into(),
+        problem: format!("it must be finite and at least 0 m (it is {metres})"),
+    })
+}
+
 /// The light relative to an origin: f64 dot products, no matrix that holds a far translation.
 pub(super) struct LightFrame {
     corner: DVec3,
@@ -94,10 +100,6 @@ impl LightFrame {
         ];
         let corner = light.center() - origin - (sides[0] + sides[1]) / 2.0;
         Self { corner, sides, emission: light.emission() }
-    }
-
-    pub(super) fn corners(&self) -> [DVec3; 4] {
-        [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)].map(|(s, t)| self.at(s, t))
     }
 
     /// Distance along the light's normal from its plane.

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used)]
 
 use super::*;
-use crate::scene::{AreaLight, Mesh, Role};
+use crate::scene::{AreaLight, Instance, Mesh, Role};
 use crate::truth::random::Random;
 use crate::truth::visible_fraction_of_quad;
 use glam::DMat4;
@@ -165,10 +165,11 @@ fn the_tree_loses_no_triangle() {
         }
         if i % 2 == 1 {
             // Just inside a corner, where a box in f32 would cut it off without its padding.
-            let Triangle { corner, edges, .. } = tracer.triangles[i % 600];
+            let Triangle { corner, edges, .. } = tracer.blockers.triangles[i % 600];
             along = (corner + (edges[0] + edges[1]) * 1e-8 - from) * 1.5;
         }
-        let expected = tracer.triangles.iter().any(|triangle| triangle.crosses(from, along));
+        let expected =
+            tracer.blockers.triangles.iter().any(|triangle| triangle.crosses(from, along));
         assert_eq!(tracer.blocked(from, along, &mut None), expected, "{from} along {along}");
         hits += usize::from(expected);
     }

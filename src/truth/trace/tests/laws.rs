@@ -208,6 +208,7 @@ fn unusable_input_is_refused_with_a_sentence() {
     };
     assert!(refuse(&|s| s.meshes[0].indices[0] = 9).contains("quad 0: index 9"));
     assert!(refuse(&|s| s.meshes[0].positions[0] = [f32::NAN; 3]).contains("quad 0: vertex 0"));
+    assert!(refuse(&|s| s.meshes[0].positions[0][1] = f32::NAN).contains("quad 0: vertex 0"));
     assert!(refuse(&|s| s.instances[0].mesh = 5).contains("quad 0: mesh 5"));
     scene.meshes.clear();
     assert!(Tracer::new(&scene).is_err());

@@ -1,0 +1,152 @@
+//! The blocking triangles of a scene, and a bounding volume hierarchy over them.
+//!
+//! The hierarchy's boxes are f32 and padded beyond their rounding; the triangles are f64. Both are
+//! relative to the scene's centre, so a scene far from the world's origin loses nothing.
+
+use crate::scene::{Instance, Scene};
+use crate::{Error, RectangleLight};
+use glam::DVec3;
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::leaf_collapser::collapse;
+use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
+use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
+
+/// The relative error of one rounding to f32.
+pub(super) const F32_ROUNDING: f64 = 1.0 / (1 << 24) as f64;
+
+/// How many roundings of the largest coordinate a receiver's position may be off by: a vertex
+/// transform in f32 is three products and three sums, its interpolation over a triangle two more.
+const POSITION_ROUNDINGS: f64 = 8.0;
+
+/// Offset over position error. A normal that leans 75° from the geometric one (interpolated
+/// normals do, on coarse meshes) still moves the point off its surface by a quarter.
+const OFFSET_PER_ERROR: f64 = 4.0;
+
+/// Padding of the boxes, in roundings of the scene's extent: the ray's origin, its direction and
+/// the slab test take three, for rays up to five times as long as the scene.
+pub(super) const PAD_ROUNDINGS: f64 = 16.0;
+
+/// Beyond this, in metres, the areas of the hierarchy's f32 boxes overflow.
+const LARGEST_COORDINATE: f64 = 1e18;
+
+/// The blocking triangles of a scene, each in the form that its user wants.
+pub(super) struct Blockers<T> {
+    /// World space; everything below is relative to it.
+    pub(super) origin: DVec3,
+    /// The largest coordinate of any instance or light, relative to `origin`.
+    extent: f64,
+    pub(super) triangles: Vec<T>,
+    pub(super) tree: Option<Bvh2>,
+}
+
+impl<T> Blockers<T> {
+    /// Builds the hierarchy over the instances that block light ([`crate::scene::Role::blocks`]).
+    ///
+    /// `form` makes a triangle of its corners, relative to the origin. Triangles without an area
+    /// are left out.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] where an instance names a mesh or vertex that does not exist, or puts a
+    /// vertex at a position that is not finite (or beyond 10¹⁸ m).
+    pub(super) fn new(scene: &Scene, form: impl Fn([DVec3; 3]) -> T) -> Result<Self, Error> {
+        let (mut low, mut high) = (DVec3::MAX, DVec3::MIN);
+        let mut include = |point: DVec3| (low, high) = (low.min(point), high.max(point));
+        let mut corners = Vec::new();
+        for instance in &scene.instances {
+            let world = triangle_corners(scene, instance)?;
+            world.iter().flatten().for_each(|&corner| include(corner));
+            if instance.role.blocks() {
+                corners.extend(world);
+            }
+        }
+        for light in &scene.lights {
+            light_corners(&light.light).into_iter().for_each(&mut include);
+        }
+        let (origin, extent) = if low.cmple(high).all() {
+            ((low + high) / 2.0, ((high - low) / 2.0).max_element())
+        } else {
+            (DVec3::ZERO, 0.0)
+        };
+        corners.iter_mut().flatten().for_each(|corner| *corner -= origin);
+        corners.retain(|[a, b, c]| (b - a).cross(c - a) != DVec3::ZERO);
+        let pad = PAD_ROUNDINGS * F32_ROUNDING * extent;
+        let boxes: Vec<Aabb> = corners.iter().map(|corners| bounds(corners, pad)).collect();
+        let triangles = corners.into_iter().map(form).collect();
+        Ok(Self { origin, extent, triangles, tree: build(&boxes) })
+    }
+
+    /// How far a receiver is moved off its surface along its normal, in metres, where its position
+    /// may be off by `position_error` beyond what f32 arithmetic on scene-sized coordinates
+    /// explains; about 2 µm a metre of the scene's extent without.
+    ///
+    /// It is derived: four times the sum of that error and of the error that f32 gives a position
+    /// whose coordinates are as large as the scene's.
+    pub(super) fn offset(&self, light: DVec3, position: DVec3, position_error: f64) -> f64 {
+        let largest = |world: DVec3| (world - self.origin).abs().max_element();
+        let reach = self.extent.max(largest(position)).max(largest(light));
+        OFFSET_PER_ERROR * (POSITION_ROUNDINGS * F32_ROUNDING * reach + position_error)
+    }
+}
+
+fn light_corners(light: &RectangleLight) -> [DVec3; 4] {
+    let [width, height] = light.half_extents();
+    [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)].map(|(x, y)| {
+        let from_center = DVec3::new(x * width, y * height, 0.0);
+        light.center() + light.world_from_light().transform_vector3(from_center)
+    })
+}
+
+fn bounds([a, b, c]: &[DVec3; 3], pad: f64) -> Aabb {
+    let (low, high) = (a.min(*b).min(*c) - pad, a.max(*b).max(*c) + pad);
+    Aabb::new(low.as_vec3a(), high.as_vec3a())
+}
+
+/// The corners of an instance's triangles in world space.
+fn triangle_corners(scene: &Scene, instance: &Instance) -> Result<Vec<[DVec3; 3]>, Error> {
+    let refuse = |problem: String| Error::Scene(format!("{}: {problem}", instance.name));
+    let mesh = scene.meshes.get(instance.mesh).ok_or_else(|| {
+        refuse(format!("mesh {} does not exist (there are {})", instance.mesh, scene.meshes.len()))
+    })?;
+    let corner = |&index: &u32| {
+        let position = mesh.positions.get(index as usize).ok_or_else(|| {
+            refuse(format!("index {index} is past its {} positions", mesh.positions.len()))
+        })?;
+        let mesh_space = DVec3::from_array(position.map(f64::from));
+        let world = instance.world_from_mesh.transform_point3(mesh_space);
+        // The largest element alone would pass over a NaN beside it.
+        if world.is_finite() && world.abs().max_element() <= LARGEST_COORDINATE {
+            Ok(world)
+        } else {
+            Err(refuse(format!(
+                "vertex {index} must be within {LARGEST_COORDINATE:e} m (it is at {world})"
+            )))
+        }
+    };
+    mesh.indices
+        .chunks_exact(3)
+        .map(|triangle| Ok([corner(&triangle[0])?, corner(&triangle[1])?, corner(&triangle[2])?]))
+        .collect()
+}
+
+/// A hierarchy over the boxes: obvhs's medium preset, without the validation that its own
+/// `build_bvh2` runs (and panics in) where debug assertions are on.
+fn build(boxes: &[Aabb]) -> Option<Bvh2> {
+    if boxes.is_empty() {
+        return None;
+    }
+    let mut tree = PlocBuilder::with_capacity(boxes.len()).build(
+        PlocSearchDistance::Medium,
+        boxes,
+        (0..boxes.len() as u32).collect(),
+        SortPrecision::U64,
+        3,
+    );
+    let mut reinsertion = ReinsertionOptimizer::default();
+    reinsertion.run(&mut tree, 0.05, None);
+    collapse(&mut tree, 8, 3.0);
+    reinsertion.run(&mut tree, 0.1, None);
+    // Reinsertion can deepen the tree, and its traversal stack overwrites what does not fit.
+    tree.max_depth = tree.max_depth.max(tree.depth(0) + 2);
+    Some(tree)
+}
