@@ -15,10 +15,23 @@ pub struct Finding {
     pub figure: &'static str,
     /// What the paper says.
     pub claim: &'static str,
-    /// Whether it holds here; none where the sweep was not measured.
-    pub holds: Option<bool>,
+    /// Whether it holds here.
+    pub verdict: Verdict,
     /// What was measured.
     pub sentence: String,
+}
+
+/// Whether a finding holds here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// For every object.
+    Holds,
+    /// For some objects.
+    InPart,
+    /// For none.
+    Refuted,
+    /// The sweep was not measured.
+    Unmeasured,
 }
 
 /// Above this many texels a side the paper finds no improvement.
@@ -60,17 +73,22 @@ fn ask(
     rows: &[Row],
     study: &str,
     law: impl Fn(&str) -> Option<(bool, String)>,
-) -> (Option<bool>, String) {
+) -> (Verdict, String) {
     let told: Vec<_> = scenes(rows, study)
         .into_iter()
         .filter_map(|s| law(s).map(|(holds, t)| (s, holds, t)))
         .collect();
-    let holds = (!told.is_empty()).then(|| told.iter().all(|t| t.1));
+    let verdict = match (told.iter().any(|t| t.1), told.iter().all(|t| t.1)) {
+        _ if told.is_empty() => Verdict::Unmeasured,
+        (_, true) => Verdict::Holds,
+        (true, false) => Verdict::InPart,
+        (false, false) => Verdict::Refuted,
+    };
     let phrases: Vec<_> = told
         .iter()
         .map(|(scene, holds, text)| format!("{scene}: {text}{}", if *holds { "" } else { " (no)" }))
         .collect();
-    (holds, if phrases.is_empty() { "not measured".into() } else { phrases.join("; ") })
+    (verdict, if phrases.is_empty() { "not measured".into() } else { phrases.join("; ") })
 }
 
 const TWO: &str = sweeps::SIDES[1].0;
@@ -83,7 +101,7 @@ fn percent(fraction: f64) -> String {
 
 /// All findings, in the paper's order.
 pub fn findings(rows: &[Row]) -> Vec<Finding> {
-    let finding = |figure, claim, (holds, sentence)| Finding { figure, claim, holds, sentence };
+    let finding = |figure, claim, (verdict, sentence)| Finding { figure, claim, verdict, sentence };
     vec![
         finding("Fig. 17", "More than about 200² texels bring no improvement.", flat(rows)),
         finding(
@@ -110,7 +128,7 @@ pub fn findings(rows: &[Row]) -> Vec<Finding> {
     ]
 }
 
-fn flat(rows: &[Row]) -> (Option<bool>, String) {
+fn flat(rows: &[Row]) -> (Verdict, String) {
     ask(rows, sweeps::SIDE, |scene| {
         let points = curve(rows, sweeps::SIDE, scene, TWO, Row::mean);
         let mean = |points: Vec<f64>| {
@@ -126,7 +144,7 @@ fn flat(rows: &[Row]) -> (Option<bool>, String) {
     })
 }
 
-fn sides(rows: &[Row]) -> (Option<bool>, String) {
+fn sides(rows: &[Row]) -> (Verdict, String) {
     ask(rows, sweeps::SIDE, |scene| {
         let one = curve(rows, sweeps::SIDE, scene, ONE, Row::mean);
         let two = curve(rows, sweeps::SIDE, scene, TWO, Row::mean);
@@ -142,7 +160,7 @@ fn sides(rows: &[Row]) -> (Option<bool>, String) {
     })
 }
 
-fn spikes(rows: &[Row]) -> (Option<bool>, String) {
+fn spikes(rows: &[Row]) -> (Verdict, String) {
     let jagged = |scene: &str| {
         let points = curve(rows, sweeps::SIDE, scene, TWO, Row::mean);
         jaggedness(&points.iter().map(|p| p.1).collect::<Vec<_>>())
@@ -155,7 +173,7 @@ fn spikes(rows: &[Row]) -> (Option<bool>, String) {
     })
 }
 
-fn grows(rows: &[Row]) -> (Option<bool>, String) {
+fn grows(rows: &[Row]) -> (Verdict, String) {
     ask(rows, sweeps::LIGHT, |scene| {
         let mut points = curve(rows, sweeps::LIGHT, scene, TWO, Row::mean);
         points.retain(|p| p.0 > POINT_LIGHT);
@@ -172,7 +190,7 @@ fn grows(rows: &[Row]) -> (Option<bool>, String) {
     })
 }
 
-fn under(rows: &[Row]) -> (Option<bool>, String) {
+fn under(rows: &[Row]) -> (Verdict, String) {
     ask(rows, sweeps::LATERAL, |scene| {
         let points = curve(rows, sweeps::LATERAL, scene, TWO, Row::mean);
         let least = points.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
@@ -182,7 +200,7 @@ fn under(rows: &[Row]) -> (Option<bool>, String) {
     })
 }
 
-fn towards(rows: &[Row]) -> (Option<bool>, String) {
+fn towards(rows: &[Row]) -> (Verdict, String) {
     ask(rows, sweeps::VERTICAL, |scene| {
         let points = curve(rows, sweeps::VERTICAL, scene, TWO, Row::mean);
         let (first, last) = (points.first()?, points.last()?);
@@ -198,7 +216,7 @@ fn towards(rows: &[Row]) -> (Option<bool>, String) {
     })
 }
 
-fn polygons(rows: &[Row]) -> (Option<bool>, String) {
+fn polygons(rows: &[Row]) -> (Verdict, String) {
     ask(rows, sweeps::POLYGONS, |scene| {
         let points = curve(rows, sweeps::POLYGONS, scene, TWO, Row::ms);
         let line = line(&points)?;
@@ -212,7 +230,7 @@ fn polygons(rows: &[Row]) -> (Option<bool>, String) {
     })
 }
 
-fn pixels(rows: &[Row]) -> (Option<bool>, String) {
+fn pixels(rows: &[Row]) -> (Verdict, String) {
     ask(rows, sweeps::SIDE, |scene| {
         let points = curve(rows, sweeps::SIDE, scene, TWO, Row::ms);
         let all = exponent(&points)?;
@@ -223,7 +241,7 @@ fn pixels(rows: &[Row]) -> (Option<bool>, String) {
     })
 }
 
-fn time_and_light(rows: &[Row]) -> (Option<bool>, String) {
+fn time_and_light(rows: &[Row]) -> (Verdict, String) {
     ask(rows, sweeps::LIGHT, |scene| {
         let points = curve(rows, sweeps::LIGHT, scene, TWO, Row::ms);
         let (first, last) = (points.first()?, points.last()?);
@@ -233,7 +251,7 @@ fn time_and_light(rows: &[Row]) -> (Option<bool>, String) {
     })
 }
 
-fn small_maps(rows: &[Row]) -> (Option<bool>, String) {
+fn small_maps(rows: &[Row]) -> (Verdict, String) {
     ask(rows, sweeps::LIGHT, |scene| {
         let small = curve(rows, sweeps::LIGHT, scene, "N = 64", Row::mean);
         let large = curve(rows, sweeps::LIGHT, scene, "N = 256", Row::mean);
@@ -261,14 +279,18 @@ mod tests {
         points.iter().map(one).collect()
     }
 
-    fn verdict(rows: &[Row], figure: &str, part: &str) -> Option<bool> {
+    fn verdict(rows: &[Row], figure: &str, part: &str) -> Verdict {
         let all = findings(rows);
-        all.into_iter().find(|f| f.figure == figure && f.claim.contains(part)).unwrap().holds
+        all.into_iter().find(|f| f.figure == figure && f.claim.contains(part)).unwrap().verdict
     }
 
     #[test]
     fn nothing_measured_is_no_verdict() {
-        assert!(findings(&[]).iter().all(|f| f.holds.is_none() && f.sentence == "not measured"));
+        assert!(
+            findings(&[])
+                .iter()
+                .all(|f| f.verdict == Verdict::Unmeasured && f.sentence == "not measured")
+        );
     }
 
     #[test]
@@ -278,14 +300,14 @@ mod tests {
         let falling: Vec<_> = (0..19).map(|i| (n(i), 4.0 / n(i))).collect();
         assert_eq!(
             verdict(&swept(sweeps::SIDE, "bunny", TWO, &flat), "Fig. 17", "200"),
-            Some(true)
+            Verdict::Holds
         );
         let rows = swept(sweeps::SIDE, "bunny", TWO, &falling);
-        assert_eq!(verdict(&rows, "Fig. 17", "200"), Some(false));
-        // One object that differs is enough, and is named.
+        assert_eq!(verdict(&rows, "Fig. 17", "200"), Verdict::Refuted);
+        // The object that differs is named.
         let both = [swept(sweeps::SIDE, "card", TWO, &flat), rows].concat();
         let told = &findings(&both)[0];
-        assert_eq!(told.holds, Some(false));
+        assert_eq!(told.verdict, Verdict::InPart);
         assert!(told.sentence.contains("(no)"), "{}", told.sentence);
     }
 
@@ -296,25 +318,28 @@ mod tests {
             let one = swept(sweeps::SIDE, scene, ONE, &points(one));
             [one, swept(sweeps::SIDE, scene, TWO, &points(two))].concat()
         };
-        assert_eq!(verdict(&pair("bunny", 0.03, 0.02), "Fig. 17", "Two"), Some(true));
-        assert_eq!(verdict(&pair("bunny", 0.02, 0.03), "Fig. 17", "Two"), Some(false));
-        assert_eq!(verdict(&pair("card", 0.02, 0.02), "Fig. 17", "Two"), Some(true));
-        assert_eq!(verdict(&pair("card", 0.03, 0.02), "Fig. 17", "Two"), Some(false));
+        assert_eq!(verdict(&pair("bunny", 0.03, 0.02), "Fig. 17", "Two"), Verdict::Holds);
+        assert_eq!(verdict(&pair("bunny", 0.02, 0.03), "Fig. 17", "Two"), Verdict::Refuted);
+        assert_eq!(verdict(&pair("card", 0.02, 0.02), "Fig. 17", "Two"), Verdict::Holds);
+        assert_eq!(verdict(&pair("card", 0.03, 0.02), "Fig. 17", "Two"), Verdict::Refuted);
     }
 
     #[test]
     fn growth_least_and_lines_are_seen() {
         let light = [(0.01, 0.09), (0.1, 0.01), (0.4, 0.02), (1.0, 0.03)];
-        assert_eq!(verdict(&swept(sweeps::LIGHT, "bunny", TWO, &light), "Fig. 18", ""), Some(true));
+        assert_eq!(
+            verdict(&swept(sweeps::LIGHT, "bunny", TWO, &light), "Fig. 18", ""),
+            Verdict::Holds
+        );
         let lateral = [(-1.0, 0.03), (0.0, 0.01), (1.0, 0.02)];
         let rows = swept(sweeps::LATERAL, "bunny", TWO, &lateral);
-        assert_eq!(verdict(&rows, "Fig. 19", ""), Some(true));
+        assert_eq!(verdict(&rows, "Fig. 19", ""), Verdict::Holds);
         let edge = [(-1.0, 0.01), (0.0, 0.02), (1.0, 0.03)];
         let rows = swept(sweeps::LATERAL, "bunny", TWO, &edge);
-        assert_eq!(verdict(&rows, "Fig. 19", ""), Some(false));
+        assert_eq!(verdict(&rows, "Fig. 19", ""), Verdict::Refuted);
         // `row` gives a time of x ms: a straight line.
         let triangles = [(1e3, 0.0), (1e4, 0.0), (1e5, 0.0)];
         let rows = swept(sweeps::POLYGONS, "sphere", TWO, &triangles);
-        assert_eq!(verdict(&rows, "Fig. 21", ""), Some(true));
+        assert_eq!(verdict(&rows, "Fig. 21", ""), Verdict::Holds);
     }
 }

@@ -25,6 +25,9 @@ const TRACER_SEED: u64 = 2;
 /// Fewest frames that quartiles are told of.
 const FEWEST_FRAMES: usize = 3;
 
+/// Groups of fewer rows than this take as many frames as if they had that many.
+const SMALL_GROUP: usize = 8;
+
 /// What is measured with, and where pictures and truths are kept.
 pub struct Bench<'a> {
     /// The device.
@@ -153,8 +156,10 @@ impl Bench<'_> {
         mut run: impl FnMut(&mut Candidate) -> Result<(), Problem>,
     ) {
         let share = Duration::from_secs(if self.scale.quick { 1 } else { 12 });
-        for round in 0..self.scale.rounds {
-            tell(&format!("round {} of {}", round + 1, self.scale.rounds));
+        // Small groups, whose times are compared with those of others, take more frames.
+        let rounds = self.scale.rounds * (SMALL_GROUP / candidates.len().max(1)).max(1);
+        for round in 0..rounds {
+            tell(&format!("round {} of {rounds}", round + 1));
             for candidate in candidates.iter_mut() {
                 let spent: Duration = candidate.frames.iter().map(|f| f.frame).sum();
                 let enough = candidate.frames.len() >= FEWEST_FRAMES && spent > share;
@@ -207,9 +212,7 @@ impl Candidate<'_> {
         r: &[Receiver],
     ) -> Result<(), Problem> {
         let times = match &mut self.state {
-            Ok(Some(Runner::Node { stage, plan })) => {
-                stage.run(plan).map_err(|e| e.to_string())?
-            }
+            Ok(Some(Runner::Node { stage, plan })) => stage.run(plan).map_err(|e| e.to_string())?,
             Ok(Some(Runner::Rays { sampling })) => {
                 let started = Instant::now();
                 let traced =

@@ -48,7 +48,7 @@ fn group(scale: &Scale, study: &'static str, model: &'static str, light: f64) ->
         study,
         scene: model.into(),
         light: format!("{light} m"),
-        stage: Stage::Moved { model, light, by: DVec3::ZERO, half: 2.2, window: true },
+        stage: Stage::Moved { model, light, by: DVec3::ZERO, half: 2.6, reach: 0.0 },
         extent: [scale.grid; 2],
         against: if model == "card" { Against::Card } else { Against::Traced },
         at: None,
@@ -96,11 +96,7 @@ pub fn wrong(scale: &Scale) -> Group {
 
 fn side(scale: &Scale, model: &'static str) -> Group {
     // Sides that are no powers of two, as in the paper: the aligned card's spikes lie between.
-    let every = match (scale.quick, model) {
-        (true, "card") => 20,
-        (true, _) => 72,
-        (false, _) => 12,
-    };
+    let every = if scale.quick { 24 } else { 12 };
     let sides = (40..=400).step_by(every);
     let entries = sides.flat_map(|n: u32| {
         SIDES.iter().map(move |(name, words)| entry(name, format!("{words} map={n}"), f64::from(n)))
@@ -132,16 +128,18 @@ fn moved(scale: &Scale, model: &'static str) -> Vec<Group> {
     }
     let count = if scale.quick { 4 } else { 12 };
     let mut groups = Vec::new();
-    let mut push = |study, by: DVec3, at| {
-        let stage = Stage::Moved { model, light: 0.4, by, half: 3.8, window: false };
+    let mut push = |study, by: DVec3, reach, at| {
+        let stage = Stage::Moved { model, light: 0.4, by, half: 3.8, reach };
         let entries = both_sides(at);
         groups.push(Group { stage, at: Some(at), entries, ..group(scale, study, model, 0.4) });
     };
-    steps(-1.2, 1.2, count).for_each(|x| push(LATERAL, DVec3::X * x, x));
+    // One window for all places, as of a camera that stays.
+    const ASIDE: f64 = 1.2;
+    steps(-ASIDE, ASIDE, count).for_each(|x| push(LATERAL, DVec3::X * x, ASIDE, x));
     // From next to the ground to next to the light, which the object's half height limits.
     let low = if model == "card" { 0.05 } else { 0.5 };
     for y in steps(low, 4.0 - low, count) {
-        push(VERTICAL, DVec3::Y * (y - OBJECT_HEIGHT), y);
+        push(VERTICAL, DVec3::Y * (y - OBJECT_HEIGHT), 0.0, y);
     }
     groups
 }

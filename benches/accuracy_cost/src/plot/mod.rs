@@ -134,8 +134,8 @@ impl Chart {
              class=\"t\">{0}</text>\n",
             escape(&self.title)
         );
-        self.draw_axes(&mut out);
         self.draw_front(&mut out);
+        self.draw_axes(&mut out);
         self.series.iter().for_each(|series| self.draw_curve(&mut out, series));
         if self.legend {
             self.draw_legend(&mut out);

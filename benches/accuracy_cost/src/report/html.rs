@@ -16,12 +16,13 @@ th, td { border: 1px solid #ddd; padding: .2em .55em; text-align: left; vertical
 th { background: #f4f4f4; } .n td { font-variant-numeric: tabular-nums; white-space: nowrap; }
 i { color: #999; } .wide { overflow-x: auto; }
 .strip th, .strip td { border: 0; padding: .15em .3em; text-align: center; background: none; }
-.strip img { width: 210px; display: inline-block; margin-bottom: 2px; }
-.strip .scene { text-align: right; vertical-align: middle; }
+.strip img { width: 142px; display: inline-block; }
+.strip th:first-child { text-align: right; vertical-align: middle; max-width: 8em; }
+.strip td { line-height: 1.1; padding: 1px 2px; }
 .charts { display: flex; flex-wrap: wrap; gap: .4em 1em; }
 .legend span { white-space: nowrap; margin-right: 1.2em; } .legend svg { vertical-align: -3px; }
 .yes { color: #00724f; } .no { color: #b03a00; } .open { color: #666; }
-.yes, .no, .open { font-weight: 600; }
+.part { color: #7a5c00; } .yes, .part, .no, .open { font-weight: 600; }
 svg text { fill: #333; } svg .t { font-weight: 600; font-size: 12.5px; }
 svg .m { text-anchor: middle; } svg .e { text-anchor: end; }
 svg .g { stroke: #e6e6e6; } svg .a { stroke: #666; }

@@ -20,50 +20,48 @@ fn shown<'a>(report: &'a Report, scene: &str) -> Vec<&'a Row> {
     CURVES.iter().filter_map(of).collect()
 }
 
-/// The strip as a table.
+/// The strip as a table: a column a scene, and for each technique its pictures over their errors, so
+/// that one look along a row judges a technique and one down a column a scene.
 pub fn strip(report: &Report) -> String {
     let pictures = Pictures::new(report.cache);
-    let scenes = once(report.study(MATRIX).map(|r| r.scene.as_str()));
-    let strips: Vec<_> = scenes.iter().map(|s| (*s, shown(report, s))).collect();
-    let labels = once(strips.iter().flat_map(|s| &s.1).map(|r| r.curve.as_str()));
-    let settings = |label: &str| {
-        let row = strips.iter().flat_map(|s| &s.1).find(|r| r.curve == label);
-        row.map_or("", |r| r.settings.as_str())
-    };
-    let mut out =
-        String::from("<div class=\"wide\"><table class=\"strip\"><tr><th></th><th>truth</th>");
-    for label in &labels {
-        let words = escape(settings(label));
-        out.push_str(&format!("<th>{}<br><small>{words}</small></th>", escape(label)));
-    }
-    out.push_str("</tr>\n");
     let image = |scene: &str, name: &str| {
         let alt = escape(&format!("{scene}, {name}"));
-        let url = pictures.url(scene, name);
-        url.map_or_else(String::new, |url| format!("<img src=\"{url}\" alt=\"{alt}\">"))
+        Some(format!("<img src=\"{}\" alt=\"{alt}\">", pictures.url(scene, name)?))
     };
-    for (scene, rows) in &strips {
-        let truth = image(scene, picture::TRUTH);
-        if truth.is_empty() {
-            continue;
-        }
-        out.push_str(&format!("<tr><th class=\"scene\">{}</th><td>{truth}</td>", escape(scene)));
-        for label in &labels {
-            let Some(row) = rows.iter().find(|r| r.curve == *label) else {
-                out.push_str("<td></td>");
+    let scenes = once(report.study(MATRIX).map(|r| r.scene.as_str()));
+    let strips: Vec<(&str, String, Vec<&Row>)> = scenes
+        .into_iter()
+        .filter_map(|s| Some((s, image(s, picture::TRUTH)?, shown(report, s))))
+        .collect();
+    let mut out = String::from("<div class=\"wide\"><table class=\"strip\">\n<tr><th></th>");
+    for (scene, ..) in &strips {
+        out += &format!("<th>{}</th>", escape(scene));
+    }
+    out += "</tr>\n<tr><th>truth</th>";
+    for (_, truth, _) in &strips {
+        out += &format!("<td>{truth}</td>");
+    }
+    out += "</tr>\n";
+    let rows: Vec<&Row> = strips.iter().flat_map(|s| s.2.iter().copied()).collect();
+    for label in once(rows.iter().map(|r| r.curve.as_str())) {
+        let settings = rows.iter().find(|r| r.curve == label).map_or("", |r| &r.settings);
+        out += &format!("<tr><th>{}<br><small>{}</small></th>", escape(label), escape(settings));
+        for (scene, _, shown) in &strips {
+            let Some(row) = shown.iter().find(|r| r.curve == label) else {
+                out += "<td></td>";
                 continue;
             };
-            out.push_str(&format!(
+            out += &format!(
                 "<td>{}<br>{}<br><small>{:.1} %, {} ms</small></td>",
-                image(scene, label),
-                image(scene, &picture::error_of(label)),
+                image(scene, label).unwrap_or_default(),
+                image(scene, &picture::error_of(label)).unwrap_or_default(),
                 100.0 * row.mean().unwrap_or_default(),
                 ms(row.ms().unwrap_or_default())
-            ));
+            );
         }
-        out.push_str("</tr>\n");
+        out += "</tr>\n";
     }
-    out.push_str("</table></div>\n");
+    out += "</table></div>\n";
     out + &scale()
 }
 

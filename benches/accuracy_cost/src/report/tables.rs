@@ -2,7 +2,7 @@
 
 use super::headline::{self, GOALS};
 use super::{Report, ms};
-use crate::findings::findings;
+use crate::findings::{Verdict, findings};
 use crate::groups::MATRIX;
 use crate::plot::escape;
 use crate::store::{Outcome, Row};
@@ -84,10 +84,11 @@ pub fn findings_of(report: &Report, figure: &str) -> String {
     let all = findings(report.rows);
     let mut out = String::new();
     for finding in all.iter().filter(|f| f.figure == figure) {
-        let (class, verdict) = match finding.holds {
-            Some(true) => ("yes", "holds"),
-            Some(false) => ("no", "does not hold"),
-            None => ("open", "not measured"),
+        let (class, verdict) = match finding.verdict {
+            Verdict::Holds => ("yes", "holds"),
+            Verdict::InPart => ("part", "holds in part"),
+            Verdict::Refuted => ("no", "does not hold"),
+            Verdict::Unmeasured => ("open", "not measured"),
         };
         out += &format!(
             "<p><b>{}</b> <span class=\"{class}\">{verdict}</span>: {}.</p>\n",
