@@ -41,9 +41,9 @@ mod tests {
 
     #[test]
     fn hills_face_up_and_are_the_same_each_time() {
-        let mesh = hills(8.0, 24);
-        assert_eq!(mesh.positions, hills(8.0, 24).positions);
-        assert_eq!(mesh.indices.len(), 24 * 24 * 6);
+        let mesh = hills(8.0, 96);
+        assert_eq!(mesh.positions, hills(8.0, 96).positions);
+        assert_eq!(mesh.indices.len(), 96 * 96 * 6);
         let corner = |i: u32| DVec3::from_array(mesh.positions[i as usize].map(f64::from));
         for triangle in mesh.indices.chunks_exact(3) {
             let [a, b, c] = [0, 1, 2].map(|k| corner(triangle[k]));

@@ -21,11 +21,12 @@ pub struct Options {
     /// Measure only groups whose name holds this, such as "bunny" or "light size"
     #[arg(long, value_name = "TEXT")]
     pub only: Option<String>,
-    /// Measure nothing: make the report of what is there
+    /// Measure nothing: make the report anew of what was measured, by whatever commit
     #[arg(long)]
     pub report: bool,
-    /// Copy the headline table and the command that made it into docs/accuracy.md
-    #[arg(long)]
+    /// Measure nothing: copy the headline table of --out, with the command that made it, into
+    /// docs/accuracy.md
+    #[arg(long, conflicts_with = "report")]
     pub write_docs: bool,
     /// What cargo itself passes
     #[arg(long, hide = true)]

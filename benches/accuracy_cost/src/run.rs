@@ -22,6 +22,21 @@ const QUICK_BUDGET_S: f64 = 270.0;
 /// # Errors
 /// A sentence for what stops the run: no device, a folder that cannot be read or written.
 pub fn run(options: &Options) -> Result<bool, Problem> {
+    if options.write_docs {
+        let page = Options::root().join("docs/accuracy.md");
+        report::docs::copy(&options.out.join("headline.md"), &page)?;
+        println!("{}", page.display());
+        return Ok(true);
+    }
+    let measured = options.out.join("measured.jsonl");
+    if options.report {
+        let (header, rows) = Store::read(&measured)?;
+        let cache = kept(&options.out, &header)?;
+        return finish(
+            &Report { header: &header, rows: &rows, left_out: &[], cache: &cache },
+            options,
+        );
+    }
     let scale = if options.quick { QUICK } else { FULL };
     let own = options.scenes.as_deref().map(scenes::own).transpose()?.unwrap_or_default();
     let device = HeadlessDevice::new(&HeadlessOptions::default()).map_err(|e| e.to_string())?;
@@ -35,41 +50,34 @@ pub fn run(options: &Options) -> Result<bool, Problem> {
         scenes: own.iter().map(told).collect(),
     };
     let cache = kept(&options.out, &header)?;
-    let mut store = Store::open(&options.out.join("measured.jsonl"), &header)?;
+    let mut store = Store::open(&measured, &header)?;
     let mut groups = groups::all(&scale, &own);
     if let Some(text) = &options.only {
         groups.retain(|g| g.key().contains(text.as_str()));
     }
-    let mut left_out = Vec::new();
+    let [width, height] = scale.view;
+    println!("{}: {width}×{height} pixels, commit {}", header.driver, header.commit);
     let started = Instant::now();
-    if !options.report {
-        println!(
-            "{}: {}×{} pixels, commit {}",
-            header.driver, scale.view[0], scale.view[1], header.commit
-        );
-        let bench = Bench { device: &device, scale, cache: &cache };
-        left_out = measure(&bench, &groups, &mut store)?;
-    }
+    let left_out = measure(&Bench { device: &device, scale, cache: &cache }, &groups, &mut store)?;
     let keys: Vec<String> = groups.iter().map(Group::key).collect();
     let rows = store.rows(keys.iter().map(String::as_str));
-    let failures: Vec<&Row> =
-        rows.iter().filter(|r| matches!(r.outcome, Outcome::Failed(_))).collect();
-    let report = Report { header: &header, rows: &rows, left_out: &left_out, cache: &cache };
-    report::write(&report, &options.out)?;
-    if options.write_docs {
-        report::docs::write(&report, &Options::root().join("docs/accuracy.md"))?;
-    }
     println!("{} rows in {}", rows.len(), duration(started.elapsed().as_secs_f64()));
+    finish(&Report { header: &header, rows: &rows, left_out: &left_out, cache: &cache }, options)
+}
+
+/// Writes the report and tells where it is and what failed; whether nothing did.
+fn finish(report: &Report, options: &Options) -> Result<bool, Problem> {
+    report::write(report, &options.out)?;
     println!("Look at {}", options.out.join("index.html").display());
-    for row in &failures {
+    let mut good = true;
+    for row in report.rows {
         if let Outcome::Failed(why) = &row.outcome {
-            println!(
-                "failed: {}, {} light, {} {}: {why}",
-                row.scene, row.light, row.technique, row.settings
-            );
+            let Row { scene, light, technique, settings, .. } = row;
+            println!("failed: {scene}, {light} light, {technique} {settings}: {why}");
+            good = false;
         }
     }
-    Ok(failures.is_empty())
+    Ok(good)
 }
 
 /// Measures every group that is not there, and names those that the quick run has no time for.
@@ -77,9 +85,8 @@ fn measure(bench: &Bench, groups: &[Group], store: &mut Store) -> Result<Vec<Str
     let scale = &bench.scale;
     let missing: Vec<&Group> = groups.iter().filter(|g| !store.has(&g.key())).collect();
     let mut estimate = Estimate::default();
-    estimate.learn(
-        &store.rows(groups.iter().map(Group::key).collect::<Vec<_>>().iter().map(String::as_str)),
-    );
+    let keys: Vec<String> = groups.iter().map(Group::key).collect();
+    estimate.learn(&store.rows(keys.iter().map(String::as_str)));
     if missing.len() < groups.len() {
         println!(
             "{} of {} groups are there from before",

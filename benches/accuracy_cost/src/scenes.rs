@@ -5,6 +5,7 @@ use crate::hills::hills;
 use antumbra::RectangleLight;
 use antumbra::scene::generate::{self, GROUND_SIDE};
 use antumbra::scene::{Role, Scene, from_gltf};
+use glam::DMat4;
 use std::path::{Path, PathBuf};
 
 /// The three lights of the made scenes: names and sides in metres, over objects 1 m across whose top
@@ -93,7 +94,13 @@ impl SceneSpec {
     pub fn load(&self, light: &str) -> Result<Scene, Problem> {
         let index = LIGHTS.iter().position(|l| l.0 == light).unwrap_or(1);
         match &self.source {
-            Source::Made(name) => made(name, square(LIGHTS[index].1)?),
+            Source::Made(name) => {
+                let mut scene = made(name, square(LIGHTS[index].1)?)?;
+                if *name == "card" {
+                    turn(&mut scene);
+                }
+                Ok(scene)
+            }
             Source::Committed(name) => {
                 let mut scene = committed(name)?;
                 let light = scene.lights.first_mut().ok_or("the file has no light")?;
@@ -112,6 +119,16 @@ impl SceneSpec {
                 Ok(scene)
             }
         }
+    }
+}
+
+/// Turns what blocks light by 20° about the middle. The node fits its map to what blocks, so that a
+/// lone aligned card has its edges on texel borders and no error at all, which says nothing of a
+/// card in a scene of many.
+fn turn(scene: &mut Scene) {
+    for instance in scene.instances.iter_mut().filter(|i| i.role.blocks()) {
+        let turn = DMat4::from_rotation_y(20f64.to_radians());
+        instance.world_from_mesh = turn * instance.world_from_mesh;
     }
 }
 
@@ -197,7 +214,9 @@ mod tests {
         let light = scene.light(None).unwrap().light;
         let twice = scaled(&light, 2.0).unwrap();
         assert!((twice.emission() - light.emission()).length() < 1e-12);
-        assert_eq!(twice.half_extents(), light.half_extents().map(|h| 2.0 * h));
+        for (twice, once) in twice.half_extents().iter().zip(light.half_extents()) {
+            assert!((twice - 2.0 * once).abs() < 1e-12);
+        }
         assert!(
             (twice.world_from_light().x_axis - light.world_from_light().x_axis).length() < 1e-12
         );

@@ -190,6 +190,30 @@ impl Store {
         Ok(store)
     }
 
+    /// The run that a file is of, and its whole groups' rows in the order they were measured.
+    ///
+    /// # Errors
+    /// A sentence where the file cannot be read or holds no run.
+    pub fn read(path: &Path) -> Result<(Header, Vec<Row>), Problem> {
+        let text = std::fs::read(path).map_err(|e| format!("{}: {e}", path.display()))?;
+        let mut header = None;
+        let mut groups: Vec<String> = Vec::new();
+        let mut rows: BTreeMap<String, Vec<Row>> = BTreeMap::new();
+        for line in read(&text).0 {
+            match line {
+                Line::Run(h) => header = Some(h),
+                Line::Row { group, row } => rows.entry(group).or_default().push(*row),
+                Line::Whole { group, rows: count, .. } => {
+                    let all = rows.entry(group.clone()).or_default();
+                    all.drain(..all.len().saturating_sub(count));
+                    groups.push(group);
+                }
+            }
+        }
+        let header = header.ok_or_else(|| format!("{}: no run is in it", path.display()))?;
+        Ok((header, groups.iter().filter_map(|g| rows.remove(g)).flatten().collect()))
+    }
+
     fn take(&mut self, line: Line) {
         match line {
             Line::Run(_) => {}
@@ -312,6 +336,10 @@ pub(crate) mod tests {
             store.rows(["b", "a"].into_iter()).into_iter().map(|r| r.curve).collect();
         // The row that was written before the kill is no row of the group's second telling.
         assert_eq!(curves, ["two", "one", "one"]);
+        drop(store);
+        let (of, rows) = Store::read(&path).unwrap();
+        assert_eq!((of, rows.len()), (header, 3));
+        assert!(Store::read(Path::new("/nowhere")).unwrap_err().contains("/nowhere"));
     }
 
     #[test]

@@ -63,9 +63,9 @@ fn steps(from: f64, to: f64, count: u32) -> impl Iterator<Item = f64> {
     (0..=count).map(move |i| (at(i) * 1000.0).round() / 1000.0)
 }
 
-/// Both sides at N = 128, as the paper's Figs. 18 to 20 have it.
-fn both_sides(x: f64) -> Vec<Entry> {
-    SIDES.iter().map(|(name, sides)| entry(name, format!("{sides} map=128"), x)).collect()
+/// One and two sides; N = 128 is what the paper's Figs. 18 to 20 have.
+fn both_sides(map: u32, x: f64) -> Vec<Entry> {
+    SIDES.iter().map(|(name, sides)| entry(name, format!("{sides} map={map}"), x)).collect()
 }
 
 /// Every sweep, in the report's order.
@@ -95,8 +95,9 @@ pub fn wrong(scale: &Scale) -> Group {
 }
 
 fn side(scale: &Scale, model: &'static str) -> Group {
-    // Sides that are no powers of two, as in the paper: the aligned card's spikes lie between.
-    let every = if scale.quick { 24 } else { 12 };
+    // Sides that are no powers of two, as in the paper, and whose step is not near a whole number of
+    // the texels that the card covers (0.673 N): its spikes would else be a slow wave.
+    let every = if scale.quick { 20 } else { 10 };
     let sides = (40..=400).step_by(every);
     let entries = sides.flat_map(|n: u32| {
         SIDES.iter().map(move |(name, words)| entry(name, format!("{words} map={n}"), f64::from(n)))
@@ -112,7 +113,7 @@ fn light(scale: &Scale, model: &'static str) -> Vec<Group> {
         &[0.01, 0.05, 0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 1.3, 1.6, 2.0]
     };
     let group = |&light: &f64| {
-        let mut entries = both_sides(light);
+        let mut entries = both_sides(128, light);
         for n in [64, 256] {
             entries.push(entry(&format!("N = {n}"), format!("sides=two map={n}"), light));
         }
@@ -128,18 +129,20 @@ fn moved(scale: &Scale, model: &'static str) -> Vec<Group> {
     }
     let count = if scale.quick { 4 } else { 12 };
     let mut groups = Vec::new();
-    let mut push = |study, by: DVec3, reach, at| {
+    let mut push = |study, by: DVec3, reach, entries, at| {
         let stage = Stage::Moved { model, light: 0.4, by, half: 3.8, reach };
-        let entries = both_sides(at);
         groups.push(Group { stage, at: Some(at), entries, ..group(scale, study, model, 0.4) });
     };
-    // One window for all places, as of a camera that stays.
+    // One window for all places, as of a camera that stays; it is 2.6 times as wide as the others',
+    // and so is the map in texels, which keeps a texel's size what it is elsewhere.
     const ASIDE: f64 = 1.2;
-    steps(-ASIDE, ASIDE, count).for_each(|x| push(LATERAL, DVec3::X * x, ASIDE, x));
+    for x in steps(-ASIDE, ASIDE, count) {
+        push(LATERAL, DVec3::X * x, ASIDE, both_sides(336, x), x);
+    }
     // From next to the ground to next to the light, which the object's half height limits.
     let low = if model == "card" { 0.05 } else { 0.5 };
     for y in steps(low, 4.0 - low, count) {
-        push(VERTICAL, DVec3::Y * (y - OBJECT_HEIGHT), 0.0, y);
+        push(VERTICAL, DVec3::Y * (y - OBJECT_HEIGHT), 0.0, both_sides(128, y), y);
     }
     groups
 }

@@ -79,7 +79,10 @@ pub fn truth(
     match against {
         Against::Card => {
             let card = card_corners(scene)?;
-            let seen = |r: &Receiver| visible_fraction_of_quad(&light, card, r.position) as f32;
+            let seen = |r: &Receiver| match r.normal == DVec3::ZERO {
+                true => 1.0,
+                false => visible_fraction_of_quad(&light, card, r.position) as f32,
+            };
             let visible = receivers.par_iter().map(seen).collect();
             Ok(Truth { visible, noise: 0.0 })
         }

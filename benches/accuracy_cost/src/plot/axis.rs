@@ -26,8 +26,8 @@ impl Axis {
     /// A logarithmic axis around the values above 0, with a little room at both ends.
     pub fn log(label: &str, values: impl IntoIterator<Item = f64>) -> Self {
         let [low, high] = range(values.into_iter().filter(|v| *v > 0.0)).unwrap_or([0.1, 10.0]);
-        // At least half a decade: less would blow noise up to a slope.
-        let grow = (3.2 / (high / low)).sqrt().max(1.25);
+        // Most of a decade at least: less would blow noise up to a slope.
+        let grow = (6.0 / (high / low)).sqrt().max(1.25);
         Self { label: label.into(), log: true, from: low / grow, to: high * grow }
     }
 
@@ -118,7 +118,7 @@ mod tests {
 
     #[test]
     fn a_linear_axis_begins_at_0_and_tells_round_numbers() {
-        assert_eq!(labels(&Axis::linear("m", [0.3, 1.9])), ["0.0", "0.5", "1.0", "1.5", "2.0"]);
+        assert_eq!(labels(&Axis::linear("m", [0.3, 1.96])), ["0.0", "0.5", "1.0", "1.5", "2.0"]);
         assert_eq!(labels(&Axis::linear("m", [-1.2, 1.2])), ["-1.0", "-0.5", "0.0", "0.5", "1.0"]);
         assert_eq!(labels(&Axis::linear("n", [0.0, 98_000.0]))[1], "20k");
         assert!(!labels(&Axis::linear("none", [])).is_empty());

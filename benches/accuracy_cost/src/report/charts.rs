@@ -11,6 +11,8 @@ use crate::sweeps;
 use crate::techniques::CURVES;
 
 const MS: &str = "time of a frame, ms";
+/// Errors below this, in percent, are drawn here: nobody sees them, and they would squeeze the rest.
+const LEAST_SHOWN: f64 = 0.1;
 const ERROR: &str = "mean |error|, % of the light";
 
 /// Dash and mark of a technique's first, second … curve.
@@ -82,12 +84,13 @@ fn series<'a>(
 pub fn matrix(report: &Report) -> Vec<(String, Vec<String>)> {
     let measured: Vec<&Row> = report.study(MATRIX).filter(|r| r.mean().is_some()).collect();
     let x = Axis::log(MS, measured.iter().filter_map(|r| r.ms()));
-    let y = Axis::log(ERROR, measured.iter().filter_map(|r| Some(100.0 * r.mean()?)));
+    let error = |r: &Row| Some((100.0 * r.mean()?).max(LEAST_SHOWN));
+    let y = Axis::log(ERROR, measured.iter().filter_map(|r| error(r)));
     let mut scenes: Vec<(String, Vec<String>)> = Vec::new();
     for (scene, light) in views(report) {
         let rows: Vec<&Row> =
             measured.iter().copied().filter(|r| r.scene == scene && r.light == light).collect();
-        let mut series = series(&rows, |r| Some((r.ms()?, 100.0 * r.mean()?)), true);
+        let mut series = series(&rows, |r| Some((r.ms()?, error(r)?)), true);
         let all: Vec<(usize, usize)> = series
             .iter()
             .enumerate()

@@ -1,6 +1,5 @@
 //! The headline table in the documentation, between two marks.
 
-use super::{Report, headline};
 use crate::Problem;
 use std::path::Path;
 
@@ -32,18 +31,20 @@ pub fn with_table(page: &str, table: &str) -> Result<String, Problem> {
     }
 }
 
-/// Writes the table into the page.
+/// Copies a report's headline table into the page.
 ///
 /// # Errors
-/// A sentence with the page's name where it cannot be read or written, or its marks are wrong.
-pub fn write(report: &Report, path: &Path) -> Result<(), Problem> {
+/// A sentence with the name of the file that cannot be read or written, or whose marks are wrong.
+pub fn copy(table: &Path, path: &Path) -> Result<(), Problem> {
     let told = |e: &dyn std::fmt::Display| format!("{}: {e}", path.display());
+    let table = std::fs::read_to_string(table)
+        .map_err(|e| format!("{}: {e}; run the bench first", table.display()))?;
     let page = match std::fs::read_to_string(path) {
         Ok(page) => page,
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => String::new(),
         Err(e) => return Err(told(&e)),
     };
-    let page = with_table(&page, &headline::markdown(report)).map_err(|e| told(&e))?;
+    let page = with_table(&page, &table).map_err(|e| told(&e))?;
     std::fs::write(path, page).map_err(|e| told(&e))
 }
 
