@@ -1,6 +1,7 @@
 # make demo    real models with soft shadows, in out/
 # make test    every test, on each driver
-# make bench   what accuracy costs, in out/bench/
+# make bench   what accuracy costs in time, in out/accuracy_cost/, and what soft shadow maps do, in
+#              out/bench/ (make bench QUICK=1 in under five minutes, the report alone)
 #
 # ANTUMBRA_DRIVER=<part of a device name> picks the device for all of them.
 
@@ -22,10 +23,14 @@ demo:
 	@echo "Look at out/bunny/shaded.png and out/suzanne/shaded.png; visibility.png beside them is"
 	@echo "how much of the light each pixel sees, and report.json what each pass cost."
 
+# Stopped and started again, the report goes on where it was.
 bench:
-	@tests/drivers.sh demo
+	@tests/drivers.sh bench
+	$(CARGO) bench --bench accuracy_cost -- $(if $(QUICK),--quick)
+ifndef QUICK
 	@benches/fetch_dragon.sh || echo "without the dragon: it could not be fetched"
 	$(CARGO) bench --bench soft_shadow_map -- --out out/bench
+endif
 
 # ---------------------------------------------------------------------------------------------
 
@@ -34,8 +39,9 @@ NO_DEVICE := docs freshness naga_translation reflection rows
 DEVICE := $(filter-out $(NO_DEVICE),$(basename $(notdir $(wildcard tests/*.rs))))
 # Always the whole workspace: cargo builds the dependencies anew where only one package is asked for.
 test_once := $(CARGO) test --workspace --lib $(NO_DEVICE:%=--test %)
-# The embed example's own tests are what the node says to an engine that gets something wrong.
-test_on_device := $(CARGO) test --workspace $(DEVICE:%=--test %) --example embed
+# The embed example's own tests are what the node says to an engine that gets something wrong;
+# wrong_light is the benchmark's, that its report sees what is wrong.
+test_on_device := $(CARGO) test --workspace $(DEVICE:%=--test %) --test wrong_light --example embed
 
 # Beside the installed drivers; a device must still be chosen by its name.
 SWIFTSHADER := VK_ADD_DRIVER_FILES=$(CURDIR)/.drivers/vk_swiftshader_icd.json

@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
-# Installs what is missing for `make demo` (a Vulkan loader and driver) or `make test` (also the
-# validation layer, a C++ compiler for the GLSL compiler, and SwiftShader as a second driver).
-#   usage: tests/drivers.sh demo|test
+# Installs what is missing for `make demo` (a Vulkan loader and driver), `make bench` (also a C++
+# compiler, for FLIP) or `make test` (also the validation layer, a C++ compiler for the GLSL compiler,
+# and SwiftShader as a second driver).
+#   usage: tests/drivers.sh demo|bench|test
 # As root it uses apt; otherwise it prints the one line to run and stops. Nothing is updated or
 # downloaded where nothing is missing. SwiftShader goes to .drivers/ and is never installed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-goal=${1:?usage: tests/drivers.sh demo|test}
+goal=${1:?usage: tests/drivers.sh demo|bench|test}
 user_data=${XDG_DATA_HOME:-${HOME:-}/.local/share}
 
 # have_driver NAME: whether a driver whose description's file name starts so is where the loader looks.
@@ -36,10 +37,11 @@ have_loader || missing+=(libvulkan1)
 command -v cc >/dev/null || missing+=(gcc libc6-dev)
 command -v make >/dev/null || missing+=(make)
 case $goal in
-demo)
+demo | bench)
     # Any driver will do, also one that the environment names.
     [ -n "${VK_DRIVER_FILES:-}${VK_ICD_FILENAMES:-}${VK_ADD_DRIVER_FILES:-}" ] || have_driver '' ||
         missing+=(mesa-vulkan-drivers)
+    [ "$goal" = demo ] || command -v c++ >/dev/null || missing+=(g++)
     ;;
 test)
     have_driver lvp_icd || missing+=(mesa-vulkan-drivers)
@@ -47,7 +49,7 @@ test)
     command -v c++ >/dev/null || missing+=(g++)
     ;;
 *)
-    echo "tests/drivers.sh: $goal is neither demo nor test" >&2
+    echo "tests/drivers.sh: $goal is neither demo, bench nor test" >&2
     exit 2
     ;;
 esac

@@ -33,7 +33,8 @@ pub struct Estimate {
     pub visible: f64,
     /// Half the difference between two independent estimates, whose mean is `visible`. Its square
     /// is an unbiased estimate of the variance of `visible`, but one of a single degree of
-    /// freedom: average it over many receivers.
+    /// freedom: average it over many receivers. NaN in the penumbra of a single grid
+    /// ([`Sampling::one_grid`]), which has nothing to differ from.
     pub half_difference: f64,
 }
 
@@ -44,7 +45,7 @@ pub struct Traced {
     pub visible: Vec<f32>,
     /// The standard error of one penumbra pixel: the root of the mean square of
     /// [`Estimate::half_difference`] over the receivers for which rays were both blocked and not.
-    /// 0 where there are none.
+    /// 0 where there are none, NaN where it cannot be told ([`Sampling::one_grid`]).
     pub noise: f64,
     /// How many receivers `noise` is taken over.
     pub penumbra: usize,
@@ -113,13 +114,18 @@ impl Tracer {
         let end = 1.0 - offset / distance;
         let mut random = Stream::new(sampling.seed(), stream);
         let mut last_hit = None;
-        let [a, b] = [(); 2].map(|()| {
+        let mut grid = || {
             let seen = frame
                 .strata(sampling.side(), &mut random)
                 .filter(|&to| !self.blocked(from, (to - from) * end, &mut last_hit))
                 .count();
             seen as f64 / f64::from(sampling.side()).powi(2)
-        });
+        };
+        let a = grid();
+        if sampling.grids() == 1 {
+            return Ok(Estimate { visible: a, half_difference: f64::NAN });
+        }
+        let b = grid();
         Ok(Estimate { visible: (a + b) / 2.0, half_difference: (a - b) / 2.0 })
     }
 
@@ -148,7 +154,11 @@ impl Tracer {
         }
         Ok(Traced {
             visible: estimates.iter().map(|e| e.visible as f32).collect(),
-            noise: (squares / f64::from(penumbra.max(1))).sqrt(),
+            noise: if sampling.grids() == 1 {
+                f64::NAN
+            } else {
+                (squares / f64::from(penumbra.max(1))).sqrt()
+            },
             penumbra: penumbra as usize,
             rays: receivers.len() as u64 * sampling.rays(),
         })

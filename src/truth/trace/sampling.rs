@@ -17,6 +17,7 @@ const MAX_RAYS: u32 = 1 << 20;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampling {
     side: u32,
+    grids: u32,
     seed: u64,
     position_error: f64,
 }
@@ -37,7 +38,23 @@ impl Sampling {
         }
         let mut side = f64::from(rays.div_ceil(2)).sqrt() as u32;
         side += u32::from(2 * side * side < rays);
-        Ok(Self { side, seed, position_error: 0.0 })
+        Ok(Self { side, grids: 2, seed, position_error: 0.0 })
+    }
+
+    /// One grid of `side` × `side` strata a receiver, 1..=1024: 1, 4, 16, 64 rays are what a renderer
+    /// would send. Its noise cannot be told ([`super::Estimate::half_difference`] is NaN).
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for a side outside the range.
+    pub fn one_grid(side: u32, seed: u64) -> Result<Self, Error> {
+        let most = MAX_RAYS.isqrt();
+        if !(1..=most).contains(&side) {
+            return Err(Error::Setting {
+                key: "side".into(),
+                problem: format!("it must be from 1 to {most} (it is {side})"),
+            });
+        }
+        Ok(Self { side, grids: 1, seed, position_error: 0.0 })
     }
 
     /// Says how far, in metres, the receivers may lie off their surfaces beyond what f32
@@ -53,9 +70,13 @@ impl Sampling {
         Ok(Self { position_error: metres, ..self })
     }
 
-    /// Rays a receiver, both grids together.
+    /// Rays a receiver, all grids together.
     pub fn rays(&self) -> u64 {
-        2 * u64::from(self.side).pow(2)
+        u64::from(self.grids) * u64::from(self.side).pow(2)
+    }
+
+    pub(super) fn grids(&self) -> u32 {
+        self.grids
     }
 
     pub(super) fn side(&self) -> u32 {

@@ -195,3 +195,27 @@ fn receivers_of_one_image_have_independent_errors() {
     // 400 samples tell a standard deviation to 3.5 %, twice over here: 20 % is four of those.
     assert!((spread / traced.noise - 1.0).abs() < 0.2, "{spread} against {}", traced.noise);
 }
+
+/// One grid is as good as half of two, on other numbers, and says nothing of its noise.
+#[test]
+fn one_grid_sends_half_the_rays_and_tells_no_noise() {
+    let card =
+        [[-0.5, -0.5], [-0.5, 0.5], [0.5, 0.5], [0.5, -0.5]].map(|[x, z]| DVec3::new(x, 1.0, z));
+    let scene = scene_of(&[(card, Role::Occluder)], Some(ceiling()));
+    let tracer = Tracer::new(&scene).unwrap();
+    let receivers: Vec<_> = (0..200).map(|i| on_floor(f64::from(i) * 0.01 - 0.3, 0.2)).collect();
+    for (side, rays) in [(1, 1), (2, 4), (8, 64)] {
+        let sampling = Sampling::one_grid(side, 3).unwrap();
+        assert_eq!(sampling.rays(), rays);
+        let traced = tracer.visible_fractions(&ceiling(), &receivers, &sampling).unwrap();
+        assert!(traced.noise.is_nan());
+        let error = |(v, r): (&f32, &Receiver)| {
+            f64::from(*v) - visible_fraction_of_quad(&ceiling(), card, r.position)
+        };
+        let errors: Vec<f64> = traced.visible.iter().zip(&receivers).map(error).collect();
+        // Unbiased: each receiver's standard error is at most ½, and the mean is over 200 of them.
+        let mean = errors.iter().sum::<f64>() / 200.0;
+        assert!(mean.abs() < 4.0 * 0.5 / 200f64.sqrt() / rays as f64, "{rays}: {mean}");
+    }
+    assert!(Sampling::one_grid(0, 1).is_err() && Sampling::one_grid(1025, 1).is_err());
+}

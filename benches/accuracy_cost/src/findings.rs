@@ -1,0 +1,345 @@
+//! What Atty 2006 found, and whether it holds here, in a sentence made of the rows.
+//!
+//! Each finding is a law of a curve, and each law is asked of every object that was swept. It holds
+//! where it holds for all of them; the sentence says what was measured either way.
+
+use crate::stats::{exponent, jaggedness, line, rising};
+use crate::store::Row;
+use crate::sweeps;
+use std::collections::BTreeSet;
+
+/// A finding of the paper beside what was measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// The paper's figure.
+    pub figure: &'static str,
+    /// What the paper says.
+    pub claim: &'static str,
+    /// Whether it holds here.
+    pub verdict: Verdict,
+    /// What was measured.
+    pub sentence: String,
+}
+
+/// Whether a finding holds here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// For every object.
+    Holds,
+    /// For some objects.
+    InPart,
+    /// For none.
+    Refuted,
+    /// The sweep was not measured.
+    Unmeasured,
+}
+
+/// Above this many texels a side the paper finds no improvement.
+const ENOUGH: f64 = 200.0;
+
+/// What still counts as flat: the share of the error at [`ENOUGH`] that more texels may gain.
+const FLAT: f64 = 0.1;
+
+/// Two sides count as alike where they differ by less than this, in visible fractions.
+const ALIKE: f64 = 5e-4;
+
+/// Lights up to this side, in metres, are the paper's points: the error is all at the rim.
+const POINT_LIGHT: f64 = 0.05;
+
+/// One curve: x against some measure, in the order of x.
+fn curve(
+    rows: &[Row],
+    study: &str,
+    scene: &str,
+    name: &str,
+    of: fn(&Row) -> Option<f64>,
+) -> Vec<(f64, f64)> {
+    let wanted = |r: &&Row| r.study == study && r.scene == scene && r.curve == name;
+    let mut points: Vec<_> =
+        rows.iter().filter(wanted).filter_map(|r| Some((r.x, of(r)?))).collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    points
+}
+
+/// The objects of a study, in the rows' order.
+pub fn scenes<'a>(rows: &'a [Row], study: &str) -> Vec<&'a str> {
+    let mut seen = BTreeSet::new();
+    let all = rows.iter().filter(|r| r.study == study).map(|r| r.scene.as_str());
+    all.filter(|s| seen.insert(*s)).collect()
+}
+
+/// Asks a law of each object: whether it holds, and a phrase of what was measured.
+fn ask(
+    rows: &[Row],
+    study: &str,
+    law: impl Fn(&str) -> Option<(bool, String)>,
+) -> (Verdict, String) {
+    let told: Vec<_> = scenes(rows, study)
+        .into_iter()
+        .filter_map(|s| law(s).map(|(holds, t)| (s, holds, t)))
+        .collect();
+    let verdict = match (told.iter().any(|t| t.1), told.iter().all(|t| t.1)) {
+        _ if told.is_empty() => Verdict::Unmeasured,
+        (_, true) => Verdict::Holds,
+        (true, false) => Verdict::InPart,
+        (false, false) => Verdict::Refuted,
+    };
+    let phrases: Vec<_> = told
+        .iter()
+        .map(|(scene, holds, text)| format!("{scene}: {text}{}", if *holds { "" } else { " (no)" }))
+        .collect();
+    (verdict, if phrases.is_empty() { "not measured".into() } else { phrases.join("; ") })
+}
+
+const TWO: &str = sweeps::SIDES[1].0;
+const ONE: &str = sweeps::SIDES[0].0;
+
+/// A fraction as percent.
+fn percent(fraction: f64) -> String {
+    format!("{:.2} %", 100.0 * fraction)
+}
+
+/// All findings, in the paper's order.
+pub fn findings(rows: &[Row]) -> Vec<Finding> {
+    let finding = |figure, claim, (verdict, sentence)| Finding { figure, claim, verdict, sentence };
+    vec![
+        finding("Fig. 17", "More than about 200² texels bring no improvement.", flat(rows)),
+        finding(
+            "Fig. 17",
+            "Two sides are better than one, but for the card, where they are equal.",
+            sides(rows),
+        ),
+        finding(
+            "Fig. 17",
+            "The aligned card's curve has spikes, where the others' have none.",
+            spikes(rows),
+        ),
+        finding("Fig. 18", "Point lights aside, the error grows with the light.", grows(rows)),
+        finding("Fig. 19", "The error is least under the light.", under(rows)),
+        finding("Fig. 20", "The error grows towards the light.", towards(rows)),
+        finding("Fig. 21", "Time is linear in the number of polygons.", polygons(rows)),
+        finding("Fig. 22", "Time is proportional to the map's pixels, N².", pixels(rows)),
+        finding("Fig. 24a", "Time grows with the light.", time_and_light(rows)),
+        finding(
+            "Fig. 24b",
+            "Small lights want large maps; under large ones a small map does as well.",
+            small_maps(rows),
+        ),
+    ]
+}
+
+fn flat(rows: &[Row]) -> (Verdict, String) {
+    ask(rows, sweeps::SIDE, |scene| {
+        let points = curve(rows, sweeps::SIDE, scene, TWO, Row::mean);
+        let mean = |points: Vec<f64>| {
+            (!points.is_empty()).then(|| points.iter().sum::<f64>() / points.len() as f64)
+        };
+        let part = |keep: &dyn Fn(f64) -> bool| {
+            mean(points.iter().filter(|p| keep(p.0)).map(|p| p.1).collect())
+        };
+        let near = part(&|n| (0.75 * ENOUGH..=1.25 * ENOUGH).contains(&n))?;
+        let beyond = part(&|n| n > 1.5 * ENOUGH)?;
+        let text = format!("{} around N = 200, {} above 300", percent(near), percent(beyond));
+        Some((beyond > near * (1.0 - FLAT) - ALIKE, text))
+    })
+}
+
+fn sides(rows: &[Row]) -> (Verdict, String) {
+    ask(rows, sweeps::SIDE, |scene| {
+        let one = curve(rows, sweeps::SIDE, scene, ONE, Row::mean);
+        let two = curve(rows, sweeps::SIDE, scene, TWO, Row::mean);
+        let gains: Vec<f64> = one.iter().zip(&two).map(|(a, b)| a.1 - b.1).collect();
+        let most = gains.iter().fold(0.0, |m: f64, g| m.max(g.abs()));
+        let better = gains.iter().filter(|g| **g > 0.0).count();
+        let mean = gains.iter().sum::<f64>() / gains.len().max(1) as f64;
+        if scene == "card" {
+            return Some((most <= ALIKE, format!("differ by {} at most", percent(most))));
+        }
+        let text = format!("better at {better} of {} sizes, by {}", gains.len(), percent(mean));
+        (!gains.is_empty()).then_some((better == gains.len(), text))
+    })
+}
+
+fn spikes(rows: &[Row]) -> (Verdict, String) {
+    let jagged = |scene: &str| {
+        let points = curve(rows, sweeps::SIDE, scene, TWO, Row::mean);
+        jaggedness(&points.iter().map(|p| p.1).collect::<Vec<_>>())
+    };
+    let card = jagged("card");
+    ask(rows, sweeps::SIDE, |scene| {
+        let own = jagged(scene)?;
+        let holds = scene == "card" || own < 0.5 * card?;
+        Some((holds, format!("neighbours are off a straight line by {:.0} %", 100.0 * own)))
+    })
+}
+
+fn grows(rows: &[Row]) -> (Verdict, String) {
+    ask(rows, sweeps::LIGHT, |scene| {
+        let mut points = curve(rows, sweeps::LIGHT, scene, TWO, Row::mean);
+        points.retain(|p| p.0 > POINT_LIGHT);
+        let (first, last) = (points.first()?, points.last()?);
+        let order = rising(&points)?;
+        let text = format!(
+            "{} at {} m to {} at {} m (τ = {order:.2})",
+            percent(first.1),
+            first.0,
+            percent(last.1),
+            last.0
+        );
+        Some((order > 0.5, text))
+    })
+}
+
+fn under(rows: &[Row]) -> (Verdict, String) {
+    ask(rows, sweeps::LATERAL, |scene| {
+        let points = curve(rows, sweeps::LATERAL, scene, TWO, Row::mean);
+        let least = points.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let reach = points.iter().map(|p| p.0.abs()).fold(0.0, f64::max);
+        let text = format!("least ({}) at {} m of ±{reach} m", percent(least.1), least.0);
+        Some((least.0.abs() <= 0.5 * reach, text))
+    })
+}
+
+fn towards(rows: &[Row]) -> (Verdict, String) {
+    ask(rows, sweeps::VERTICAL, |scene| {
+        let points = curve(rows, sweeps::VERTICAL, scene, TWO, Row::mean);
+        let (first, last) = (points.first()?, points.last()?);
+        let order = rising(&points)?;
+        let text = format!(
+            "{} at {} m to {} at {} m (τ = {order:.2})",
+            percent(first.1),
+            first.0,
+            percent(last.1),
+            last.0
+        );
+        Some((order > 0.5 && last.1 > first.1, text))
+    })
+}
+
+fn polygons(rows: &[Row]) -> (Verdict, String) {
+    ask(rows, sweeps::POLYGONS, |scene| {
+        let points = curve(rows, sweeps::POLYGONS, scene, TWO, Row::ms);
+        let line = line(&points)?;
+        let text = format!(
+            "{:.1} ms + {:.2} ms a thousand, R² = {:.3}",
+            line.base,
+            1000.0 * line.slope,
+            line.r2
+        );
+        Some((line.r2 > 0.95 && line.slope > 0.0, text))
+    })
+}
+
+fn pixels(rows: &[Row]) -> (Verdict, String) {
+    ask(rows, sweeps::SIDE, |scene| {
+        let points = curve(rows, sweeps::SIDE, scene, TWO, Row::ms);
+        let all = exponent(&points)?;
+        let squares: Vec<_> = points.iter().map(|p| (p.0 * p.0, p.1)).collect();
+        let line = line(&squares)?;
+        let text = format!("grows as N^{all:.1}; straight in N² with R² = {:.3}", line.r2);
+        Some((line.r2 > 0.95, text))
+    })
+}
+
+fn time_and_light(rows: &[Row]) -> (Verdict, String) {
+    ask(rows, sweeps::LIGHT, |scene| {
+        let points = curve(rows, sweeps::LIGHT, scene, TWO, Row::ms);
+        let (first, last) = (points.first()?, points.last()?);
+        let text =
+            format!("{:.1} ms at {} m to {:.1} ms at {} m", first.1, first.0, last.1, last.0);
+        Some((rising(&points)? > 0.5, text))
+    })
+}
+
+fn small_maps(rows: &[Row]) -> (Verdict, String) {
+    ask(rows, sweeps::LIGHT, |scene| {
+        let small = curve(rows, sweeps::LIGHT, scene, "N = 64", Row::mean);
+        let large = curve(rows, sweeps::LIGHT, scene, "N = 256", Row::mean);
+        let ratio = |i: usize| Some(small.get(i)?.1 / large.get(i)?.1);
+        let (first, last) = (ratio(0)?, ratio(small.len().checked_sub(1)?)?);
+        let text = format!(
+            "N = 64 has {first:.1} times the error of N = 256 under {} m, {last:.1} times under {} m",
+            small[0].0,
+            small[small.len() - 1].0
+        );
+        Some((last < first && last < 1.25, text))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::store::tests::row;
+
+    fn swept(study: &str, scene: &str, name: &str, points: &[(f64, f64)]) -> Vec<Row> {
+        let one = |&(x, error): &(f64, f64)| {
+            let (study, scene) = (study.to_string(), scene.to_string());
+            Row { study, scene, ..row(name, x, x, error) }
+        };
+        points.iter().map(one).collect()
+    }
+
+    fn verdict(rows: &[Row], figure: &str, part: &str) -> Verdict {
+        let all = findings(rows);
+        all.into_iter().find(|f| f.figure == figure && f.claim.contains(part)).unwrap().verdict
+    }
+
+    #[test]
+    fn nothing_measured_is_no_verdict() {
+        assert!(
+            findings(&[])
+                .iter()
+                .all(|f| f.verdict == Verdict::Unmeasured && f.sentence == "not measured")
+        );
+    }
+
+    #[test]
+    fn a_flat_curve_is_flat_and_a_falling_one_is_not() {
+        let n = |i: u32| f64::from(40 + i * 20);
+        let flat: Vec<_> = (0..19).map(|i| (n(i), if i < 6 { 0.05 } else { 0.03 })).collect();
+        let falling: Vec<_> = (0..19).map(|i| (n(i), 4.0 / n(i))).collect();
+        assert_eq!(
+            verdict(&swept(sweeps::SIDE, "bunny", TWO, &flat), "Fig. 17", "200"),
+            Verdict::Holds
+        );
+        let rows = swept(sweeps::SIDE, "bunny", TWO, &falling);
+        assert_eq!(verdict(&rows, "Fig. 17", "200"), Verdict::Refuted);
+        // The object that differs is named.
+        let both = [swept(sweeps::SIDE, "card", TWO, &flat), rows].concat();
+        let told = &findings(&both)[0];
+        assert_eq!(told.verdict, Verdict::InPart);
+        assert!(told.sentence.contains("(no)"), "{}", told.sentence);
+    }
+
+    #[test]
+    fn two_sides_must_be_better_but_for_the_card() {
+        let points = |error: f64| [(64.0, error), (128.0, error)];
+        let pair = |scene, one, two| {
+            let one = swept(sweeps::SIDE, scene, ONE, &points(one));
+            [one, swept(sweeps::SIDE, scene, TWO, &points(two))].concat()
+        };
+        assert_eq!(verdict(&pair("bunny", 0.03, 0.02), "Fig. 17", "Two"), Verdict::Holds);
+        assert_eq!(verdict(&pair("bunny", 0.02, 0.03), "Fig. 17", "Two"), Verdict::Refuted);
+        assert_eq!(verdict(&pair("card", 0.02, 0.02), "Fig. 17", "Two"), Verdict::Holds);
+        assert_eq!(verdict(&pair("card", 0.03, 0.02), "Fig. 17", "Two"), Verdict::Refuted);
+    }
+
+    #[test]
+    fn growth_least_and_lines_are_seen() {
+        let light = [(0.01, 0.09), (0.1, 0.01), (0.4, 0.02), (1.0, 0.03)];
+        assert_eq!(
+            verdict(&swept(sweeps::LIGHT, "bunny", TWO, &light), "Fig. 18", ""),
+            Verdict::Holds
+        );
+        let lateral = [(-1.0, 0.03), (0.0, 0.01), (1.0, 0.02)];
+        let rows = swept(sweeps::LATERAL, "bunny", TWO, &lateral);
+        assert_eq!(verdict(&rows, "Fig. 19", ""), Verdict::Holds);
+        let edge = [(-1.0, 0.01), (0.0, 0.02), (1.0, 0.03)];
+        let rows = swept(sweeps::LATERAL, "bunny", TWO, &edge);
+        assert_eq!(verdict(&rows, "Fig. 19", ""), Verdict::Refuted);
+        // `row` gives a time of x ms: a straight line.
+        let triangles = [(1e3, 0.0), (1e4, 0.0), (1e5, 0.0)];
+        let rows = swept(sweeps::POLYGONS, "sphere", TWO, &triangles);
+        assert_eq!(verdict(&rows, "Fig. 21", ""), Verdict::Holds);
+    }
+}

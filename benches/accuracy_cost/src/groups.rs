@@ -1,0 +1,254 @@
+//! What is measured together: the same pixels, the same truth, in turns.
+
+use crate::Problem;
+use crate::scenes::{self, SceneSpec, Source};
+use crate::sweeps;
+use crate::techniques::{CURVES, value_of};
+use antumbra::gpu::headless::View;
+use antumbra::scene::{Camera, Role, Scene, generate};
+use glam::{DMat4, DVec3};
+
+/// The study of error against time.
+pub const MATRIX: &str = "matrix";
+
+/// Where a group's scene comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Stage {
+    /// A scene under one of its lights, by a camera.
+    Seen(SceneSpec, &'static str),
+    /// A made scene or model under a square light of this side, its object moved from its place by
+    /// this much; pixels are a grid on the ground over |x|, |z| ≤ `half`.
+    Moved {
+        /// As [`scenes::made`] has it.
+        model: &'static str,
+        /// The light's side in metres.
+        light: f64,
+        /// From where the object stands.
+        by: DVec3,
+        /// Half the grid's side in metres.
+        half: f64,
+        /// How far to the side the occluder map's window reaches beyond what holds the object where
+        /// it stands.
+        reach: f64,
+    },
+    /// A sphere of about so many triangles in the bunny's place.
+    Sphere(u32),
+}
+
+/// What a group's images are compared with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Against {
+    /// The traced truth.
+    Traced,
+    /// The closed form of the one card there is: no noise.
+    Card,
+}
+
+/// One row to be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// The technique's name.
+    pub technique: &'static str,
+    /// The curve it is a point of.
+    pub curve: String,
+    /// The settings as words.
+    pub words: String,
+    /// Where it is on the axis that is swept.
+    pub x: f64,
+    /// What the light is scaled by before the technique gets it; 1 but where it is wrong on purpose.
+    pub light_scale: f64,
+    /// Whether it stands for its technique in the picture strip.
+    pub shown: bool,
+}
+
+/// Rows that are measured together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Group {
+    /// The study they belong to.
+    pub study: &'static str,
+    /// The scene's name.
+    pub scene: String,
+    /// The light's name.
+    pub light: String,
+    /// Where the scene comes from.
+    pub stage: Stage,
+    /// Width and height of the images.
+    pub extent: [u32; 2],
+    /// What they are compared with.
+    pub against: Against,
+    /// Where the group is on the axis that is swept, where the entries are not.
+    pub at: Option<f64>,
+    /// The rows.
+    pub entries: Vec<Entry>,
+}
+
+/// A scene ready to be measured.
+pub struct Ready {
+    /// The scene; its first light is used.
+    pub scene: Scene,
+    /// How pixels look at it.
+    pub view: View,
+    /// The occluder map's tangents, where they are not fitted.
+    pub window: Option<[[f64; 2]; 2]>,
+    /// Whether pixels see what only occludes.
+    pub occluders_seen: bool,
+}
+
+impl Group {
+    /// The name under which it is stored: what it measures, and nothing that only orders it.
+    pub fn key(&self) -> String {
+        let at = self.at.map_or_else(String::new, |at| format!(", {at}"));
+        format!("{}: {}, {} light{at}", self.study, self.scene, self.light)
+    }
+
+    /// Loads or makes the scene and the view.
+    ///
+    /// # Errors
+    /// A sentence that names the scene.
+    pub fn ready(&self) -> Result<Ready, Problem> {
+        match &self.stage {
+            Stage::Seen(spec, light) => {
+                let scene = spec.load(light)?;
+                let [width, height] = self.extent.map(f64::from);
+                let camera =
+                    scene.camera.unwrap_or_else(|| Camera::framing(&scene, width / height));
+                let view = View::perspective(&camera, self.extent);
+                Ok(Ready { scene, view, window: None, occluders_seen: true })
+            }
+            Stage::Moved { model, light, by, half, reach } => {
+                let mut scene = scenes::made(model, scenes::square(*light)?)?;
+                for instance in scene.instances.iter_mut().filter(|i| i.role.blocks()) {
+                    let moved = DMat4::from_translation(*by) * instance.world_from_mesh;
+                    instance.world_from_mesh = moved;
+                }
+                let window = Some(window(&scene, *reach));
+                Ok(Ready { scene, view: ground(*half), window, occluders_seen: false })
+            }
+            Stage::Sphere(rows) => {
+                let mut object = Scene::default();
+                let mesh = generate::uv_sphere(0.5, rows + 1, *rows);
+                object.add("sphere", mesh, DMat4::IDENTITY, Role::Occluder);
+                let scene = generate::normalized(&object, scenes::square(0.4)?)
+                    .map_err(|e| e.to_string())?;
+                Ok(Ready { scene, view: ground(2.2), window: None, occluders_seen: false })
+            }
+        }
+    }
+}
+
+/// A regular grid on the ground, seen from 8 m above it.
+///
+/// It is turned by 20°: the edge of an aligned card's shadow would else pass every pixel of a row at
+/// one distance, so that the mean over the row were one sample, and none of it inside the penumbra
+/// of a small light.
+fn ground(half: f64) -> View {
+    let turn = DMat4::from_rotation_y(20f64.to_radians());
+    View { clip_from_world: View::map_of_ground(half, 8.0).clip_from_world * turn }
+}
+
+/// The tangents that just hold a disc of diameter √2 · 1.05 at the object's top, as in the table that
+/// tests/accuracy.rs holds. The node's own fit would put the aligned card's edges on texel borders,
+/// where its error is 0, which no object in a scene of many has.
+fn window(scene: &Scene, reach: f64) -> [[f64; 2]; 2] {
+    let top = scene.bounds(|i| i.role.blocks()).map_or(0.0, |b| b.max.y);
+    let tan = (0.5 * 2f64.sqrt() * 1.05 + reach) / (4.0 - top).max(0.1);
+    [[-tan; 2], [tan; 2]]
+}
+
+/// How much is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Scale {
+    /// Width and height of the views.
+    pub view: [u32; 2],
+    /// Side of the grids on the ground.
+    pub grid: u32,
+    /// Rays a pixel of the traced truth.
+    pub rays: u32,
+    /// Rounds in turns.
+    pub rounds: usize,
+    /// Only what the quick run has.
+    pub quick: bool,
+}
+
+/// Rays are cheap beside frames on two cores, so that even the quick truth takes 256: with 64, its
+/// noise was half of what is told apart here.
+pub const QUICK: Scale = Scale { view: [256, 192], grid: 96, rays: 256, rounds: 3, quick: true };
+
+/// See [`QUICK`].
+pub const FULL: Scale = Scale { view: [512, 384], grid: 160, rays: 512, rounds: 7, quick: false };
+
+/// The entries of error against time; the picture strip is of one light of each scene.
+fn matrix_entries(scale: &Scale, in_strip: bool) -> Vec<Entry> {
+    let mut entries = Vec::new();
+    for curve in CURVES {
+        for (i, (words, in_quick)) in curve.steps.iter().enumerate() {
+            if scale.quick && !in_quick {
+                continue;
+            }
+            entries.push(Entry {
+                technique: curve.technique,
+                curve: curve.label.into(),
+                words: (*words).into(),
+                x: value_of(words, curve.sweeps).unwrap_or(i as f64),
+                light_scale: 1.0,
+                shown: in_strip && curve.shown == Some(i),
+            });
+        }
+    }
+    entries
+}
+
+/// Every group of a run: what a reader looks at first is measured first.
+pub fn all(scale: &Scale, own: &[SceneSpec]) -> Vec<Group> {
+    let mut groups = Vec::new();
+    let matrix = |spec: &SceneSpec, light: &'static str| Group {
+        study: MATRIX,
+        scene: spec.name.clone(),
+        light: light.into(),
+        stage: Stage::Seen(spec.clone(), light),
+        extent: scale.view,
+        // The card's truth is exact in every view.
+        against: if spec.source == Source::Made("card") { Against::Card } else { Against::Traced },
+        at: None,
+        entries: matrix_entries(scale, light != "small" && light != "large"),
+    };
+    let standard = scenes::standard();
+    groups.extend(standard.iter().map(|spec| matrix(spec, "medium")));
+    groups.extend(
+        own.iter()
+            .flat_map(|spec| spec.lights().into_iter().map(move |l| (spec, l)))
+            .map(|(spec, light)| matrix(spec, light)),
+    );
+    groups.extend(sweeps::all(scale));
+    for light in ["large", "small"] {
+        groups.extend(standard.iter().map(|spec| matrix(spec, light)));
+    }
+    groups
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn keys_tell_groups_apart_and_the_quick_run_is_part_of_the_full_one() {
+        let [quick, full] = [QUICK, FULL].map(|scale| all(&scale, &[]));
+        let keys = |groups: &[Group]| groups.iter().map(Group::key).collect::<BTreeSet<_>>();
+        assert_eq!(keys(&full).len(), full.len());
+        assert_eq!(keys(&quick).len(), quick.len());
+        assert!(quick.len() < full.len());
+        for group in quick.iter().chain(&full) {
+            assert!(!group.entries.is_empty(), "{}", group.key());
+        }
+    }
+
+    #[test]
+    fn every_scene_of_the_report_can_be_made() {
+        for group in all(&QUICK, &[]) {
+            let ready = group.ready().unwrap_or_else(|e| panic!("{}: {e}", group.key()));
+            assert!(ready.scene.light(None).is_ok());
+            assert!(ready.view.clip_from_world.is_finite());
+        }
+    }
+}

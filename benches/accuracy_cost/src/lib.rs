@@ -1,0 +1,36 @@
+//! What accuracy costs in time: the truth, the alternatives, and one report.
+//!
+//! ```text
+//!   techniques ─┐                            ┌─► report   index.html, .json, .csv, headline.md
+//!   scenes ─────┼─► groups ─► measure ─► store
+//!   sweeps ─────┘      ▲          │          └─► what was measured, one line each, flushed
+//!                      └── truth ◄┘ (cached)
+//! ```
+//! A **group** is what is compared: several techniques on the same pixels of one scene under one
+//! light, with one truth, timed in turns in one process. It is also what a stopped run resumes at.
+//! Everything left of `measure` is data, and everything right of `store` is a pure function of the
+//! stored rows: a report can be made of whatever a killed run left behind.
+
+pub mod findings;
+pub mod groups;
+pub mod hills;
+pub mod measure;
+pub mod options;
+pub mod pareto;
+pub mod picture;
+pub mod plot;
+pub mod progress;
+pub mod report;
+pub mod run;
+pub mod scenes;
+#[path = "../../../examples/render/shade.rs"]
+#[allow(dead_code, clippy::expect_used)]
+mod shade;
+pub mod stats;
+pub mod store;
+pub mod sweeps;
+pub mod techniques;
+pub mod truth;
+
+/// What went wrong, as a sentence for a person.
+pub type Problem = String;

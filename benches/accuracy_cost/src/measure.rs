@@ -1,0 +1,346 @@
+//! One group: its stages, its truth, its frames in turns, its errors.
+
+use crate::Problem;
+use crate::groups::{Entry, Group, Ready, Scale};
+use crate::picture::{self, Pictures};
+use crate::scenes::scaled;
+use crate::shade;
+use crate::stats::{median, quartiles};
+use crate::store::{Errors, Outcome, Row, Times};
+use crate::techniques::{Method, method};
+use crate::truth::{self, Truth, mask};
+use antumbra::gpu::headless::{FrameTimes, HeadlessDevice, Stage};
+use antumbra::scene::{AreaLight, Instance, Role};
+use antumbra::truth::{ErrorSummary, Receiver, Sampling, Tracer};
+use antumbra::{FramePlan, RectangleLight, Settings};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// The random numbers of the ray tracer that is measured, which are not the truth's.
+const TRACER_SEED: u64 = 2;
+
+/// Fewest frames that quartiles are told of.
+const FEWEST_FRAMES: usize = 3;
+
+/// Groups of fewer rows than this take as many frames as if they had that many.
+const SMALL_GROUP: usize = 8;
+
+/// What is measured with, and where pictures and truths are kept.
+pub struct Bench<'a> {
+    /// The device.
+    pub device: &'a HeadlessDevice,
+    /// How much is measured.
+    pub scale: Scale,
+    /// The folder of kept truths and pictures.
+    pub cache: &'a Path,
+}
+
+/// What computes one row's image.
+enum Runner {
+    Node { stage: Box<Stage>, plan: Box<FramePlan> },
+    Rays { sampling: Sampling },
+}
+
+/// One row in the making.
+struct Candidate<'a> {
+    entry: &'a Entry,
+    state: Result<Option<Runner>, Problem>,
+    frames: Vec<FrameTimes>,
+    image: Vec<f32>,
+}
+
+impl Bench<'_> {
+    /// Measures a group. Whatever fails, panics included, is a row that says so.
+    pub fn measure(&self, group: &Group, tell: &dyn Fn(&str)) -> Vec<Row> {
+        let work = || self.try_measure(group, tell);
+        let done = catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
+            let text = panic.downcast_ref::<String>().map(String::as_str);
+            let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
+            Err(format!("it panicked: {}", text.unwrap_or("without a word")))
+        });
+        done.unwrap_or_else(|problem| vec![failed(group, problem)])
+    }
+
+    fn try_measure(&self, group: &Group, tell: &dyn Fn(&str)) -> Result<Vec<Row>, Problem> {
+        // Where nothing of it is there yet, nothing is loaded either.
+        let methods: Vec<_> = group.entries.iter().map(|e| method(e.technique, &e.words)).collect();
+        if methods.iter().all(|m| matches!(m, Ok(None))) {
+            let row = |e| blank(group, Some(e), 0, [0.0; 2], Outcome::NotThere);
+            return Ok(group.entries.iter().map(row).collect());
+        }
+        tell("scene");
+        let ready = group.ready()?;
+        let light = ready.scene.light(None).map_err(|e| e.to_string())?.clone();
+        let pixels = self.stage(&ready, group.extent, Settings::default())?;
+        let receivers = truth::receivers(pixels.gbuffer())?;
+        let tracer = Tracer::new(&ready.scene).map_err(|e| e.to_string())?;
+        let mut candidates: Vec<Candidate> = Vec::new();
+        for (entry, method) in group.entries.iter().zip(methods) {
+            let state = self.runner(&ready, group, entry, method, &light.light, &receivers);
+            candidates.push(Candidate { entry, state, frames: Vec::new(), image: Vec::new() });
+        }
+        let lit = |c: &Candidate| scaled(&light.light, c.entry.light_scale);
+        for candidate in &mut candidates {
+            tell(&format!("warming up {} {}", candidate.entry.technique, candidate.entry.words));
+            let light = lit(candidate)?;
+            candidate.warm_up(&tracer, &light, &receivers);
+        }
+        self.take_turns(&mut candidates, tell, |c| {
+            let light = lit(c)?;
+            c.run(&tracer, &light, &receivers)
+        });
+        tell("truth");
+        let truth =
+            truth::truth(&ready.scene, &receivers, group.against, self.scale.rays, self.cache)?;
+        tell("errors");
+        let seen = ready.occluders_seen.then(|| Seen::of(&pixels, &light)).transpose()?;
+        let half = light.light.half_extents().map(|h| 2.0 * h);
+        let triangles = ready.scene.triangles();
+        if let Some(seen) = &seen
+            && candidates.iter().any(|c| c.entry.shown)
+        {
+            self.paint(group, &candidates, &truth, seen, &mask(&receivers));
+        }
+        let rows: Vec<_> = candidates.iter_mut().map(Candidate::told).collect();
+        let compared = rows.into_par_iter().map(|(entry, told)| {
+            let outcome = told.and_then(|told| {
+                let Some((times, image)) = told else { return Ok(Outcome::NotThere) };
+                let errors = errors(&truth, &image, &receivers, &seen, group)?;
+                Ok(Outcome::Measured { errors, times })
+            });
+            blank(group, Some(entry), triangles, half, outcome.unwrap_or_else(Outcome::Failed))
+        });
+        Ok(compared.collect())
+    }
+
+    fn stage(&self, ready: &Ready, extent: [u32; 2], settings: Settings) -> Result<Stage, Problem> {
+        let keep = |i: &Instance| ready.occluders_seen || i.role != Role::Occluder;
+        Stage::new(self.device, &ready.scene, &ready.view, extent, settings, keep)
+            .map_err(|e| e.to_string())
+    }
+
+    fn runner(
+        &self,
+        ready: &Ready,
+        group: &Group,
+        entry: &Entry,
+        method: Result<Option<Method>, Problem>,
+        light: &RectangleLight,
+        receivers: &[Receiver],
+    ) -> Result<Option<Runner>, Problem> {
+        Ok(match method? {
+            None => None,
+            Some(Method::Rays(rays)) => {
+                let sampling =
+                    truth::sampling(Sampling::one_grid(rays.isqrt(), TRACER_SEED), receivers)?;
+                Some(Runner::Rays { sampling })
+            }
+            Some(Method::Node(settings)) => {
+                let mut stage = Box::new(self.stage(ready, group.extent, *settings)?);
+                let light = scaled(light, entry.light_scale)?;
+                let plan = stage.plan(&light, ready.window).map_err(|e| e.to_string())?;
+                Some(Runner::Node { stage, plan: Box::new(plan) })
+            }
+        })
+    }
+
+    /// Every candidate once a round. Those that have cost more than their share stop once they have
+    /// as many frames as quartiles need.
+    fn take_turns(
+        &self,
+        candidates: &mut [Candidate],
+        tell: &dyn Fn(&str),
+        mut run: impl FnMut(&mut Candidate) -> Result<(), Problem>,
+    ) {
+        let share = Duration::from_secs(if self.scale.quick { 1 } else { 12 });
+        // Small groups, whose times are compared with those of others, take more frames.
+        let rounds = self.scale.rounds * (SMALL_GROUP / candidates.len().max(1)).max(1);
+        for round in 0..rounds {
+            tell(&format!("round {} of {rounds}", round + 1));
+            for candidate in candidates.iter_mut() {
+                let spent: Duration = candidate.frames.iter().map(|f| f.frame).sum();
+                let enough = candidate.frames.len() >= FEWEST_FRAMES && spent > share;
+                if matches!(candidate.state, Ok(Some(_))) && !enough {
+                    let done = run(candidate);
+                    candidate.settle(done);
+                }
+            }
+        }
+    }
+
+    /// Keeps the pictures of the strip; what cannot be kept is missing there and nowhere else.
+    fn paint(&self, group: &Group, all: &[Candidate], truth: &Truth, seen: &Seen, mask: &[bool]) {
+        let pictures = Pictures::new(self.cache);
+        let shaded = seen.shade(&truth.visible);
+        pictures.keep(&group.scene, picture::TRUTH, group.extent, &shaded);
+        for c in all.iter().filter(|c| c.entry.shown && !c.image.is_empty()) {
+            let curve = c.entry.curve.as_str();
+            pictures.keep(&group.scene, curve, group.extent, &seen.shade(&c.image));
+            let difference = picture::difference(&truth.visible, &c.image, mask);
+            pictures.keep(&group.scene, &picture::error_of(curve), group.extent, &difference);
+        }
+    }
+}
+
+impl Candidate<'_> {
+    fn settle(&mut self, done: Result<(), Problem>) {
+        if let Err(problem) = done {
+            self.state = Err(problem);
+        }
+    }
+
+    /// The first frame compiles what the driver compiles, and is not counted; its image is kept.
+    fn warm_up(&mut self, tracer: &Tracer, light: &RectangleLight, receivers: &[Receiver]) {
+        let done = self.run(tracer, light, receivers).and_then(|()| match &mut self.state {
+            Ok(Some(Runner::Node { stage, .. })) => {
+                self.image = stage.visibility().map_err(|e| e.to_string())?;
+                Ok(())
+            }
+            _ => Ok(()),
+        });
+        self.frames.clear();
+        self.settle(done);
+    }
+
+    fn run(
+        &mut self,
+        tracer: &Tracer,
+        light: &RectangleLight,
+        r: &[Receiver],
+    ) -> Result<(), Problem> {
+        let times = match &mut self.state {
+            Ok(Some(Runner::Node { stage, plan })) => stage.run(plan).map_err(|e| e.to_string())?,
+            Ok(Some(Runner::Rays { sampling })) => {
+                let started = Instant::now();
+                let traced =
+                    tracer.visible_fractions(light, r, sampling).map_err(|e| e.to_string())?;
+                let frame = started.elapsed();
+                self.image = traced.visible;
+                FrameTimes { frame, record: Duration::ZERO, passes: Vec::new() }
+            }
+            _ => return Ok(()),
+        };
+        self.frames.push(times);
+        Ok(())
+    }
+
+    /// Times and image, or nothing where the technique is not there.
+    #[allow(clippy::type_complexity, reason = "a name would only be used here")]
+    fn told(&mut self) -> (&Entry, Result<Option<(Times, Vec<f32>)>, Problem>) {
+        let gpu_bytes = match &mut self.state {
+            Err(problem) => return (self.entry, Err(problem.clone())),
+            Ok(None) => return (self.entry, Ok(None)),
+            Ok(Some(Runner::Rays { .. })) => 0,
+            Ok(Some(Runner::Node { stage, .. })) => match stage.node() {
+                Ok(node) => node.memory().iter().map(|(_, bytes)| bytes).sum(),
+                Err(e) => return (self.entry, Err(e.to_string())),
+            },
+        };
+        let ms = |of: fn(&FrameTimes) -> Duration| -> Vec<f64> {
+            self.frames.iter().map(|f| of(f).as_secs_f64() * 1e3).collect()
+        };
+        let mut passes: BTreeMap<&str, (usize, Vec<f64>)> = BTreeMap::new();
+        for frame in &self.frames {
+            for (place, (name, ms)) in frame.passes.iter().enumerate() {
+                passes.entry(name).or_insert((place, Vec::new())).1.push(*ms);
+            }
+        }
+        let mut passes: Vec<_> = passes.into_iter().collect();
+        passes.sort_by_key(|(_, (place, _))| *place);
+        let times = Times {
+            frame_ms: quartiles(&ms(|f| f.frame)),
+            frames: self.frames.len(),
+            passes: passes.into_iter().map(|(n, (_, all))| (n.into(), median(&all))).collect(),
+            record_us: 1e3 * median(&ms(|f| f.record)),
+            gpu_bytes,
+        };
+        (self.entry, Ok(Some((times, std::mem::take(&mut self.image)))))
+    }
+}
+
+/// What shading needs of a picture's pixels.
+struct Seen {
+    light: AreaLight,
+    positions: Vec<[f32; 4]>,
+    normals: Vec<[f32; 4]>,
+}
+
+impl Seen {
+    fn of(stage: &Stage, light: &AreaLight) -> Result<Self, Problem> {
+        let told = |e: antumbra::Error| e.to_string();
+        Ok(Self {
+            light: light.clone(),
+            positions: stage.gbuffer().positions().map_err(told)?,
+            normals: stage.gbuffer().normals().map_err(told)?,
+        })
+    }
+
+    /// Visibility × unshadowed irradiance, exposed alike for every image of these pixels.
+    fn shade(&self, visible: &[f32]) -> Vec<u8> {
+        shade::shade(&self.light, visible, &self.positions, &self.normals)
+    }
+}
+
+fn errors(
+    truth: &Truth,
+    image: &[f32],
+    receivers: &[Receiver],
+    seen: &Option<Seen>,
+    group: &Group,
+) -> Result<Errors, Problem> {
+    let mask = mask(receivers);
+    let s = ErrorSummary::between(&truth.visible, image, Some(&mask)).map_err(|e| e.to_string())?;
+    // E|noise| of a normal error, in the penumbra alone, over all that is counted.
+    let floor = (2.0 / std::f64::consts::PI).sqrt() * truth.noise * s.penumbra_pixels as f64
+        / s.pixels.max(1) as f64;
+    let flip = seen
+        .as_ref()
+        .map(|seen| picture::flip(group.extent, &seen.shade(&truth.visible), &seen.shade(image)));
+    Ok(Errors {
+        pixels: s.pixels,
+        mean_abs_error: s.mean_abs_error,
+        rmse: s.rmse,
+        p99: s.p99,
+        worst: s.worst,
+        bias: s.bias,
+        penumbra_pixels: s.penumbra_pixels,
+        penumbra_mean: s.penumbra_mean,
+        false_umbra: s.false_umbra,
+        false_light: s.false_light,
+        lit_pixels: s.lit_pixels,
+        lit_error: s.lit_error,
+        flip,
+        truth_noise: truth.noise,
+        noise_floor: floor,
+    })
+}
+
+fn blank(
+    group: &Group,
+    entry: Option<&Entry>,
+    triangles: usize,
+    light_m: [f64; 2],
+    outcome: Outcome,
+) -> Row {
+    Row {
+        study: group.study.into(),
+        scene: group.scene.clone(),
+        light: group.light.clone(),
+        light_m,
+        triangles,
+        extent: group.extent,
+        technique: entry.map_or("all", |e| e.technique).into(),
+        curve: entry.map_or_else(String::new, |e| e.curve.clone()),
+        settings: entry.map_or_else(String::new, |e| e.words.clone()),
+        x: entry.map(|e| e.x).or(group.at).unwrap_or(0.0),
+        outcome,
+    }
+}
+
+/// The row of a group that could not be measured at all.
+fn failed(group: &Group, problem: Problem) -> Row {
+    blank(group, None, 0, [0.0; 2], Outcome::Failed(problem))
+}

@@ -1,0 +1,85 @@
+//! The command line.
+
+use clap::Parser;
+use std::path::{Path, PathBuf};
+
+/// Error against time of every technique, in one report.
+#[derive(Parser, Debug, Clone)]
+#[command(name = "cargo bench --bench accuracy_cost --")]
+pub struct Options {
+    /// Under five minutes on two cores: small images, few points; what does not fit is left out and
+    /// named
+    #[arg(long)]
+    pub quick: bool,
+    /// A folder of glTF scenes of one's own, measured beside the project's, under their first light
+    #[arg(long, value_name = "DIR")]
+    pub scenes: Option<PathBuf>,
+    /// Where index.html, accuracy_cost.json, accuracy_cost.csv and headline.md go; what was measured
+    /// before with the same options and commit is not measured again
+    #[arg(long, value_name = "DIR", default_value = "out/accuracy_cost")]
+    pub out: PathBuf,
+    /// Measure only groups whose name holds this, such as "bunny" or "light size"
+    #[arg(long, value_name = "TEXT")]
+    pub only: Option<String>,
+    /// Measure nothing: make the report anew of what was measured, by whatever commit
+    #[arg(long)]
+    pub report: bool,
+    /// Measure nothing: copy the headline table of --out, with the command that made it, into
+    /// docs/accuracy.md
+    #[arg(long, conflicts_with = "report")]
+    pub write_docs: bool,
+    /// What cargo itself passes
+    #[arg(long, hide = true)]
+    bench: bool,
+}
+
+impl Options {
+    /// The project's root. cargo runs a bench in its package's folder, so that relative folders on
+    /// the command line are taken from here.
+    pub fn root() -> PathBuf {
+        let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+        here.ancestors().nth(2).unwrap_or(here).to_path_buf()
+    }
+
+    /// With its folders absolute.
+    pub fn resolved(mut self) -> Self {
+        let root = Self::root();
+        self.out = root.join(&self.out);
+        self.scenes = self.scenes.map(|scenes| root.join(scenes));
+        self
+    }
+
+    /// The command that makes this run, as a person types it.
+    pub fn command(&self) -> String {
+        let mut words = String::new();
+        if self.quick {
+            words.push_str(" --quick");
+        }
+        for (option, folder) in [("--scenes", &self.scenes), ("--out", &Some(self.out.clone()))] {
+            let Some(folder) = folder else { continue };
+            let shown = folder.strip_prefix(Self::root()).unwrap_or(folder);
+            if shown != Path::new("out/accuracy_cost") {
+                words.push_str(&format!(" {option} {}", shown.display()));
+            }
+        }
+        let dashes = if words.is_empty() { "" } else { " --" };
+        format!("cargo bench --bench accuracy_cost{dashes}{words}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_is_told_as_it_was_typed() {
+        let parse =
+            |words: &[&str]| Options::parse_from(["x"].iter().chain(words)).resolved().command();
+        assert_eq!(parse(&["--bench"]), "cargo bench --bench accuracy_cost");
+        assert_eq!(parse(&["--quick"]), "cargo bench --bench accuracy_cost -- --quick");
+        assert_eq!(
+            parse(&["--scenes", "mine", "--out", "/elsewhere"]),
+            "cargo bench --bench accuracy_cost -- --scenes mine --out /elsewhere"
+        );
+    }
+}

@@ -1,0 +1,249 @@
+//! The report's tables.
+
+use super::headline::{self, GOALS};
+use super::{Report, ms};
+use crate::findings::{Verdict, findings};
+use crate::groups::MATRIX;
+use crate::plot::escape;
+use crate::store::{Outcome, Row};
+use crate::sweeps;
+
+/// Curtis 2009 tables 4.1 to 4.4, the rows with deferred shading, which is what a G-buffer is: frames
+/// a second for 2×2 and 3×3 rays by the hierarchical search, then by the linear one, each for the
+/// three maps (4.1, 4.2) or screens (4.3, 4.4).
+const CURTIS: [(&str, [[u32; 3]; 4]); 4] = [
+    ("4.1, dragon", [[46, 40, 28], [37, 34, 21], [25, 18, 15], [12, 11, 10]]),
+    ("4.2, cube", [[70, 50, 35], [60, 45, 31], [36, 32, 23], [25, 22, 17]]),
+    ("4.3, dragon", [[45, 40, 32], [40, 34, 22], [27, 18, 14], [17, 11, 8]]),
+    ("4.4, cube", [[74, 50, 41], [61, 45, 34], [41, 32, 23], [31, 22, 15]]),
+];
+
+/// Eisemann 2008 Figure 2's table, in ms: mip, summed-area table and N-buffer at 256², 512², 1024².
+const EISEMANN: [[&str; 3]; 3] =
+    [["under 1", "under 1", "under 1"], ["5.1", "21.9", "96.8"], ["under 1", "1.7", "7.3"]];
+
+fn row_of(cells: impl IntoIterator<Item = String>, tag: &str) -> String {
+    let cells: String = cells.into_iter().map(|c| format!("<{tag}>{c}</{tag}>")).collect();
+    format!("<tr>{cells}</tr>\n")
+}
+
+/// The time for 5, 3 and 2 %, a view a row.
+pub fn headline(report: &Report) -> String {
+    let names = headline::techniques(report);
+    let mut out = String::from("<table class=\"n\">");
+    let head = ["scene".to_string(), "light".into()];
+    out += &row_of(head.into_iter().chain(names.iter().map(|n| escape(n))), "th");
+    for line in headline::lines(report) {
+        // The fastest at each goal stands out.
+        let best: Vec<f64> = (0..GOALS.len())
+            .map(|g| line.times.iter().filter_map(|t| t[g]).fold(f64::INFINITY, f64::min))
+            .collect();
+        let cell = |times: &[Option<f64>; 3]| {
+            if times.iter().all(Option::is_none) {
+                return "<i>never</i>".to_string();
+            }
+            let one = |(g, time): (usize, &Option<f64>)| match time {
+                Some(t) if *t <= best[g] => format!("<b>{}</b>", ms(*t)),
+                Some(t) => ms(*t),
+                None => "<i>never</i>".into(),
+            };
+            times.iter().enumerate().map(one).collect::<Vec<_>>().join(" / ")
+        };
+        let first = [escape(line.scene), escape(line.light)];
+        out += &row_of(first.into_iter().chain(line.times.iter().map(cell)), "td");
+    }
+    out + "</table>\n"
+}
+
+/// In how many views each technique reaches 3 %, and in how many it is the fastest to.
+pub fn in_short(report: &Report) -> String {
+    const GOAL: usize = 1;
+    let lines = headline::lines(report);
+    let mut out = String::from("<ul>\n");
+    for (i, name) in headline::techniques(report).iter().enumerate() {
+        let reached = lines.iter().filter(|l| l.times[i][GOAL].is_some()).count();
+        let fastest = lines.iter().filter(|l| {
+            let times = l.times.iter().filter_map(|t| t[GOAL]);
+            let least = times.min_by(f64::total_cmp);
+            least.is_some() && l.times[i][GOAL] == least
+        });
+        out += &format!(
+            "<li><b>{}</b> comes within {:.0} % of the truth in {reached} of {} views, and is the \
+             fastest to do so in {}.</li>\n",
+            escape(name),
+            100.0 * GOALS[GOAL],
+            lines.len(),
+            fastest.count()
+        );
+    }
+    out + "</ul>\n"
+}
+
+/// What the paper says, whether it holds, and what was measured.
+pub fn findings_of(report: &Report, figure: &str) -> String {
+    let all = findings(report.rows);
+    let mut out = String::new();
+    for finding in all.iter().filter(|f| f.figure == figure) {
+        let (class, verdict) = match finding.verdict {
+            Verdict::Holds => ("yes", "holds"),
+            Verdict::InPart => ("part", "holds in part"),
+            Verdict::Refuted => ("no", "does not hold"),
+            Verdict::Unmeasured => ("open", "not measured"),
+        };
+        out += &format!(
+            "<p><b>{}</b> <span class=\"{class}\">{verdict}</span>: {}.</p>\n",
+            escape(finding.claim),
+            escape(&finding.sentence)
+        );
+    }
+    out
+}
+
+/// The technique that is wrong on purpose, in a sentence.
+pub fn wrong(report: &Report) -> String {
+    let mean =
+        |curve: &str| report.study(sweeps::WRONG).find(|r| r.curve == curve).and_then(Row::mean);
+    let (Some(right), Some(wrong)) = (mean("right"), mean("light 10 % too big")) else {
+        return String::new();
+    };
+    let verdict = if wrong > right { "sees it" } else { "does NOT see it" };
+    format!(
+        "<p>A light 10 % too big, handed to the node on purpose (card, exact truth): {:.2} % mean \
+         error where the right one has {:.2} %. The report {verdict}.</p>\n",
+        100.0 * wrong,
+        100.0 * right
+    )
+}
+
+/// A measured frame, or why there is none.
+fn frame(row: &Row) -> String {
+    match &row.outcome {
+        Outcome::Measured { times, .. } => {
+            format!("{} ms ({} fps)", ms(times.frame_ms[1]), ms(1e3 / times.frame_ms[1]))
+        }
+        Outcome::NotThere => "<i>not there yet</i>".into(),
+        Outcome::Failed(why) => format!("failed: {}", escape(why)),
+    }
+}
+
+/// The tables of the other two papers, filled in as far as their techniques are there.
+pub fn published(report: &Report) -> String {
+    let mut out = String::from("<table>");
+    let head = ["table", "scene", "image", "settings", "published", "here"];
+    out += &row_of(head.map(String::from), "th");
+    for row in report.study(sweeps::CURTIS) {
+        let search = usize::from(row.settings.contains("linear")) * 2;
+        let line = search + usize::from(row.settings.contains("rays=9"));
+        let cube = usize::from(row.scene == "tall box");
+        let map = [256.0, 512.0, 1024.0].iter().position(|m| *m == row.x).unwrap_or(1);
+        let screen = [800, 1024, 1280].iter().position(|w| *w == row.extent[0]).unwrap_or(1);
+        // 512² at 1024×768 stands in both tables.
+        let (table, column) = if screen == 1 { (cube, map) } else { (2 + cube, screen) };
+        let (name, values) = &CURTIS[table];
+        out += &row_of(
+            [
+                format!("Curtis 2009 {name}"),
+                escape(&row.scene),
+                format!("{}×{}", row.extent[0], row.extent[1]),
+                escape(&row.settings),
+                format!("{} fps", values[line][column]),
+                frame(row),
+            ],
+            "td",
+        );
+    }
+    for row in report.study(sweeps::EISEMANN) {
+        let filter = ["mip", "sat", "n-buffer"].iter().position(|f| *f == row.curve).unwrap_or(0);
+        let map = [256.0, 512.0, 1024.0].iter().position(|m| *m == row.x).unwrap_or(0);
+        out += &row_of(
+            [
+                "Eisemann 2008 Fig. 2 (the filter alone)".to_string(),
+                escape(&row.scene),
+                format!("{}×{}", row.extent[0], row.extent[1]),
+                escape(&row.settings),
+                format!("{} ms", EISEMANN[filter][map]),
+                frame(row),
+            ],
+            "td",
+        );
+    }
+    out + "</table>\n"
+}
+
+/// What failed, what is not there, what the time did not suffice for.
+pub fn gaps(report: &Report) -> String {
+    let mut out = String::from("<ul>\n");
+    for row in report.rows {
+        if let Outcome::Failed(why) = &row.outcome {
+            out += &format!(
+                "<li class=\"no\">failed: {}, {} light, {} {}: {}</li>\n",
+                escape(&row.scene),
+                escape(&row.light),
+                escape(&row.technique),
+                escape(&row.settings),
+                escape(why)
+            );
+        }
+    }
+    for technique in report.not_there() {
+        out += &format!("<li>not there yet: {}</li>\n", escape(technique));
+    }
+    for group in report.left_out {
+        out += &format!("<li>left out, for the quick run's time was up: {}</li>\n", escape(group));
+    }
+    out + "</ul>\n"
+}
+
+/// Every measured row of error against time.
+pub fn all(report: &Report) -> String {
+    let mut out = String::from("<div class=\"wide\"><table class=\"n\">");
+    let head = [
+        "scene",
+        "light",
+        "technique",
+        "settings",
+        "mean %",
+        "RMSE %",
+        "p99 %",
+        "worst %",
+        "bias %",
+        "false umbra %",
+        "false light %",
+        "on lit %",
+        "FLIP",
+        "noise of truth %",
+        "ms",
+        "q1–q3",
+        "passes, ms",
+    ];
+    out += &row_of(head.map(String::from), "th");
+    for row in report.study(MATRIX) {
+        let Some((e, t)) = row.measured() else { continue };
+        let passes: Vec<String> =
+            t.passes.iter().map(|(name, time)| format!("{} {}", escape(name), ms(*time))).collect();
+        let percent = |v: f64| format!("{:.2}", 100.0 * v);
+        out += &row_of(
+            [
+                escape(&row.scene),
+                escape(&row.light),
+                escape(&row.technique),
+                escape(&row.settings),
+                percent(e.mean_abs_error),
+                percent(e.rmse),
+                percent(e.p99),
+                percent(e.worst),
+                percent(e.bias),
+                percent(e.false_umbra),
+                percent(e.false_light),
+                percent(e.lit_error),
+                e.flip.map_or_else(String::new, |f| format!("{f:.4}")),
+                percent(e.truth_noise),
+                ms(t.frame_ms[1]),
+                format!("{}–{}", ms(t.frame_ms[0]), ms(t.frame_ms[2])),
+                format!("<small>{}</small>", passes.join(", ")),
+            ],
+            "td",
+        );
+    }
+    out + "</table></div>\n"
+}

@@ -1,0 +1,177 @@
+//! A whole run: what is left to measure, in order, and the report of what is there.
+
+use crate::Problem;
+use crate::groups::{self, FULL, Group, QUICK};
+use crate::measure::Bench;
+use crate::options::Options;
+use crate::progress::{Estimate, Progress, duration};
+use crate::report::{self, Report};
+use crate::scenes::{self, SceneSpec, Source};
+use crate::store::{Header, Outcome, Row, Store};
+use crate::truth::Fnv;
+use antumbra::gpu::headless::{HeadlessDevice, HeadlessOptions};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Instant;
+
+/// What the quick run may take, less what the report takes to write.
+const QUICK_BUDGET_S: f64 = 270.0;
+
+/// Measures and reports; whether every row is good.
+///
+/// # Errors
+/// A sentence for what stops the run: no device, a folder that cannot be read or written.
+pub fn run(options: &Options) -> Result<bool, Problem> {
+    if options.write_docs {
+        let page = Options::root().join("docs/accuracy.md");
+        report::docs::copy(&options.out.join("headline.md"), &page)?;
+        println!("{}", page.display());
+        return Ok(true);
+    }
+    let measured = options.out.join("measured.jsonl");
+    if options.report {
+        let (header, rows) = Store::read(&measured)?;
+        let cache = kept(&options.out, &header)?;
+        return finish(
+            &Report { header: &header, rows: &rows, left_out: &[], cache: &cache },
+            options,
+        );
+    }
+    let scale = if options.quick { QUICK } else { FULL };
+    let own = options.scenes.as_deref().map(scenes::own).transpose()?.unwrap_or_default();
+    let device = HeadlessDevice::new(&HeadlessOptions::default()).map_err(|e| e.to_string())?;
+    let header = Header {
+        command: options.command(),
+        commit: commit(),
+        driver: device.name().into(),
+        quick: scale.quick,
+        extent: scale.view,
+        truth_rays: scale.rays,
+        scenes: own.iter().map(told).collect(),
+    };
+    let cache = kept(&options.out, &header)?;
+    let mut store = Store::open(&measured, &header)?;
+    let mut groups = groups::all(&scale, &own);
+    if let Some(text) = &options.only {
+        groups.retain(|g| g.key().contains(text.as_str()));
+    }
+    let [width, height] = scale.view;
+    println!("{}: {width}×{height} pixels, commit {}", header.driver, header.commit);
+    let started = Instant::now();
+    let left_out = measure(&Bench { device: &device, scale, cache: &cache }, &groups, &mut store)?;
+    let keys: Vec<String> = groups.iter().map(Group::key).collect();
+    let rows = store.rows(keys.iter().map(String::as_str));
+    println!("{} rows in {}", rows.len(), duration(started.elapsed().as_secs_f64()));
+    finish(&Report { header: &header, rows: &rows, left_out: &left_out, cache: &cache }, options)
+}
+
+/// Writes the report and tells where it is and what failed; whether nothing did.
+fn finish(report: &Report, options: &Options) -> Result<bool, Problem> {
+    report::write(report, &options.out)?;
+    println!("Look at {}", options.out.join("index.html").display());
+    let mut good = true;
+    for row in report.rows {
+        if let Outcome::Failed(why) = &row.outcome {
+            let Row { scene, light, technique, settings, .. } = row;
+            println!("failed: {scene}, {light} light, {technique} {settings}: {why}");
+            good = false;
+        }
+    }
+    Ok(good)
+}
+
+/// Measures every group that is not there, and names those that the quick run has no time for.
+fn measure(bench: &Bench, groups: &[Group], store: &mut Store) -> Result<Vec<String>, Problem> {
+    let scale = &bench.scale;
+    let missing: Vec<&Group> = groups.iter().filter(|g| !store.has(&g.key())).collect();
+    let mut estimate = Estimate::default();
+    let keys: Vec<String> = groups.iter().map(Group::key).collect();
+    estimate.learn(&store.rows(keys.iter().map(String::as_str)));
+    if missing.len() < groups.len() {
+        println!(
+            "{} of {} groups are there from before",
+            groups.len() - missing.len(),
+            groups.len()
+        );
+    }
+    let progress = Progress::new(missing.len());
+    let mut left_out = Vec::new();
+    for (i, group) in missing.iter().enumerate() {
+        let key = group.key();
+        let told = estimate.seconds(group, scale);
+        let elapsed = progress.elapsed().as_secs_f64();
+        let expected = estimate.total(std::iter::once(*group), scale);
+        if scale.quick && elapsed + expected > QUICK_BUDGET_S {
+            progress.say(&format!("left out, for the time is up: {key}"));
+            left_out.push(key);
+            continue;
+        }
+        let started = Instant::now();
+        let rows = bench.measure(group, &|what| progress.doing(&format!("{key}: {what}")));
+        let took = started.elapsed().as_secs_f64();
+        estimate.learn(&rows);
+        estimate.correct(told, took);
+        store.add(&key, rows, took)?;
+        let left = estimate.total(missing[i + 1..].iter().copied(), scale);
+        progress.done(&key, took, left);
+        // The second group is of another scene, so that the estimate is not of the first alone.
+        if i == 1 && !scale.quick {
+            progress.say(&format!(
+                "the run will take about {} (by its first two groups); it can be stopped, and goes \
+                 on where it was",
+                duration(left + progress.elapsed().as_secs_f64())
+            ));
+        }
+    }
+    progress.finish();
+    Ok(left_out)
+}
+
+/// The folder of truths and pictures that belong to this run; those of other runs are removed.
+fn kept(out: &Path, header: &Header) -> Result<PathBuf, Problem> {
+    let mut hash = Fnv::default();
+    format!("{header:?}").bytes().for_each(|b| hash.add(u64::from(b)));
+    let all = out.join("cache");
+    let own = all.join(format!("{:016x}", hash.0));
+    std::fs::create_dir_all(&own).map_err(|e| format!("--out {}: {e}", out.display()))?;
+    let others = std::fs::read_dir(&all).into_iter().flatten().flatten().map(|e| e.path());
+    for other in others.filter(|path| *path != own && path.is_dir()) {
+        // What cannot be removed only takes room.
+        let _ = std::fs::remove_dir_all(other);
+    }
+    Ok(own)
+}
+
+/// A scene's file, so that a run with another one is another run.
+fn told(spec: &SceneSpec) -> String {
+    let Source::File(path) = &spec.source else { return spec.name.clone() };
+    let date = std::fs::metadata(path).and_then(|m| Ok((m.len(), m.modified()?)));
+    format!("{} {:?}", path.display(), date.ok())
+}
+
+/// git's commit, and a hash of this program where it is not that commit's.
+fn commit() -> String {
+    let git = |arguments: &[&str]| {
+        let output =
+            Command::new("git").current_dir(Options::root()).args(arguments).output().ok()?;
+        let text = String::from_utf8(output.stdout).ok()?;
+        output.status.success().then(|| text.trim().to_string())
+    };
+    let Some(commit) = git(&["rev-parse", "--short=10", "HEAD"]) else {
+        return format!("unknown, {}", program());
+    };
+    let clean =
+        git(&["status", "--porcelain", "--untracked-files=no"]).is_some_and(|s| s.is_empty());
+    if clean { commit } else { format!("{commit}-dirty, {}", program()) }
+}
+
+fn program() -> String {
+    let bytes = std::env::current_exe().and_then(std::fs::read).unwrap_or_default();
+    let mut hash = Fnv::default();
+    bytes.chunks(8).for_each(|c| {
+        let mut word = [0; 8];
+        word[..c.len()].copy_from_slice(c);
+        hash.add(u64::from_le_bytes(word));
+    });
+    format!("program {:08x}", hash.0 >> 32)
+}

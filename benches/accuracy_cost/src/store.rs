@@ -1,0 +1,370 @@
+//! What was measured, one JSON line each, written as it comes.
+//!
+//! The file begins with what the run is: options, commit, device. Rows follow, and behind the rows of
+//! each group a line that says it is whole. A run that is killed, or whose disk fills, leaves a file
+//! whose whole lines are all good; a torn last line is cut off, and groups without their end are
+//! measured again. A file of another run is set aside, never written over.
+
+use crate::Problem;
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::{File, OpenOptions};
+use std::io::{Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+/// What a run is; runs that differ in any of it do not share rows.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Header {
+    /// The command that made it.
+    pub command: String,
+    /// git's commit, with `-dirty` and a hash of the program where the tree has changes.
+    pub commit: String,
+    /// The device's name.
+    pub driver: String,
+    /// Whether the run is the quick one.
+    pub quick: bool,
+    /// Width and height of the views.
+    pub extent: [u32; 2],
+    /// Rays a pixel of the traced truth.
+    pub truth_rays: u32,
+    /// Names, sizes and dates of the scenes of one's own.
+    pub scenes: Vec<String>,
+}
+
+/// The errors of an image, in visible fractions: `antumbra::truth::ErrorSummary` and FLIP.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[allow(missing_docs, reason = "named and told in antumbra::truth::ErrorSummary")]
+pub struct Errors {
+    pub pixels: usize,
+    pub mean_abs_error: f64,
+    pub rmse: f64,
+    pub p99: f64,
+    pub worst: f64,
+    pub bias: f64,
+    pub penumbra_pixels: usize,
+    pub penumbra_mean: f64,
+    pub false_umbra: f64,
+    pub false_light: f64,
+    pub lit_pixels: usize,
+    pub lit_error: f64,
+    /// Mean FLIP of the shaded images, 0..1; none where the pixels are no picture.
+    pub flip: Option<f64>,
+    /// The standard error of one penumbra pixel of the truth; 0 where it is exact.
+    pub truth_noise: f64,
+    /// What the truth's noise alone would add up to in `mean_abs_error`.
+    pub noise_floor: f64,
+}
+
+/// The times of a frame.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Times {
+    /// First quartile, median and third quartile of submit to fence, or of tracing, in ms.
+    pub frame_ms: [f64; 3],
+    /// How many frames those are of; the warm-up is not counted.
+    pub frames: usize,
+    /// Median ms of each pass by timestamps; empty where there are none.
+    pub passes: Vec<(String, f64)>,
+    /// Median µs of recording.
+    pub record_us: f64,
+    /// Memory of the node.
+    pub gpu_bytes: u64,
+}
+
+/// How a row ended.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    /// Measured.
+    Measured {
+        /// The errors.
+        errors: Errors,
+        /// The times.
+        times: Times,
+    },
+    /// The crate does not have the technique yet.
+    NotThere,
+    /// It was tried and failed, for this reason.
+    Failed(String),
+}
+
+/// One row of the report.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// Which study it belongs to: `matrix`, or the sweep's name.
+    pub study: String,
+    /// The scene's name.
+    pub scene: String,
+    /// The light's name: small, medium, large.
+    pub light: String,
+    /// The light's width and height in metres.
+    pub light_m: [f64; 2],
+    /// Triangles of the scene.
+    pub triangles: usize,
+    /// Width and height of the image.
+    pub extent: [u32; 2],
+    /// The technique's name, as on a command line.
+    pub technique: String,
+    /// The curve that the row is a point of.
+    pub curve: String,
+    /// The settings, as words of a command line.
+    pub settings: String,
+    /// The value that is swept; its meaning is the study's.
+    pub x: f64,
+    /// How it ended.
+    pub outcome: Outcome,
+}
+
+impl Row {
+    /// Errors and times, where it was measured.
+    pub fn measured(&self) -> Option<(&Errors, &Times)> {
+        match &self.outcome {
+            Outcome::Measured { errors, times } => Some((errors, times)),
+            _ => None,
+        }
+    }
+
+    /// Mean |error|, where it was measured.
+    pub fn mean(&self) -> Option<f64> {
+        Some(self.measured()?.0.mean_abs_error)
+    }
+
+    /// Median ms of a frame, where it was measured.
+    pub fn ms(&self) -> Option<f64> {
+        Some(self.measured()?.1.frame_ms[1])
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Line {
+    Run(Header),
+    Row {
+        group: String,
+        row: Box<Row>,
+    },
+    /// A group is whole with its last `rows` rows, and took this many seconds.
+    Whole {
+        group: String,
+        rows: usize,
+        seconds: f64,
+    },
+}
+
+/// The file and what is in it.
+pub struct Store {
+    file: File,
+    path: PathBuf,
+    rows: BTreeMap<String, Vec<Row>>,
+    whole: BTreeSet<String>,
+}
+
+impl Store {
+    /// Opens the file of a run, or begins it.
+    ///
+    /// # Errors
+    /// A sentence with the file's name where it cannot be read or written.
+    pub fn open(path: &Path, header: &Header) -> Result<Self, Problem> {
+        let told = |e: std::io::Error| format!("{}: {e}", path.display());
+        let mut text = Vec::new();
+        if path.exists() {
+            File::open(path).and_then(|mut f| f.read_to_end(&mut text)).map_err(told)?;
+        }
+        let (lines, good) = read(&text);
+        let same = matches!(lines.first(), Some(Line::Run(h)) if h == header);
+        if !lines.is_empty() && !same {
+            std::fs::rename(path, path.with_extension("earlier.jsonl")).map_err(told)?;
+        }
+        let open = OpenOptions::new().create(true).truncate(false).write(true).open(path);
+        let mut file = open.map_err(told)?;
+        let keep = if same { good as u64 } else { 0 };
+        file.set_len(keep).and_then(|()| file.seek(SeekFrom::End(0))).map_err(told)?;
+        let mut store =
+            Self { file, path: path.into(), rows: BTreeMap::new(), whole: BTreeSet::new() };
+        if same {
+            lines.into_iter().for_each(|line| store.take(line));
+            let Self { rows, whole, .. } = &mut store;
+            rows.retain(|group, _| whole.contains(group));
+        } else {
+            store.write(&Line::Run(header.clone()))?;
+        }
+        Ok(store)
+    }
+
+    /// The run that a file is of, and its whole groups' rows in the order they were measured.
+    ///
+    /// # Errors
+    /// A sentence where the file cannot be read or holds no run.
+    pub fn read(path: &Path) -> Result<(Header, Vec<Row>), Problem> {
+        let text = std::fs::read(path).map_err(|e| format!("{}: {e}", path.display()))?;
+        let mut header = None;
+        let mut groups: Vec<String> = Vec::new();
+        let mut rows: BTreeMap<String, Vec<Row>> = BTreeMap::new();
+        for line in read(&text).0 {
+            match line {
+                Line::Run(h) => header = Some(h),
+                Line::Row { group, row } => rows.entry(group).or_default().push(*row),
+                Line::Whole { group, rows: count, .. } => {
+                    let all = rows.entry(group.clone()).or_default();
+                    all.drain(..all.len().saturating_sub(count));
+                    groups.push(group);
+                }
+            }
+        }
+        let header = header.ok_or_else(|| format!("{}: no run is in it", path.display()))?;
+        Ok((header, groups.iter().filter_map(|g| rows.remove(g)).flatten().collect()))
+    }
+
+    fn take(&mut self, line: Line) {
+        match line {
+            Line::Run(_) => {}
+            Line::Row { group, row } => self.rows.entry(group).or_default().push(*row),
+            Line::Whole { group, rows, .. } => {
+                // Rows before those are of a run that was killed in the middle of the group.
+                let all = self.rows.entry(group.clone()).or_default();
+                if let Some(torn) = all.len().checked_sub(rows) {
+                    all.drain(..torn);
+                    self.whole.insert(group);
+                }
+            }
+        }
+    }
+
+    fn write(&mut self, line: &Line) -> Result<(), Problem> {
+        let told = |e: std::io::Error| format!("{}: {e}", self.path.display());
+        let mut text = serde_json::to_string(line).map_err(|e| told(e.into()))?;
+        text.push('\n');
+        self.file.write_all(text.as_bytes()).map_err(told)?;
+        // A killed program loses nothing that was written; a machine that stops may.
+        self.file.sync_data().map_err(told)
+    }
+
+    /// Whether the group is there, whole.
+    pub fn has(&self, group: &str) -> bool {
+        self.whole.contains(group)
+    }
+
+    /// Adds a whole group's rows.
+    ///
+    /// # Errors
+    /// A sentence where the disk refuses; what was written before stays readable.
+    pub fn add(&mut self, group: &str, rows: Vec<Row>, seconds: f64) -> Result<(), Problem> {
+        let count = rows.len();
+        for row in rows {
+            let line = Line::Row { group: group.into(), row: Box::new(row) };
+            self.write(&line)?;
+            self.take(line);
+        }
+        let line = Line::Whole { group: group.into(), rows: count, seconds };
+        self.write(&line)?;
+        self.take(line);
+        Ok(())
+    }
+
+    /// The rows of these groups, in their order.
+    pub fn rows<'a>(&'a self, groups: impl Iterator<Item = &'a str>) -> Vec<Row> {
+        groups.filter_map(|g| self.rows.get(g)).flatten().cloned().collect()
+    }
+}
+
+/// The whole lines of a file, and how many bytes they take.
+fn read(text: &[u8]) -> (Vec<Line>, usize) {
+    let mut good = 0;
+    let mut lines = Vec::new();
+    for line in text.split_inclusive(|b| *b == b'\n') {
+        if !line.ends_with(b"\n") {
+            break;
+        }
+        good += line.len();
+        // A line that is whole and still not understood costs its group, which is measured again.
+        lines.extend(serde_json::from_slice(line).ok());
+    }
+    (lines, good)
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// A measured row.
+    pub(crate) fn row(curve: &str, x: f64, ms: f64, error: f64) -> Row {
+        let errors = Errors { mean_abs_error: error, pixels: 100, ..Errors::default() };
+        let times = Times { frame_ms: [ms * 0.9, ms, ms * 1.2], frames: 3, ..Times::default() };
+        Row {
+            study: "matrix".into(),
+            scene: "card".into(),
+            light: "medium".into(),
+            light_m: [0.4; 2],
+            triangles: 4,
+            extent: [64, 48],
+            technique: "soft-shadow-map".into(),
+            curve: curve.into(),
+            settings: format!("map={x}"),
+            x,
+            outcome: Outcome::Measured { errors, times },
+        }
+    }
+
+    fn scratch(name: &str) -> PathBuf {
+        let folder = std::env::temp_dir().join(format!("antumbra-bench-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let path = folder.join(name);
+        let _ = std::fs::remove_file(&path);
+        path
+    }
+
+    #[test]
+    fn a_run_resumes_with_what_was_whole() {
+        let path = scratch("resumes.jsonl");
+        let header = Header { commit: "abc".into(), ..Header::default() };
+        let mut store = Store::open(&path, &header).unwrap();
+        store
+            .add("a", vec![row("one", 64.0, 1.0, 0.1), row("one", 128.0, 2.0, 0.05)], 3.0)
+            .unwrap();
+        // Killed in the middle of a group, and of a line.
+        store
+            .write(&Line::Row { group: "b".into(), row: Box::new(row("one", 1.0, 1.0, 0.5)) })
+            .unwrap();
+        store.file.write_all(b"{\"row\":{\"group\":\"b\",\"row\":{\"stu").unwrap();
+        drop(store);
+        let mut store = Store::open(&path, &header).unwrap();
+        assert!(store.has("a") && !store.has("b"));
+        assert_eq!(store.rows(["a", "b"].into_iter()).len(), 2);
+        store.add("b", vec![row("two", 1.0, 1.0, 0.25)], 1.0).unwrap();
+        drop(store);
+        let store = Store::open(&path, &header).unwrap();
+        let curves: Vec<_> =
+            store.rows(["b", "a"].into_iter()).into_iter().map(|r| r.curve).collect();
+        // The row that was written before the kill is no row of the group's second telling.
+        assert_eq!(curves, ["two", "one", "one"]);
+        drop(store);
+        let (of, rows) = Store::read(&path).unwrap();
+        assert_eq!((of, rows.len()), (header, 3));
+        assert!(Store::read(Path::new("/nowhere")).unwrap_err().contains("/nowhere"));
+    }
+
+    #[test]
+    fn another_run_starts_anew_and_keeps_the_earlier_file() {
+        let path = scratch("another.jsonl");
+        let first = Header { commit: "abc".into(), ..Header::default() };
+        Store::open(&path, &first).unwrap().add("a", vec![row("one", 1.0, 1.0, 0.1)], 1.0).unwrap();
+        let second = Header { commit: "def".into(), ..first };
+        let store = Store::open(&path, &second).unwrap();
+        assert!(!store.has("a"));
+        let earlier = std::fs::read(path.with_extension("earlier.jsonl")).unwrap();
+        assert_eq!(read(&earlier).0.len(), 3);
+    }
+
+    #[test]
+    fn numbers_that_json_cannot_hold_are_no_trap() {
+        let mut wrong = row("one", 1.0, 1.0, f64::NAN);
+        wrong.x = f64::INFINITY;
+        let path = scratch("nan.jsonl");
+        let header = Header::default();
+        let mut store = Store::open(&path, &header).unwrap();
+        store.add("a", vec![wrong], 1.0).unwrap();
+        store.add("b", vec![row("one", 1.0, 1.0, 0.1)], 1.0).unwrap();
+        // serde_json writes null for them, which is no number: that group alone is not whole.
+        let store = Store::open(&path, &header).unwrap();
+        assert!(!store.has("a") && store.has("b"));
+    }
+}
