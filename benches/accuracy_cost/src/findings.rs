@@ -155,7 +155,8 @@ fn sides(rows: &[Row]) -> (Verdict, String) {
         if scene == "card" {
             return Some((most <= ALIKE, format!("differ by {} at most", percent(most))));
         }
-        let text = format!("better at {better} of {} sizes, by {}", gains.len(), percent(mean));
+        let text =
+            format!("better at {better} of {} sizes, by {:.2} points", gains.len(), 100.0 * mean);
         (!gains.is_empty()).then_some((better == gains.len(), text))
     })
 }

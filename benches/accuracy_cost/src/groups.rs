@@ -198,9 +198,10 @@ fn matrix_entries(scale: &Scale, in_strip: bool) -> Vec<Entry> {
     entries
 }
 
-/// Every group of a run: what a reader looks at first is measured first.
+/// Every group of a run: first whether the measuring can be trusted, then what a reader looks at
+/// first.
 pub fn all(scale: &Scale, own: &[SceneSpec]) -> Vec<Group> {
-    let mut groups = Vec::new();
+    let mut groups = vec![sweeps::wrong(scale)];
     let matrix = |spec: &SceneSpec, light: &'static str| Group {
         study: MATRIX,
         scene: spec.name.clone(),

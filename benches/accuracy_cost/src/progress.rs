@@ -1,6 +1,6 @@
 //! How long it will take: from what the groups measured so far took.
 
-use crate::groups::{Group, Scale};
+use crate::groups::{Group, MATRIX, Scale};
 use crate::store::Row;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::collections::HashMap;
@@ -17,9 +17,10 @@ const UNKNOWN_MS: f64 = 60.0;
 pub struct Estimate {
     /// ms a frame and pixels, by technique and settings, the last one told.
     known: HashMap<(String, String), (f64, f64)>,
-    /// Seconds told beforehand and seconds taken, of groups measured in this process.
-    told: f64,
-    taken: f64,
+    /// Seconds that known costs add up to and seconds taken, of the groups measured in this process:
+    /// of the views, and of the sweeps, whose rows are many and cheap.
+    views: [f64; 2],
+    sweeps: [f64; 2],
 }
 
 impl Estimate {
@@ -33,10 +34,18 @@ impl Estimate {
         }
     }
 
-    /// Learns how wrong it was on a group.
-    pub fn correct(&mut self, told: f64, taken: f64) {
-        self.told += told;
-        self.taken += taken;
+    /// Learns how wrong it is on a group whose rows it has learnt.
+    pub fn correct(&mut self, group: &Group, scale: &Scale, taken: f64) {
+        let told = self.seconds(group, scale);
+        let sums = if group.study == MATRIX { &mut self.views } else { &mut self.sweeps };
+        *sums = [sums[0] + told, sums[1] + taken];
+    }
+
+    /// A group's seconds, as wrong as such groups have been.
+    fn corrected(&self, group: &Group, scale: &Scale) -> f64 {
+        let [told, taken] = if group.study == MATRIX { self.views } else { self.sweeps };
+        let factor = if told > 0.0 { (taken / told).clamp(0.2, 5.0) } else { 1.0 };
+        factor * self.seconds(group, scale)
     }
 
     /// Seconds a group should take.
@@ -50,10 +59,9 @@ impl Estimate {
                 continue;
             }
             let same = self.known.get(&(entry.technique.to_string(), entry.words.clone()));
-            // Part of a frame is the light's view, whatever the number of pixels.
-            let scaled = |&(ms, of): &(f64, f64)| ms * (0.3 + 0.7 * pixels / of);
+            let known = same.map(|cost| at(cost, pixels));
             let frame =
-                same.map_or_else(|| self.typical(entry.technique).unwrap_or(UNKNOWN_MS), scaled);
+                known.or_else(|| self.typical(entry.technique, pixels)).unwrap_or(UNKNOWN_MS);
             ms += SETUP_S * 1e3 + frames * frame;
         }
         if group.against == crate::groups::Against::Traced {
@@ -71,19 +79,22 @@ impl Estimate {
         ms * 1e-3
     }
 
-    /// The mean of what is known of a technique.
-    fn typical(&self, technique: &str) -> Option<f64> {
-        let of: Vec<f64> =
-            self.known.iter().filter(|((t, _), _)| t == technique).map(|(_, v)| v.0).collect();
+    /// The mean of what is known of a technique, at so many pixels.
+    fn typical(&self, technique: &str, pixels: f64) -> Option<f64> {
+        let of = self.known.iter().filter(|((t, _), _)| t == technique);
+        let of: Vec<f64> = of.map(|(_, cost)| at(cost, pixels)).collect();
         (!of.is_empty()).then(|| of.iter().sum::<f64>() / of.len() as f64)
     }
 
     /// Seconds that all of these should take, as wrong as it has been so far.
     pub fn total<'a>(&self, groups: impl Iterator<Item = &'a Group>, scale: &Scale) -> f64 {
-        let sum: f64 = groups.map(|g| self.seconds(g, scale)).sum();
-        let factor = if self.told > 0.0 { (self.taken / self.told).clamp(0.2, 5.0) } else { 1.0 };
-        sum * factor
+        groups.map(|g| self.corrected(g, scale)).sum()
     }
+}
+
+/// The ms of a frame at another number of pixels: part of it is the light's view, whatever that is.
+fn at(&(ms, of): &(f64, f64), pixels: f64) -> f64 {
+    ms * (0.3 + 0.7 * pixels / of)
 }
 
 /// "3 h 05 min", "12 min", "40 s".
@@ -171,17 +182,21 @@ mod tests {
     fn an_estimate_follows_what_was_measured() {
         let groups = all(&QUICK, &[]);
         let mut estimate = Estimate::default();
-        let before = estimate.seconds(&groups[0], &QUICK);
+        let before = estimate.seconds(&groups[1], &QUICK);
         assert!(
             estimate.total(groups.iter(), &QUICK) < estimate.total(all(&FULL, &[]).iter(), &FULL)
         );
         let mut slow = crate::store::tests::row("soft shadow map", 256.0, 5000.0, 0.1);
         slow.settings = "map=256".into();
-        slow.extent = groups[0].extent;
+        slow.extent = groups[1].extent;
         estimate.learn(&[slow]);
-        assert!(estimate.seconds(&groups[0], &QUICK) > before + 15.0);
-        estimate.correct(10.0, 20.0);
-        let sum: f64 = groups.iter().map(|g| estimate.seconds(g, &QUICK)).sum();
-        assert!((estimate.total(groups.iter(), &QUICK) - 2.0 * sum).abs() < 1e-9);
+        assert!(estimate.seconds(&groups[1], &QUICK) > before + 15.0);
+        // Views and sweeps are wrong by factors of their own.
+        let (sweep, view) = (&groups[0], &groups[1]);
+        let of = |estimate: &Estimate, g| estimate.total(std::iter::once(g), &QUICK);
+        let [sweep_s, view_s] = [sweep, view].map(|g| of(&estimate, g));
+        estimate.correct(view, &QUICK, 2.0 * view_s);
+        assert!((of(&estimate, view) - 2.0 * view_s).abs() < 1e-9);
+        assert!((of(&estimate, sweep) - sweep_s).abs() < 1e-9);
     }
 }

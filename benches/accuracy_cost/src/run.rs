@@ -98,7 +98,6 @@ fn measure(bench: &Bench, groups: &[Group], store: &mut Store) -> Result<Vec<Str
     let mut left_out = Vec::new();
     for (i, group) in missing.iter().enumerate() {
         let key = group.key();
-        let told = estimate.seconds(group, scale);
         let elapsed = progress.elapsed().as_secs_f64();
         let expected = estimate.total(std::iter::once(*group), scale);
         if scale.quick && elapsed + expected > QUICK_BUDGET_S {
@@ -110,11 +109,11 @@ fn measure(bench: &Bench, groups: &[Group], store: &mut Store) -> Result<Vec<Str
         let rows = bench.measure(group, &|what| progress.doing(&format!("{key}: {what}")));
         let took = started.elapsed().as_secs_f64();
         estimate.learn(&rows);
-        estimate.correct(told, took);
+        estimate.correct(group, scale, took);
         store.add(&key, rows, took)?;
         let left = estimate.total(missing[i + 1..].iter().copied(), scale);
         progress.done(&key, took, left);
-        // The second group is of another scene, so that the estimate is not of the first alone.
+        // The first is a sweep's and the second a view, so that both kinds are known.
         if i == 1 && !scale.quick {
             progress.say(&format!(
                 "the run will take about {} (by its first two groups); it can be stopped, and goes \

@@ -102,7 +102,8 @@ fn method() -> String {
          and by the truth, at the same pixels of one G-buffer. <b>Mean error</b>: mean |error| over \
          the pixels that either puts in shadow or penumbra (Atty 2006 section 5.2.1), in percent of \
          the light. <b>FLIP</b>: mean over the whole shaded image, visibility × unshadowed \
-         irradiance. The truth's random numbers are not the ray tracer's. The dotted line is what the \
+         irradiance. The card's truth is its closed form; the others' is traced, with random \
+         numbers that are not the measured ray tracer's. The dotted line is what the \
          truth's own noise adds up to in a mean error.</p>\n<p><b>Time</b>: from submit to fence, \
          G-buffer not counted, after a frame of warm-up, techniques in turns in one process, the \
          median of all rounds. The ray tracer's is the wall time of its rays on all cores, its \

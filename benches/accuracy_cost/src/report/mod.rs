@@ -66,7 +66,11 @@ pub fn write(report: &Report, out: &Path) -> Result<(), Problem> {
         let path = out.join(name);
         let part = out.join(format!(".{name}.part"));
         let written = std::fs::write(&part, text).and_then(|()| std::fs::rename(&part, &path));
-        written.map_err(|e| format!("{}: {e}", path.display()))?;
+        written.map_err(|e| {
+            // The room it took is better free.
+            let _ = std::fs::remove_file(&part);
+            format!("{}: {e}", path.display())
+        })?;
     }
     Ok(())
 }
