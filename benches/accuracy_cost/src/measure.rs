@@ -9,7 +9,7 @@ use crate::stats::{median, quartiles};
 use crate::store::{Errors, Outcome, Row, Times};
 use crate::techniques::{Method, method};
 use crate::truth::{self, Truth, mask};
-use antumbra::gpu::headless::{FrameTimes, HeadlessDevice, Stage};
+use antumbra::gpu::headless::{FrameTimes, HeadlessDevice, ReadbackScheme, Stage};
 use antumbra::scene::{AreaLight, Instance, Role};
 use antumbra::truth::{ErrorSummary, Receiver, Sampling, Tracer};
 use antumbra::{FramePlan, RectangleLight, Settings};
@@ -40,8 +40,21 @@ pub struct Bench<'a> {
 
 /// What computes one row's image.
 enum Runner {
-    Node { stage: Box<Stage>, plan: Box<FramePlan> },
-    Rays { sampling: Sampling },
+    Node {
+        stage: Box<Stage>,
+        plan: Box<FramePlan>,
+    },
+    Rays {
+        sampling: Sampling,
+    },
+    /// The paper's scheme ends with its map. Its image is that of blending, whose sums are the same
+    /// (a test of the crate's holds that), and its frame takes that one's last pass on top.
+    Readback {
+        scheme: Box<ReadbackScheme>,
+        window: Option<[[f64; 2]; 2]>,
+        stage: Box<Stage>,
+        plan: Box<FramePlan>,
+    },
 }
 
 /// One row in the making.
@@ -138,6 +151,22 @@ impl Bench<'_> {
                     truth::sampling(Sampling::one_grid(rays.isqrt(), TRACER_SEED), receivers)?;
                 Some(Runner::Rays { sampling })
             }
+            Some(Method::Readback(side)) => {
+                let words = format!(
+                    "receivers=map accumulate=blend sides=one map={side} receiver_map={side}"
+                );
+                let Some(Method::Node(settings)) =
+                    crate::techniques::method("soft-shadow-map", &words)?
+                else {
+                    return Ok(None);
+                };
+                let mut stage = Box::new(self.stage(ready, group.extent, *settings)?);
+                let plan = stage.plan(light, ready.window).map_err(|e| e.to_string())?;
+                let scheme = ReadbackScheme::new(self.device, &ready.scene, side, side);
+                let scheme = Box::new(scheme.map_err(|e| e.to_string())?);
+                stage.run(&plan).map_err(|e| e.to_string())?;
+                Some(Runner::Readback { scheme, window: ready.window, stage, plan: Box::new(plan) })
+            }
             Some(Method::Node(settings)) => {
                 let mut stage = Box::new(self.stage(ready, group.extent, *settings)?);
                 let light = scaled(light, entry.light_scale)?;
@@ -195,7 +224,7 @@ impl Candidate<'_> {
     /// The first frame compiles what the driver compiles, and is not counted; its image is kept.
     fn warm_up(&mut self, tracer: &Tracer, light: &RectangleLight, receivers: &[Receiver]) {
         let done = self.run(tracer, light, receivers).and_then(|()| match &mut self.state {
-            Ok(Some(Runner::Node { stage, .. })) => {
+            Ok(Some(Runner::Node { stage, .. } | Runner::Readback { stage, .. })) => {
                 self.image = stage.visibility().map_err(|e| e.to_string())?;
                 Ok(())
             }
@@ -213,6 +242,22 @@ impl Candidate<'_> {
     ) -> Result<(), Problem> {
         let times = match &mut self.state {
             Ok(Some(Runner::Node { stage, plan })) => stage.run(plan).map_err(|e| e.to_string())?,
+            Ok(Some(Runner::Readback { scheme, window, stage, plan })) => {
+                let times = scheme.run(light, *window).map_err(|e| e.to_string())?;
+                let resolve = stage.run(plan).map_err(|e| e.to_string())?.passes;
+                let (name, ms) = resolve.last().copied().ok_or("the device has no timestamps")?;
+                let told = |name, time: Duration| (name, time.as_secs_f64() * 1e3);
+                FrameTimes {
+                    frame: times.frame + Duration::from_secs_f64(ms / 1e3),
+                    record: Duration::ZERO,
+                    passes: vec![
+                        told("readback.depth", times.depth),
+                        told("readback.rectangles", times.rectangles),
+                        told("readback.blend", times.blend),
+                        (name, ms),
+                    ],
+                }
+            }
             Ok(Some(Runner::Rays { sampling })) => {
                 let started = Instant::now();
                 let traced =
@@ -234,10 +279,12 @@ impl Candidate<'_> {
             Err(problem) => return (self.entry, Err(problem.clone())),
             Ok(None) => return (self.entry, Ok(None)),
             Ok(Some(Runner::Rays { .. })) => 0,
-            Ok(Some(Runner::Node { stage, .. })) => match stage.node() {
-                Ok(node) => node.memory().iter().map(|(_, bytes)| bytes).sum(),
-                Err(e) => return (self.entry, Err(e.to_string())),
-            },
+            Ok(Some(Runner::Node { stage, .. } | Runner::Readback { stage, .. })) => {
+                match stage.node() {
+                    Ok(node) => node.memory().iter().map(|(_, bytes)| bytes).sum(),
+                    Err(e) => return (self.entry, Err(e.to_string())),
+                }
+            }
         };
         let ms = |of: fn(&FrameTimes) -> Duration| -> Vec<f64> {
             self.frames.iter().map(|f| of(f).as_secs_f64() * 1e3).collect()

@@ -9,6 +9,10 @@ use antumbra::{Settings, Technique};
 /// The name of the technique that is not the node's: rays on all cores of the processor.
 pub const RAY_TRACER: &str = "cpu-rays";
 
+/// The name of the paper's own scheme: depth read back, one side's rectangles made by the processor,
+/// blended (Atty 2006 section 4.1).
+pub const READBACK: &str = "cpu-quads";
+
 /// The settings, and whether the quick run measures them.
 type Step = (&'static str, bool);
 
@@ -34,6 +38,18 @@ pub const CURVES: &[Curve] = &[
         sweeps: "map",
         steps: &[("map=64", true), ("map=128", true), ("map=256", true), ("map=512", false)],
         shown: Some(2),
+    },
+    Curve {
+        technique: "soft-shadow-map",
+        label: "soft shadow map, larger of two sides",
+        sweeps: "map",
+        steps: &[
+            ("sides=two map=64", false),
+            ("sides=two map=128", true),
+            ("sides=two map=256", false),
+            ("sides=two map=512", false),
+        ],
+        shown: None,
     },
     Curve {
         technique: "soft-shadow-map",
@@ -68,6 +84,13 @@ pub const CURVES: &[Curve] = &[
             ("receivers=map accumulate=blend map=128 receiver_map=128", false),
             ("receivers=map accumulate=blend map=256 receiver_map=256", false),
         ],
+        shown: None,
+    },
+    Curve {
+        technique: READBACK,
+        label: "the paper's scheme, through the CPU",
+        sweeps: "map",
+        steps: &[("map=64", false), ("map=128", true), ("map=256", false)],
         shown: None,
     },
     Curve {
@@ -151,6 +174,8 @@ pub enum Method {
     Node(Box<Settings>),
     /// By so many rays a pixel on the processor.
     Rays(u32),
+    /// By the paper's own scheme, with maps of this side.
+    Readback(u32),
 }
 
 /// The method that a technique's name and settings ask for; `None` where the crate does not have the
@@ -165,6 +190,10 @@ pub fn method(technique: &str, words: &str) -> Result<Option<Method>, Problem> {
     if technique == RAY_TRACER {
         let rays = words.strip_prefix("rays=").and_then(|rays| rays.parse().ok());
         return rays.map(|rays| Some(Method::Rays(rays))).ok_or(format!("{words}: no rays"));
+    }
+    if technique == READBACK {
+        let side = words.strip_prefix("map=").and_then(|side| side.parse().ok());
+        return side.map(|side| Some(Method::Readback(side))).ok_or(format!("{words}: no map"));
     }
     let Ok(technique) = technique.parse::<Technique>() else { return Ok(None) };
     let mut settings = Settings { technique, ..Settings::default() };
@@ -192,8 +221,8 @@ mod tests {
         for curve in CURVES {
             for (words, _) in curve.steps {
                 let found = method(curve.technique, words);
-                let known =
-                    curve.technique == RAY_TRACER || curve.technique.parse::<Technique>().is_ok();
+                let known = [RAY_TRACER, READBACK].contains(&curve.technique)
+                    || curve.technique.parse::<Technique>().is_ok();
                 match found {
                     Ok(found) => assert_eq!(found.is_some(), known, "{} {words}", curve.technique),
                     Err(e) => panic!("{} {words}: {e}", curve.technique),
