@@ -67,8 +67,9 @@ type Row = (&'static str, [f64; 3]);
 ///   all blockers, 4 %;
 /// * back-projection has none where all texels lie at one distance; elsewhere its texels overlap, which
 ///   it leaves: 2 % too dark in the mean, at any side of the map;
-/// * many lights have the points' noise, and on the bunny the pixels whose plane the G-buffer's depth
-///   does not tell: those on the creases between its facets, and its bias at 0.3 of a texel.
+/// * many lights have the points' noise, and on the bunny pixels on creases and edges, whose plane the
+///   G-buffer's depth does not tell: with 256 points and N = 2048 they err by 1.00 % in 320×240 and by
+///   0.52 % in 960×720, where those are a third of the pixels they were.
 const TABLE: &[Row] = &[
     ("technique=hard", [12.05, 15.05, 12.38]),
     ("technique=hard map=1024", [13.31, 16.71, 13.12]),

@@ -91,6 +91,36 @@ fn a_role_on_the_command_line_counts() {
     fs::remove_dir_all(out).unwrap();
 }
 
+/// What users would pick instead, from the same command line; a row that repeats is one line with a number.
+#[test]
+fn every_technique_gives_its_files_and_report() {
+    let scene = root().join("scenes/bunny.glb");
+    for (technique, setting) in [
+        ("hard", "map=64"),
+        ("pcss", "taps=8"),
+        ("back-projection", "map=32"),
+        ("many-lights", "samples=5"),
+    ] {
+        let out = folder(technique);
+        let options = ["--technique", technique, "--set", setting, "--size", "48x32", "--validate"];
+        let output = run(&scene, &out, &options);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        assert_eq!(files(&out), FILES);
+        let report: Value =
+            serde_json::from_slice(&fs::read(out.join("report.json")).unwrap()).unwrap();
+        assert_eq!(report["technique"], technique);
+        let (key, value) = setting.split_once('=').unwrap();
+        assert_eq!(report["settings"][key].to_string(), value);
+        assert_eq!(report["settings"].get("sides"), None, "{technique} has no sides");
+        if technique == "many-lights" {
+            let times: Vec<_> =
+                report["passes"].as_array().unwrap().iter().map(|p| p["times"].as_u64()).collect();
+            assert_eq!(times, [Some(1), Some(5), Some(5), Some(1)]);
+        }
+        fs::remove_dir_all(out).unwrap();
+    }
+}
+
 #[test]
 fn wrong_options_are_one_sentence() {
     let bunny = root().join("scenes/bunny.glb");
@@ -99,6 +129,12 @@ fn wrong_options_are_one_sentence() {
     refuse("form", &bunny, &["--set", "map"], "KEY=VALUE");
     refuse("agree", &bunny, &["--set", "accumulate=blend"], "receivers=map");
     refuse("technique", &bunny, &["--technique", "magic"], "soft-shadow-map");
+    refuse(
+        "served",
+        &bunny,
+        &["--technique", "hard", "--set", "taps=8"],
+        "hard has no such setting",
+    );
     refuse("size", &bunny, &["--size", "0x10"], "WxH");
     refuse("repeat", &bunny, &["--repeat", "0"], "--repeat");
     refuse("light", &bunny, &["--light", "sun"], "sun");

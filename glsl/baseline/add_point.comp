@@ -3,14 +3,14 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "baseline/compare.glsl"
 
-// Whether each pixel sees one point of the light: one comparison with the map drawn from there.
+// Whether one point of the light is hidden from each pixel: one comparison with the map drawn from there.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 0) uniform texture2D positions;
 layout(set = 0, binding = 1) uniform texture2D normals;
 layout(set = 0, binding = 2) uniform texture2D point_depth;
-layout(set = 0, binding = 3, r32f) uniform image2D seen;
+layout(set = 0, binding = 3, r32f) uniform image2D hidden_points;
 
 layout(push_constant) uniform Push {
     vec2 point;         // on the light, m
@@ -22,11 +22,13 @@ layout(push_constant) uniform Push {
     int map;            // the map's side in texels
 } push;
 
-bool hidden(vec4 position, vec3 normal)
+bool hidden(ivec2 pixel)
 {
+    vec4 position = texelFetch(positions, pixel, 0);
     if (position.w == 0.0) {
         return false;
     }
+    vec3 normal = texelFetch(normals, pixel, 0).xyz;
     vec3 p = position.xyz - vec3(push.point, 0.0);
     if (dot(normal, p) >= 0.0) {
         // The point is below the pixel's plane, whose other side is seen where it does not block.
@@ -50,8 +52,8 @@ void main()
     if (p.x >= push.extent.x || p.y >= push.extent.y) {
         return;
     }
-    // Whole numbers up to 4096: exact, whatever their order.
-    if (!hidden(texelFetch(positions, p, 0), texelFetch(normals, p, 0).xyz)) {
-        imageStore(seen, p, vec4(imageLoad(seen, p).x + 1.0));
+    // Whole numbers up to 4096: exact, whatever their order. Counting what is hidden leaves lit pixels alone.
+    if (hidden(p)) {
+        imageStore(hidden_points, p, vec4(imageLoad(hidden_points, p).x + 1.0));
     }
 }

@@ -5,7 +5,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0, binding = 0) uniform texture2D seen;
+layout(set = 0, binding = 0) uniform texture2D hidden_points;
 layout(set = 0, binding = 1, r32f) writeonly uniform image2D visibility;
 
 layout(push_constant) uniform Push {
@@ -17,6 +17,6 @@ void main()
 {
     ivec2 p = ivec2(gl_GlobalInvocationID.xy);
     if (p.x < push.extent.x && p.y < push.extent.y) {
-        imageStore(visibility, p, vec4(texelFetch(seen, p, 0).x / push.points));
+        imageStore(visibility, p, vec4(1.0 - texelFetch(hidden_points, p, 0).x / push.points));
     }
 }

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// The G-buffer in light space, once for all points of the light; and no point seen yet.
+// The G-buffer in light space, once for all points of the light; and no point hidden yet.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -10,7 +10,7 @@ layout(set = 0, binding = 0) uniform texture2D gbuffer_depth;
 layout(set = 0, binding = 1) uniform texture2D gbuffer_mask;
 layout(set = 0, binding = 2, rgba32f) writeonly uniform image2D positions;
 layout(set = 0, binding = 3, rgba32f) writeonly uniform image2D normals;
-layout(set = 0, binding = 4, r32f) writeonly uniform image2D seen;
+layout(set = 0, binding = 4, r32f) writeonly uniform image2D hidden_points;
 
 #include "common/gbuffer.glsl"
 
@@ -33,5 +33,5 @@ void main()
     float kind = r.receives && r.position.z > 0.0 ? (r.blocks ? 2.0 : 1.0) : 0.0;
     imageStore(positions, p, vec4(r.position, kind));
     imageStore(normals, p, vec4(r.normal, 0.0));
-    imageStore(seen, p, vec4(0.0));
+    imageStore(hidden_points, p, vec4(0.0));
 }

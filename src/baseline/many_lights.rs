@@ -4,7 +4,7 @@
 //!   ●  ·   ·  ● ·    once         receivers      each pixel's place and plane in light space
 //!   light's points   each point   point_depth    the occluders as the point sees them
 //!        \ | /                    add_point      +1 where the pixel sees the point
-//!         \|/        once         average        the share of the points
+//!         \|/        once         average        the share of the others
 //!          ● pixel
 //! ```
 //! The light is cut into n cells of one area and no very different sides, whatever n is, with a point at
@@ -99,7 +99,7 @@ pub fn declare(graph: &mut Graph, visibility: ResourceId, points: &[LightPoint],
     };
     let positions = image(graph, "baseline.positions", vk::Format::R32G32B32A32_SFLOAT);
     let normals = image(graph, "baseline.normals", vk::Format::R32G32B32A32_SFLOAT);
-    let seen = image(graph, "baseline.seen", vk::Format::R32_SFLOAT);
+    let hidden = image(graph, "baseline.hidden_points", vk::Format::R32_SFLOAT);
     let sides = [inputs.occluders.side; 2];
     let depth = graph.image("baseline.point_map", depth_layers::FORMAT, sides, Owner::Transient);
     graph.push(compute(
@@ -117,7 +117,7 @@ pub fn declare(graph: &mut Graph, visibility: ResourceId, points: &[LightPoint],
             Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
             Use::bound(2, positions, Access::ImageWrite),
             Use::bound(3, normals, Access::ImageWrite),
-            Use::bound(4, seen, Access::ImageWrite),
+            Use::bound(4, hidden, Access::ImageWrite),
         ],
         need,
     ));
@@ -156,7 +156,7 @@ pub fn declare(graph: &mut Graph, visibility: ResourceId, points: &[LightPoint],
                 Use::bound(0, positions, Access::SampledCompute),
                 Use::bound(1, normals, Access::SampledCompute),
                 Use::bound(2, depth, Access::SampledCompute),
-                Use::bound(3, seen, Access::ImageUpdate),
+                Use::bound(3, hidden, Access::ImageUpdate),
             ],
             need,
         ));
@@ -167,7 +167,7 @@ pub fn declare(graph: &mut Graph, visibility: ResourceId, points: &[LightPoint],
         pixels(gbuffer.extent),
         Push::new(&push::Average { extent, points: points.len() as f32 }),
         vec![
-            Use::bound(0, seen, Access::SampledCompute),
+            Use::bound(0, hidden, Access::SampledCompute),
             Use::bound(1, visibility, Access::ImageWrite),
         ],
         need,
