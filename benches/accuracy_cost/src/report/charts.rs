@@ -16,7 +16,8 @@ const LEAST_SHOWN: f64 = 0.1;
 const ERROR: &str = "mean |error|, % of the light";
 
 /// Dash and mark of a technique's first, second … curve.
-const VARIANTS: [(&str, u8); 5] = [("", 0), ("6 3", 1), ("2 3", 2), ("8 3 2 3", 3), ("1 2", 0)];
+const VARIANTS: [(&str, u8); 6] =
+    [("", 0), ("6 3", 1), ("2 3", 2), ("8 3 2 3", 3), ("1 2", 0), ("12 2 2 2", 1)];
 
 /// How a curve of the matrix is drawn: a color a technique, a dash and a mark a curve of it.
 pub fn style(label: &str) -> Style {
