@@ -83,6 +83,9 @@ const TABLE: &[Row] = &[
     ("technique=many-lights samples=64", [0.80, 1.18, 1.86]),
     ("technique=many-lights samples=256", [0.38, 0.52, 1.42]),
     ("technique=many-lights samples=1024 map=512", [0.23, 0.31, 1.09]),
+    // Beside them, the node's own.
+    ("technique=soft-shadow-map map=128", [0.20, 1.00, 2.79]),
+    ("technique=soft-shadow-map", [0.20, 0.69, 2.56]),
 ];
 
 /// Room for drivers that place edges differently, in percentage points.

@@ -17,9 +17,9 @@
 //!
 //! Where we depart: the disc is a spiral (Vogel 1979) where others use a table of Poisson-disc points. It
 //! needs no table, has as many points as are asked for, and as many of them in each ring as its area
-//! takes, which a short prefix of a Poisson disc has not. The receiver-plane bias of this room (Fernando leaves the bias to the user), and what
-//! the pixel's own surface hides of the light is a closed form; the taps that stand for the rest of the
-//! light say how much of that is hidden.
+//! takes, which a short prefix of a Poisson disc has not. Fernando leaves the bias to the user; here it is
+//! the receiver-plane bias of this room. What the pixel's own surface hides of the light is a closed form,
+//! and the taps that stand for the rest of the light say how much of that is hidden.
 //!
 //! **Limits.** One distance stands for all blockers, so shadows of things behind each other are wrong
 //! where they overlap; blockers beside the light's view of the pixel count in the mean. The error does
