@@ -77,29 +77,34 @@ vec4 sums_within(int block, ivec2 lo, ivec2 hi)
     return s;
 }
 
+// Takes the first texel out of a mask; -1 where there is none.
+int take_texel(inout uvec2 todo)
+{
+    bool first = todo.x != 0u;
+    uint bits = first ? todo.x : todo.y;
+    int n = bits == 0u ? -1 : findLSB(int(bits)) + (first ? 0 : 32);
+    bits &= bits - 1u;
+    todo = first ? uvec2(bits, todo.y) : uvec2(0u, bits);
+    return n;
+}
+
 // The occlusion of the first texel of a mask, which is taken out of it; 0 where there is none.
 vec4 next_texel(inout uvec2 todo, int block, vec2 lo, Receivers r, vec2 scale)
 {
-    bool first = todo.x != 0u;
-    uint bits = first ? todo.x : todo.y;
-    if (bits == 0u) {
+    int n = take_texel(todo);
+    if (n < 0) {
         return vec4(0.0);
     }
-    int n = findLSB(int(bits)) + (first ? 0 : 32);
-    bits &= bits - 1u;
-    todo = first ? uvec2(bits, todo.y) : uvec2(0u, bits);
     return texel_occlusion(lo + vec2(n % BLOCK, n / BLOCK), texels[block * BLOCK_TEXELS + n], r, scale);
 }
 
-// The occlusion of the first texel of a mask by its back face, or by its front face where the back face
-// does not lie before the receiver; it is taken out of the mask.
+// The same by its back face, or by its front face where the back face does not lie before the receiver.
 vec4 next_pair(inout uvec2 todo, int block, int backs, vec2 lo, Receivers r, vec2 scale)
 {
-    bool first = todo.x != 0u;
-    uint bits = first ? todo.x : todo.y;
-    int n = findLSB(int(bits)) + (first ? 0 : 32);
-    bits &= bits - 1u;
-    todo = first ? uvec2(bits, todo.y) : uvec2(0u, bits);
+    int n = take_texel(todo);
+    if (n < 0) {
+        return vec4(0.0);
+    }
     vec2 at = lo + vec2(n % BLOCK, n / BLOCK);
     int index = block * BLOCK_TEXELS + n;
     vec4 front = texel_occlusion(at, texels[index], r, scale);
@@ -209,12 +214,19 @@ vec4 gather(Map map, int side, Receivers r)
         // A block's own sum first: adding few large numbers keeps the low digits.
         vec4 part = vec4(0.0);
         int backs = map.row * map.row * FAN * FAN * BLOCK_TEXELS; // from a front face to its back face
+        // Eight at a time: Mesa's CPU driver cuts an invocation off, silently, after 65535 turns of all its
+        // loops together.
         while (pairs && (todo.x | todo.y) != 0u) {
+            part += next_pair(todo, block, backs, lo, r, map.scale);
+            part += next_pair(todo, block, backs, lo, r, map.scale);
+            part += next_pair(todo, block, backs, lo, r, map.scale);
+            part += next_pair(todo, block, backs, lo, r, map.scale);
+            part += next_pair(todo, block, backs, lo, r, map.scale);
+            part += next_pair(todo, block, backs, lo, r, map.scale);
+            part += next_pair(todo, block, backs, lo, r, map.scale);
             part += next_pair(todo, block, backs, lo, r, map.scale);
         }
         while ((todo.x | todo.y) != 0u) {
-            // Eight at a time: Mesa's CPU driver cuts an invocation off, silently, after 65535 turns of
-            // all its loops together.
             part += next_texel(todo, block, lo, r, map.scale);
             part += next_texel(todo, block, lo, r, map.scale);
             part += next_texel(todo, block, lo, r, map.scale);
