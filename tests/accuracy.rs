@@ -5,38 +5,9 @@
 
 use antumbra::RectangleLight;
 use antumbra::gpu::headless::View;
-use antumbra::scene::{Role, Scene, from_gltf, generate};
-use antumbra::truth::visible_fraction_of_quad;
+use antumbra::scene::{Role, Scene, generate};
 use antumbra_tests::device;
-use antumbra_tests::measure::{Setup, percent, summary};
-use glam::DVec3;
-use std::path::Path;
-
-fn model(name: &str) -> Scene {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
-    from_gltf(&root.join(format!("{name}.glb"))).unwrap()
-}
-
-/// The card's corners in the world.
-fn card_corners(scene: &Scene) -> [DVec3; 4] {
-    let corners: Vec<DVec3> = scene.world_positions(|i| i.role == Role::Occluder).collect();
-    // Around the rim, whatever the mesh's own order.
-    let centre = corners.iter().sum::<DVec3>() / corners.len() as f64;
-    let mut corners = corners;
-    corners.sort_by(|a, b| {
-        let angle = |p: &DVec3| (p.z - centre.z).atan2(p.x - centre.x);
-        angle(a).total_cmp(&angle(b))
-    });
-    corners.try_into().unwrap()
-}
-
-fn closed_form(setup: &Setup, stage: &antumbra::gpu::headless::Stage) -> Vec<f32> {
-    let (light, quad) = (setup.light(), card_corners(setup.scene));
-    Setup::receivers(stage)
-        .iter()
-        .map(|r| visible_fraction_of_quad(&light, quad, r.position) as f32)
-        .collect()
-}
+use antumbra_tests::measure::{Setup, model, percent, summary};
 
 /// The card's visible fraction against the closed form: the only error is the discretized edge, at
 /// most half a texel a side, so ½·Δ·4·1/(2·1) of the shadow where the fit leaves the card on texel
@@ -60,7 +31,7 @@ fn a_card_is_within_half_a_percent_of_the_closed_form() {
             "receivers=pixels sides=one",
         ] {
             let mut stage = setup.stage(&device, words);
-            let truth = closed_form(&setup, &stage);
+            let truth = setup.closed_form_of_card(&stage);
             let error = percent(&truth, &setup.visibility(&mut stage));
             println!("card, {name} light, {words}: {error:.3} %");
             assert!(error <= 0.5, "card, {name} light, {words}: {error:.3} %");
@@ -140,7 +111,7 @@ fn the_published_table_is_reached() {
                 let mut stage = setup.stage(&device, &format!("map={side} sides={sides}"));
                 let image = setup.visibility(&mut stage);
                 let (truth, noise) = truth.get_or_insert_with(|| match *name {
-                    "card" => (closed_form(&setup, &stage), 0.0),
+                    "card" => (setup.closed_form_of_card(&stage), 0.0),
                     _ => setup.traced(&stage, 512),
                 });
                 let error = percent(truth, &image);
@@ -224,6 +195,6 @@ fn the_wrong_light_is_noticed() {
     let setup = Setup::ground(&scene, 2.2, 64);
     let mut stage = Setup::ground(&other, 2.2, 64).stage(&device, "map=64");
     let image = Setup::ground(&other, 2.2, 64).visibility(&mut stage);
-    let error = percent(&closed_form(&setup, &stage), &image);
+    let error = percent(&setup.closed_form_of_card(&stage), &image);
     assert!(error > 5.0, "{error:.2} %");
 }

@@ -5,29 +5,9 @@
 
 use antumbra::RectangleLight;
 use antumbra::gpu::headless::View;
-use antumbra::scene::{Role, Scene, from_gltf, generate};
-use antumbra::truth::visible_fraction_of_quad;
+use antumbra::scene::generate;
 use antumbra_tests::device;
-use antumbra_tests::measure::{Setup, percent, summary};
-use glam::DVec3;
-use std::path::Path;
-
-fn model(name: &str) -> Scene {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
-    from_gltf(&root.join(format!("{name}.glb"))).unwrap()
-}
-
-/// The closed form under generate::card's card: a unit square at y = 2.
-fn closed_form(setup: &Setup, stage: &antumbra::gpu::headless::Stage) -> Vec<f32> {
-    let corner = |x: f64, z: f64| DVec3::new(x, 2.0, z);
-    let quad = [corner(-0.5, -0.5), corner(0.5, -0.5), corner(0.5, 0.5), corner(-0.5, 0.5)];
-    let on_card = setup.scene.world_positions(|i| i.role == Role::Occluder);
-    assert!(on_card.into_iter().all(|p| quad.iter().any(|q| q.distance(p) < 1e-6)));
-    let light = setup.light();
-    let visible =
-        |r: &antumbra::truth::Receiver| visible_fraction_of_quad(&light, quad, r.position);
-    Setup::receivers(stage).iter().map(|r| visible(r) as f32).collect()
-}
+use antumbra_tests::measure::{Setup, model, percent, summary};
 
 /// Many lights against the closed form. Two errors: the points, whose stratified mean is off by at most
 /// n^(−3/4)/√2 in its standard error for a convex outline (see `truth::Sampling`), about 0.8 of that in
@@ -48,7 +28,7 @@ fn many_lights_come_to_the_closed_form() {
         for n in [64, 256, 1024] {
             let words = format!("technique=many-lights samples={n} map=256");
             let mut stage = setup.stage(&device, &words);
-            let truth = closed_form(&setup, &stage);
+            let truth = setup.closed_form_of_card(&stage);
             let error = percent(&truth, &setup.visibility(&mut stage));
             let points = 80.0 * 0.5f64.sqrt() * f64::from(n).powf(-0.75);
             println!("card, {name} light, {n} points: {error:.3} %, points allow {points:.3}");

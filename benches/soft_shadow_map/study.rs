@@ -111,27 +111,30 @@ pub fn gather_and_readback(device: &HeadlessDevice, options: &Options) -> Table 
     table
 }
 
-/// Two sides beside one, at the pixels and on a map.
+/// One side, the larger of two and their mean, at the pixels and on a map, of the bunny.
 pub fn sides(device: &HeadlessDevice, options: &Options) -> Table {
-    let mut table = Table::new("sides", &["receivers", "one ms", "two ms", "ratio"]);
+    let columns = ["receivers", "one ms", "two ms", "mean ms", "two / one", "mean / two"];
+    let mut table = Table::new("sides", &columns);
     let light = generate::square_light(0.4).unwrap();
     let scene = generate::normalized(&committed("bunny"), light).unwrap();
     for receivers in ["pixels", "map"] {
-        let mut stages = ["one", "two"].map(|sides| {
+        let mut stages = ["one", "two", "mean"].map(|sides| {
             Ready::new(device, &scene, 256, &format!("receivers={receivers} sides={sides}"))
         });
-        let mut times = [Vec::new(), Vec::new()];
+        let mut times = [Vec::new(), Vec::new(), Vec::new()];
         for _ in 0..options.rounds {
             for (stage, times) in stages.iter_mut().zip(&mut times) {
                 times.push(accumulation_ms(&stage.run()));
             }
         }
-        let [one, two] = &times;
+        let [one, two, mean] = &times;
         table.row(vec![
             receivers.into(),
             spread(one),
             spread(two),
+            spread(mean),
             format!("{:.2}", median(two) / median(one)),
+            format!("{:.2}", median(mean) / median(two)),
         ]);
     }
     table

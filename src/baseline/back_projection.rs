@@ -25,8 +25,8 @@
 //! window of 700² texels.
 
 use super::twin::{level_side, level_start};
-use super::{Inputs, compute, one_map, push};
-use crate::graph::{Access, Graph, Push, ResourceId, Use};
+use super::{Inputs, one_map, push};
+use crate::graph::{Access, Graph, Pass, Push, ResourceId, Use};
 use crate::shaders;
 
 /// The level that is one node.
@@ -43,7 +43,7 @@ pub fn declare(graph: &mut Graph, front: ResourceId, visibility: ResourceId, inp
         let groups = level_side(map, level).div_ceil(8);
         [groups, groups, 1]
     };
-    graph.push(compute(
+    graph.push(Pass::compute(
         "baseline.finest_level",
         shaders::FINEST_LEVEL,
         grid(1),
@@ -58,7 +58,7 @@ pub fn declare(graph: &mut Graph, front: ResourceId, visibility: ResourceId, inp
         inputs.need,
     ));
     for level in 2..=top(map) {
-        graph.push(compute(
+        graph.push(Pass::compute(
             "baseline.next_level",
             shaders::NEXT_LEVEL,
             grid(level),

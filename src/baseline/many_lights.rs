@@ -20,11 +20,12 @@
 //!
 //! **Limits.** Shadows band where few points are asked for. A frame draws the occluders n times.
 
-use super::{Inputs, Settings, compute, pixels, push};
+use super::{Inputs, Settings, push};
 use crate::RectangleLight;
 use crate::depth_layers::{self, MapView, MeshBounds};
 use crate::graph::{Access, Draw, Graph, Layer, Owner, Pass, Push, ResourceId, Target, Use, Work};
 use crate::shaders;
+use crate::visibility::grid;
 use ash::vk;
 use glam::{DMat4, DVec3};
 
@@ -102,10 +103,10 @@ pub fn declare(graph: &mut Graph, visibility: ResourceId, points: &[LightPoint],
     let hidden = image(graph, "baseline.hidden_points", vk::Format::R32_SFLOAT);
     let sides = [inputs.occluders.side; 2];
     let depth = graph.image("baseline.point_map", depth_layers::FORMAT, sides, Owner::Transient);
-    graph.push(compute(
+    graph.push(Pass::compute(
         "baseline.receivers",
         shaders::RECEIVERS,
-        pixels(gbuffer.extent),
+        grid(gbuffer.extent),
         Push::new(&push::Receivers {
             light_from_ndc: gbuffer.light_from_ndc,
             extent,
@@ -139,10 +140,10 @@ pub fn declare(graph: &mut Graph, visibility: ResourceId, points: &[LightPoint],
             },
             need: need.clone(),
         });
-        graph.push(compute(
+        graph.push(Pass::compute(
             "baseline.add_point",
             shaders::ADD_POINT,
-            pixels(gbuffer.extent),
+            grid(gbuffer.extent),
             Push::new(&push::AddPoint {
                 point: point.at.map(|x| x as f32),
                 texels_per_uv: point.view.texels_per_uv().map(|x| x as f32),
@@ -161,10 +162,10 @@ pub fn declare(graph: &mut Graph, visibility: ResourceId, points: &[LightPoint],
             need,
         ));
     }
-    graph.push(compute(
+    graph.push(Pass::compute(
         "baseline.average",
         shaders::AVERAGE,
-        pixels(gbuffer.extent),
+        grid(gbuffer.extent),
         Push::new(&push::Average { extent, points: points.len() as f32 }),
         vec![
             Use::bound(0, hidden, Access::SampledCompute),

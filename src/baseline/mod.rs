@@ -32,9 +32,9 @@ pub use settings::Settings;
 
 use crate::RectangleLight;
 use crate::depth_layers::MapView;
-use crate::graph::{Access, Graph, Need, Pass, Push, ResourceId, Use, Work};
+use crate::graph::{Access, Graph, Need, Pass, Push, ResourceId, Use};
 use crate::shaders::Module;
-use crate::visibility::GBuffer;
+use crate::visibility::{GBuffer, grid};
 
 /// What a frame gives the techniques.
 #[derive(Clone, Copy, Debug)]
@@ -51,22 +51,6 @@ pub struct Inputs<'a> {
     pub depth_error: f64,
     /// Whether anything can be shadowed.
     pub need: &'a Need,
-}
-
-/// One invocation a pixel, in groups of 8×8.
-fn pixels(extent: [u32; 2]) -> [u32; 3] {
-    [extent[0].div_ceil(8), extent[1].div_ceil(8), 1]
-}
-
-fn compute(
-    name: &'static str,
-    shader: Module,
-    groups: [u32; 3],
-    push: Push,
-    uses: Vec<Use>,
-    need: &Need,
-) -> Pass {
-    Pass { name, uses, push, work: Work::Dispatch { shader, groups }, need: need.clone() }
 }
 
 /// Adds the row that turns the map from the light's centre into visibility, as `pixels.glsl` has it;
@@ -103,5 +87,5 @@ fn one_map(
     ];
     uses.extend(more);
     let push = Push::new(&push);
-    graph.push(compute(name, shader, pixels(gbuffer.extent), push, uses, inputs.need));
+    graph.push(Pass::compute(name, shader, grid(gbuffer.extent), push, uses, inputs.need));
 }

@@ -143,11 +143,9 @@ impl FramePlan {
     /// Puts the node's mark on it, and the image that the node owns.
     pub(crate) fn stamped(mut self, stamp: Stamp, own_visibility: vk::Image) -> Self {
         self.stamp = stamp;
-        let name = self.plan.graph.resource(self.visibility).name;
-        for a in self.accesses.iter_mut().filter(|a| a.name == name) {
-            if a.image == vk::Image::null() {
-                a.image = own_visibility;
-            }
+        // Every image of the host's was checked to be none of these.
+        for access in self.accesses.iter_mut().filter(|a| a.image == vk::Image::null()) {
+            access.image = own_visibility;
         }
         self
     }

@@ -170,6 +170,18 @@ pub struct Pass {
 }
 
 impl Pass {
+    /// A row that runs a compute grid.
+    pub fn compute(
+        name: &'static str,
+        shader: Module,
+        groups: [u32; 3],
+        push: Push,
+        uses: Vec<Use>,
+        need: &Need,
+    ) -> Self {
+        Self { name, uses, push, work: Work::Dispatch { shader, groups }, need: need.clone() }
+    }
+
     /// Whether a row of its name can be recorded with what was made for this one.
     pub fn is_kind_of(&self, other: &Self) -> bool {
         let same_work = match (self.work, other.work) {

@@ -51,7 +51,7 @@
 //! (a thing that stands on it) is stood in for by the front face of the same texel, receiver by receiver;
 //! where the front is flat there is no e to cancel, and the back is left out; and what either side hides
 //! wholly is umbra, since a depth step inside a silhouette leaves a gap in one side alone. Mean errors
-//! against those of the maximum, N = 256, L = 0.4 and 1, at the same cost: spheres 0.8 and 1.0 % for 2.0
+//! against those of the maximum, N = 256, L = 0.4 and 1, windows fitted: spheres 0.8 and 1.0 % for 2.0
 //! and 2.9, bunny 1.3 and 1.8 for 2.3 and 2.7, Suzanne 1.0 and 1.5 for 1.6 and 2.5, tall box 0.6 and 3.4
 //! for 1.3 and 4.1, stacked cards 1.3 and 2.3 for 1.5 and 2.4.
 //!

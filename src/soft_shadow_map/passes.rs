@@ -4,7 +4,7 @@ use super::{Accumulate, Receivers, Settings, Sides, push, spread_of};
 use crate::RectangleLight;
 use crate::depth_layers::{DepthLayers, MapView, Wanted};
 use crate::graph::{Access, Draw, Graph, Need, Owner, Pass, Push, ResourceId, Target, Use, Work};
-use crate::shaders::{self, Module};
+use crate::shaders;
 use crate::visibility::{self, GBuffer};
 use ash::vk;
 
@@ -109,17 +109,6 @@ fn combination(settings: &Settings) -> Sides {
     }
 }
 
-fn compute(
-    name: &'static str,
-    shader: Module,
-    groups: [u32; 3],
-    push: Push,
-    uses: Vec<Use>,
-    need: &Need,
-) -> Pass {
-    Pass { name, uses, push, work: Work::Dispatch { shader, groups }, need: need.clone() }
-}
-
 fn declare_nodes(
     graph: &mut Graph,
     layers: &DepthLayers,
@@ -145,7 +134,7 @@ fn declare_nodes(
         block_row,
         superblock_row,
     };
-    graph.push(compute(
+    graph.push(Pass::compute(
         "soft_shadow_map.blocks",
         shaders::BLOCKS,
         [block_row.div_ceil(8), block_row.div_ceil(8), sides],
@@ -169,7 +158,7 @@ fn declare_nodes(
         inputs.need,
     ));
     if superblocks_too {
-        graph.push(compute(
+        graph.push(Pass::compute(
             "soft_shadow_map.superblocks",
             shaders::SUPERBLOCKS,
             [superblock_row.div_ceil(8), superblock_row.div_ceil(8), sides],
@@ -216,7 +205,7 @@ fn gather_map(
     let (t_step, t_first) = receiver_grid(view, inputs.occluders);
     // 8×8 invocations of 2×2 texels.
     let groups = settings.receiver_map.div_ceil(16);
-    graph.push(compute(
+    graph.push(Pass::compute(
         pass_name,
         shaders::GATHER_MAP,
         [groups, groups, 1],
@@ -300,7 +289,7 @@ fn blend_map(
     let offsets = graph.buffer(offsets, u64::from(groups) * 4);
     let arguments = graph.buffer(arguments, 16);
     let patches = graph.buffer(patches, texels * 8);
-    graph.push(compute(
+    graph.push(Pass::compute(
         count_name,
         shaders::PATCH_COUNT,
         [groups.div_ceil(64), 1, 1],
@@ -311,7 +300,7 @@ fn blend_map(
         ],
         inputs.need,
     ));
-    graph.push(compute(
+    graph.push(Pass::compute(
         scan_name,
         shaders::PATCH_SCAN,
         [1, 1, 1],
@@ -323,7 +312,7 @@ fn blend_map(
         ],
         inputs.need,
     ));
-    graph.push(compute(
+    graph.push(Pass::compute(
         emit_name,
         shaders::PATCH_EMIT,
         [blocks.div_ceil(64), 1, 1],
@@ -378,7 +367,7 @@ fn gather_pixels(
     let occluders = inputs.occluders;
     let two = i32::from(sides(settings).len() == 2);
     let mean = i32::from(settings.sides == Sides::Mean);
-    graph.push(compute(
+    graph.push(Pass::compute(
         "soft_shadow_map.gather_pixels",
         shaders::GATHER_PIXELS,
         // 8×8 invocations of 2×2 pixels.

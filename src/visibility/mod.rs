@@ -79,7 +79,8 @@ pub fn declare(graph: &mut Graph, extent: [u32; 2], lent: bool) -> ResourceId {
     graph.image("visibility", FORMAT, extent, owner)
 }
 
-fn grid(extent: [u32; 2]) -> [u32; 3] {
+/// One invocation a pixel, in groups of 8×8.
+pub(crate) fn grid(extent: [u32; 2]) -> [u32; 3] {
     [extent[0].div_ceil(8), extent[1].div_ceil(8), 1]
 }
 

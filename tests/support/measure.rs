@@ -1,8 +1,9 @@
 //! A scene under a light, seen by a grid of pixels: the node's visible fraction beside the truth.
 
+use crate::example::root;
 use antumbra::gpu::headless::{HeadlessDevice, Stage, View};
-use antumbra::scene::{Role, Scene};
-use antumbra::truth::{ErrorSummary, Receiver, Sampling, Tracer};
+use antumbra::scene::{Role, Scene, from_gltf};
+use antumbra::truth::{ErrorSummary, Receiver, Sampling, Tracer, visible_fraction_of_quad};
 use antumbra::{RectangleLight, Settings};
 use glam::DVec3;
 
@@ -22,6 +23,27 @@ pub fn settings(words: &str) -> Settings {
         }
     }
     settings
+}
+
+/// The card's corners in the world.
+fn card_corners(scene: &Scene) -> [DVec3; 4] {
+    let corners: Vec<DVec3> = scene.world_positions(|i| i.role == Role::Occluder).collect();
+    // Around the rim, whatever the mesh's own order.
+    let centre = corners.iter().sum::<DVec3>() / corners.len() as f64;
+    let mut corners = corners;
+    corners.sort_by(|a, b| {
+        let angle = |p: &DVec3| (p.z - centre.z).atan2(p.x - centre.x);
+        angle(a).total_cmp(&angle(b))
+    });
+    corners.try_into().unwrap()
+}
+
+/// One of the project's own models.
+///
+/// # Panics
+/// If it cannot be read.
+pub fn model(name: &str) -> Scene {
+    from_gltf(&root().join(format!("scenes/{name}.glb"))).unwrap()
 }
 
 /// A scene with the pixels that look at it.
@@ -89,6 +111,16 @@ impl<'a> Setup<'a> {
                 normal: if *role == 0 { DVec3::ZERO } else { wide(n) },
             })
             .collect()
+    }
+
+    /// The exact visible fractions behind `generate::card`'s card.
+    ///
+    /// # Panics
+    /// If the scene has another occluder.
+    pub fn closed_form_of_card(&self, stage: &Stage) -> Vec<f32> {
+        let (light, quad) = (self.light(), card_corners(self.scene));
+        let visible = |r: &Receiver| visible_fraction_of_quad(&light, quad, r.position) as f32;
+        Self::receivers(stage).iter().map(visible).collect()
     }
 
     /// The traced visible fractions and their noise.
