@@ -77,12 +77,13 @@ vec4 sums_within(int block, ivec2 lo, ivec2 hi)
     return s;
 }
 
-// Takes the first texel out of a mask; -1 where there is none.
+// Takes the first texel out of a mask that has one. Whether it has is asked outside: asked within, with
+// `?:`, in code that stands eight times in a row, SwiftShader's compiler needs over 24 GB.
 int take_texel(inout uvec2 todo)
 {
     bool first = todo.x != 0u;
     uint bits = first ? todo.x : todo.y;
-    int n = bits == 0u ? -1 : findLSB(int(bits)) + (first ? 0 : 32);
+    int n = findLSB(int(bits)) + (first ? 0 : 32);
     bits &= bits - 1u;
     todo = first ? uvec2(bits, todo.y) : uvec2(0u, bits);
     return n;
@@ -91,20 +92,20 @@ int take_texel(inout uvec2 todo)
 // The occlusion of the first texel of a mask, which is taken out of it; 0 where there is none.
 vec4 next_texel(inout uvec2 todo, int block, vec2 lo, Receivers r, vec2 scale)
 {
-    int n = take_texel(todo);
-    if (n < 0) {
+    if ((todo.x | todo.y) == 0u) {
         return vec4(0.0);
     }
+    int n = take_texel(todo);
     return texel_occlusion(lo + vec2(n % BLOCK, n / BLOCK), texels[block * BLOCK_TEXELS + n], r, scale);
 }
 
 // The same by its back face, or by its front face where the back face does not lie before the receiver.
 vec4 next_pair(inout uvec2 todo, int block, int backs, vec2 lo, Receivers r, vec2 scale)
 {
-    int n = take_texel(todo);
-    if (n < 0) {
+    if ((todo.x | todo.y) == 0u) {
         return vec4(0.0);
     }
+    int n = take_texel(todo);
     vec2 at = lo + vec2(n % BLOCK, n / BLOCK);
     int index = block * BLOCK_TEXELS + n;
     vec4 front = texel_occlusion(at, texels[index], r, scale);
