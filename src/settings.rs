@@ -2,6 +2,8 @@
 
 use crate::Error;
 use crate::baseline::Settings as Baseline;
+use crate::nbuffer;
+use crate::ray_march::{Hash, Layers, Projection, Sampling, Search, Settings as RayMarch};
 use crate::soft_shadow_map::{Accumulate, Receivers, Settings as SoftShadowMap, Sides};
 use std::fmt::Display;
 use std::str::FromStr;
@@ -20,6 +22,8 @@ pub enum Technique {
     /// Micro-patches back-projected onto the light (Atty 2006).
     #[default]
     SoftShadowMap,
+    /// Rays through depth layers (Curtis 2009).
+    RayMarch,
 }
 
 impl Technique {
@@ -30,6 +34,7 @@ impl Technique {
         ("many-lights", Self::ManyLights),
         ("back-projection", Self::BackProjection),
         ("soft-shadow-map", Self::SoftShadowMap),
+        ("ray-march", Self::RayMarch),
     ];
 
     /// The name it has on a command line.
@@ -40,6 +45,7 @@ impl Technique {
             Self::ManyLights => "many-lights",
             Self::BackProjection => "back-projection",
             Self::SoftShadowMap => "soft-shadow-map",
+            Self::RayMarch => "ray-march",
         }
     }
 }
@@ -61,6 +67,8 @@ pub struct Settings {
     pub map: u32,
     /// The other knobs of [`Technique::SoftShadowMap`].
     pub soft_shadow_map: SoftShadowMap,
+    /// The other knobs of [`Technique::RayMarch`].
+    pub ray_march: RayMarch,
     /// The other knobs of what users would pick instead.
     pub baseline: Baseline,
 }
@@ -71,6 +79,7 @@ impl Default for Settings {
             technique: Technique::default(),
             map: 256,
             soft_shadow_map: SoftShadowMap::default(),
+            ray_march: RayMarch::default(),
             baseline: Baseline::default(),
         }
     }
@@ -181,12 +190,89 @@ pub const KNOBS: &[Knob] = &[
     },
     Knob {
         key: "seed",
-        techniques: &[Technique::ManyLights],
+        techniques: &[Technique::ManyLights, Technique::RayMarch],
         unit: "whole number",
         range: "0 to 4294967295",
         default: "1",
-        about: "which random places the points take in their cells of the light; 0 puts them into the \
-                middle",
+        about: "which random places of the light are looked at; for many-lights 0 puts the points into the \
+                middle of their cells",
+    },
+    Knob {
+        key: "rays",
+        techniques: &[Technique::RayMarch],
+        unit: "rays a pixel",
+        range: "1 to 256",
+        default: "16",
+        about: "rays that a pixel in penumbra sends to the light; any whole number",
+    },
+    Knob {
+        key: "layers",
+        techniques: &[Technique::RayMarch],
+        unit: "choice",
+        range: "2, 3, 4",
+        default: "4",
+        about: "depth layers that say what is solid: 2 from the nearest to the furthest faces, 3 but for \
+                what the eye looks through, 4 two pieces, each from a front to a back face",
+    },
+    Knob {
+        key: "search",
+        techniques: &[Technique::RayMarch],
+        unit: "choice",
+        range: "hierarchical, linear",
+        default: "hierarchical",
+        about: "how a ray looks for what stops it: by windows of the N-buffer, or a texel at a time",
+    },
+    Knob {
+        key: "sampling",
+        techniques: &[Technique::RayMarch],
+        unit: "choice",
+        range: "jittered, random, low-discrepancy",
+        default: "low-discrepancy",
+        about: "where the rays of a pixel go: each to a random place in a cell of its own, each anywhere, or \
+                to the points of a scrambled sequence",
+    },
+    Knob {
+        key: "hash",
+        techniques: &[Technique::RayMarch],
+        unit: "choice",
+        range: "pcg, md5",
+        default: "pcg",
+        about: "what makes random numbers of pixels; md5 is the one of 16 rounds that Curtis 2009 published",
+    },
+    Knob {
+        key: "levels",
+        techniques: &[Technique::RayMarch],
+        unit: "choice",
+        range: "n-buffer, thirds, mip",
+        default: "n-buffer",
+        about: "the windows of the hierarchical search: 2^k texels a side at every texel, 3^k, or 2^k side by \
+                side; mip where map is above 1024",
+    },
+    Knob {
+        key: "projection",
+        techniques: &[Technique::RayMarch],
+        unit: "choice",
+        range: "behind, centre, orthographic",
+        default: "behind",
+        about: "where the layers are seen from: a point behind the light, its centre, or infinitely far",
+    },
+    Knob {
+        key: "classify",
+        techniques: &[Technique::RayMarch],
+        unit: "switch",
+        range: "on, off",
+        default: "on",
+        about: "whether pixels that a window of the N-buffer shows to be lit or in umbra send no rays, and \
+                rays are cut to the heights that matter; off is for measuring what that saves",
+    },
+    Knob {
+        key: "filter",
+        techniques: &[Technique::RayMarch],
+        unit: "switch",
+        range: "on, off",
+        default: "on",
+        about: "whether noise is filtered, as widely as takes more noise away than it blurs: less with many \
+                rays, and not at all where penumbrae are narrow",
     },
 ];
 
@@ -198,6 +284,7 @@ impl Settings {
     /// outside its range.
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), Error> {
         let s = &mut self.soft_shadow_map;
+        let r = &mut self.ray_march;
         let technique = self.technique;
         match key {
             _ if !KNOBS.iter().any(|k| k.key == key && k.serves(technique)) => {
@@ -215,6 +302,16 @@ impl Settings {
             "tolerance" => s.tolerance = number(key, value)?,
             "taps" => self.baseline.taps = number(key, value)?,
             "samples" => self.baseline.samples = number(key, value)?,
+            "rays" => r.rays = number(key, value)?,
+            "layers" => r.layers = choose(key, value, Layers::ALL)?,
+            "search" => r.search = choose(key, value, Search::ALL)?,
+            "sampling" => r.sampling = choose(key, value, Sampling::ALL)?,
+            "hash" => r.hash = choose(key, value, Hash::ALL)?,
+            "levels" => r.levels = choose(key, value, nbuffer::Kind::ALL)?,
+            "projection" => r.projection = choose(key, value, Projection::ALL)?,
+            "classify" => r.classify = choose(key, value, RayMarch::SWITCH)?,
+            "filter" => r.filter = choose(key, value, RayMarch::SWITCH)?,
+            _ if technique == Technique::RayMarch => r.seed = number(key, value)?,
             _ => self.baseline.seed = number(key, value)?,
         }
         self.check_range(key)
@@ -228,6 +325,7 @@ impl Settings {
 
     fn value(&self, key: &str) -> Option<String> {
         let s = &self.soft_shadow_map;
+        let r = &self.ray_march;
         Some(match key {
             "map" => self.map.to_string(),
             "receiver_map" => s.receiver_map.to_string(),
@@ -237,7 +335,17 @@ impl Settings {
             "tolerance" => s.tolerance.to_string(),
             "taps" => self.baseline.taps.to_string(),
             "samples" => self.baseline.samples.to_string(),
+            "seed" if self.technique == Technique::RayMarch => r.seed.to_string(),
             "seed" => self.baseline.seed.to_string(),
+            "rays" => r.rays.to_string(),
+            "layers" => name_of(Layers::ALL, r.layers),
+            "search" => name_of(Search::ALL, r.search),
+            "sampling" => name_of(Sampling::ALL, r.sampling),
+            "hash" => name_of(Hash::ALL, r.hash),
+            "levels" => name_of(nbuffer::Kind::ALL, r.levels),
+            "projection" => name_of(Projection::ALL, r.projection),
+            "classify" => name_of(RayMarch::SWITCH, r.classify),
+            "filter" => name_of(RayMarch::SWITCH, r.filter),
             _ => return None,
         })
     }
@@ -251,6 +359,7 @@ impl Settings {
         knobs.try_for_each(|k| self.check_range(k.key))?;
         match self.technique {
             Technique::SoftShadowMap => self.soft_shadow_map.check_agreement(),
+            Technique::RayMarch => self.ray_march.check_agreement(self.map),
             _ => Ok(()),
         }
     }
@@ -259,7 +368,11 @@ impl Settings {
     fn check_range(&self, key: &str) -> Result<(), Error> {
         let good = match key {
             "map" => (16..=4096).contains(&self.map),
-            _ => self.soft_shadow_map.in_range(key) && self.baseline.in_range(key),
+            _ => {
+                self.soft_shadow_map.in_range(key)
+                    && self.baseline.in_range(key)
+                    && self.ray_march.in_range(key)
+            }
         };
         if good {
             return Ok(());

@@ -1,0 +1,58 @@
+// A map's levels as values: how a level is made from the one before it, and what a window holds.
+//
+// The including shader says what a value is, and how two become one:
+//     #define VALUE vec4
+//     VALUE combine(VALUE a, VALUE b)
+//     VALUE value_at(int level, int index)   the map's own where level is 0
+// With `#define MEAN` the values are added up and divided by their number, what lies outside the map being
+// 0; without, combining a value with itself must not change it, as the least and the largest do not.
+
+#ifndef NBUFFER_VALUES_GLSL
+#define NBUFFER_VALUES_GLSL
+
+#include "nbuffer/levels.glsl"
+
+// What a node of a level from 1 on holds, by the level before it.
+VALUE combined(Levels l, int level, ivec2 node)
+{
+    int fan = l.kind == THIRDS ? 3 : 2;
+    int apart = l.kind == MIP ? 1 : window_of(l, level - 1);
+    ivec2 first = l.kind == MIP ? 2 * node : node;
+    int end = side_of(l, level - 1);
+    VALUE v = value_at(level - 1, index_of(l, level - 1, first));
+    for (int i = 1; i < fan * fan; ++i) {
+        ivec2 at = first + apart * ivec2(i % fan, i / fan);
+        if (at.x < end && at.y < end) {
+            v = combine(v, value_at(level - 1, index_of(l, level - 1, at)));
+        }
+    }
+#ifdef MEAN
+    v /= float(fan * fan);
+#endif
+    return v;
+}
+
+#ifndef MEAN
+// What a square window holds: the least and the largest over exactly its texels, but for MIP, where they
+// may be of up to 16 times as many around them. A window that would stick out of the map is moved inside
+// whole; one larger than the map is the map.
+VALUE window_value(Levels l, ivec2 first, int side)
+{
+    side = min(side, l.map);
+    first = clamp(first, ivec2(0), ivec2(l.map - side));
+    int level = l.kind == THIRDS ? log_three(side) : l.kind == MIP ? log_above(side) : findMSB(side);
+    // The windows that cover it overlap.
+    int apart = l.kind == MIP ? 1 : window_of(l, level);
+    ivec2 from = l.kind == MIP ? first >> level : first;
+    ivec2 to = l.kind == MIP ? (first + side - 1) >> level : first + side - apart;
+    VALUE v = value_at(level, index_of(l, level, from));
+    for (ivec2 at = from; at != to;) {
+        at = at.x < to.x ? ivec2(min(at.x + apart, to.x), at.y)
+                         : ivec2(from.x, min(at.y + apart, to.y));
+        v = combine(v, value_at(level, index_of(l, level, at)));
+    }
+    return v;
+}
+#endif
+
+#endif

@@ -1,0 +1,16 @@
+// The visible fraction by rays alone, how widely it is to be filtered, and the surface it is of.
+
+#ifndef RAY_MARCH_NOISY_GLSL
+#define RAY_MARCH_NOISY_GLSL
+
+#include "ray_march/normal.glsl"
+
+// The fraction (NO_RECEIVER where there is nothing to filter), the filter's width in metres, the normal.
+layout(set = 0, binding = NOISY_BINDING, rgba32f) writeonly uniform image2D noisy;
+
+void put_noisy(ivec2 p, float v, float width, vec3 normal)
+{
+    imageStore(noisy, p, vec4(v, width, folded(normal)));
+}
+
+#endif
