@@ -15,19 +15,33 @@
 // What a node of a level from 1 on holds, by the level before it.
 VALUE combined(Levels l, int level, ivec2 node)
 {
-    int fan = l.kind == THIRDS ? 3 : 2;
-    int apart = l.kind == MIP ? 1 : window_of(l, level - 1);
+    int finer = level - 1;
     ivec2 first = l.kind == MIP ? 2 * node : node;
-    int end = side_of(l, level - 1);
-    VALUE v = value_at(level - 1, index_of(l, level - 1, first));
-    for (int i = 1; i < fan * fan; ++i) {
-        ivec2 at = first + apart * ivec2(i % fan, i / fan);
-        if (at.x < end && at.y < end) {
-            v = combine(v, value_at(level - 1, index_of(l, level - 1, at)));
+    int at = index_of(l, finer, first);
+    // To the next part along a row, and to that along a column.
+    int across = l.kind == MIP ? 1 : window_of(l, finer);
+    int down = across * row_of(l, finer);
+    bvec2 there = lessThan(first + across, ivec2(side_of(l, finer)));
+    VALUE v = value_at(finer, at);
+    if (there.x) {
+        v = combine(v, value_at(finer, at + across));
+    }
+    if (there.y) {
+        v = combine(v, value_at(finer, at + down));
+    }
+    if (there.x && there.y) {
+        v = combine(v, value_at(finer, at + across + down));
+    }
+    if (l.kind == THIRDS) {
+        for (int i = 0; i < 3; ++i) {
+            v = combine(v, value_at(finer, at + 2 * across + i * down));
+            if (i < 2) {
+                v = combine(v, value_at(finer, at + i * across + 2 * down));
+            }
         }
     }
 #ifdef MEAN
-    v /= float(fan * fan);
+    v /= l.kind == THIRDS ? 9.0 : 4.0;
 #endif
     return v;
 }
