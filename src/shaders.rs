@@ -86,8 +86,12 @@ pub const BOUNDS_LEVEL: Module = module!("ray_march/next_level.comp");
 pub const START: Module = module!("ray_march/start.comp");
 /// Which pixels need rays.
 pub const CLASSIFY: Module = module!("ray_march/classify.comp");
+/// The same with any settings.
+pub const CLASSIFY_ANY: Module = module!("ray_march/classify_any.comp");
 /// The rays of the listed pixels.
 pub const TRACE: Module = module!("ray_march/trace.comp");
+/// The same with any settings.
+pub const TRACE_ANY: Module = module!("ray_march/trace_any.comp");
 /// The listed pixels, filtered along rows.
 pub const FILTER_ROWS: Module = module!("ray_march/filter_rows.comp");
 /// The same along columns.
@@ -133,7 +137,9 @@ pub const ALL: &[Module] = &[
     BOUNDS_LEVEL,
     START,
     CLASSIFY,
+    CLASSIFY_ANY,
     TRACE,
+    TRACE_ANY,
     FILTER_ROWS,
     FILTER_COLUMNS,
     RESOLVE,

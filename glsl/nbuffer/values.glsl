@@ -47,6 +47,19 @@ VALUE combined(Levels l, int level, ivec2 node)
 }
 
 #ifndef MEAN
+// What a window holds that has a square window within it: one value, of up to twice as many texels a side
+// (three times, for THIRDS); as `window_value` for MIP, and where no window is as large.
+VALUE window_value(Levels l, ivec2 first, int side);
+
+VALUE wider_window_value(Levels l, ivec2 first, int side)
+{
+    int level = l.kind == THIRDS ? log_three(3 * side - 1) : log_above(side);
+    if (l.kind == MIP || level > top_of(l)) {
+        return window_value(l, first, side);
+    }
+    return value_at(level, index_of(l, level, node_at(l, level, first)));
+}
+
 // What a square window holds: the least and the largest over exactly its texels, but for MIP, where they
 // may be of up to 16 times as many around them. A window that would stick out of the map is moved inside
 // whole; one larger than the map is the map.

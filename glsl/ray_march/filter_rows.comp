@@ -41,7 +41,7 @@ void main()
     if (nth >= count) {
         return;
     }
-    ivec2 p = ivec2(pixels[nth] & 0xffffu, pixels[nth] >> 16u);
+    ivec2 p = ivec2(pixels[3u * nth] & 0xffffu, pixels[3u * nth] >> 16u);
     vec4 own = texelFetch(noisy, p, 0);
     float width = own.y;
     float v = value_at(p);
@@ -59,9 +59,12 @@ void main()
             if (any(lessThan(q, ivec2(0))) || any(greaterThanEqual(q, push.extent))) {
                 continue;
             }
-            float value = value_at(q);
+            vec4 its = texelFetch(noisy, q, 0);
+            float value = its.x;
             if (value >= 0.0) {
-                float weight = filter_weight(position_at(q) - position, normal, unfolded(texelFetch(noisy, q, 0).zw), width);
+                // What is known for sure has no normal; its place says enough.
+                vec3 its_normal = its.y < 0.0 ? normal : unfolded(its.zw);
+                float weight = filter_weight(position_at(q) - position, normal, its_normal, width);
                 sum += weight * value;
                 weights += weight;
             }

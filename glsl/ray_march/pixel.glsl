@@ -44,32 +44,47 @@ int rays() { return (push.flags & 255) + 1; }
 int cell_rows() { return (push.flags >> 8 & 255) + 1; }
 bool is_masked() { return (push.flags & 1 << 16) != 0; }
 bool is_orthographic() { return (push.flags & 1 << 17) != 0; }
-bool is_linear() { return (push.flags & 1 << 18) != 0; }
 bool is_modern() { return (push.flags & 1 << 19) != 0; }
-bool looks_from_eye() { return (push.flags & 1 << 20) != 0; }
 bool classifies() { return (push.flags & 1 << 21) != 0; }
 bool filters() { return (push.flags & 1 << 22) != 0; }
 int sampling() { return push.flags >> 23 & 3; }
+
+// With `#define USUAL` what settings seldom ask for is left out, which is a third of the time.
+#ifdef USUAL
+bool is_linear() { return false; }
+bool looks_from_eye() { return false; }
+int level_kind() { return N_BUFFER; }
+#else
+bool is_linear() { return (push.flags & 1 << 18) != 0; }
+bool looks_from_eye() { return (push.flags & 1 << 20) != 0; }
 int level_kind() { return push.flags >> 25 & 3; }
+#endif
 
 Levels levels()
 {
     return Levels(push.map, level_kind());
 }
 
-Receiver pixel_receiver(ivec2 p)
+GBuffer gbuffer()
 {
-    Receiver r =
-        receiver_at(GBuffer(push.light_from_ndc, push.extent, push.background, is_masked()), p);
-    // Behind the light's plane there is nothing to hide.
-    r.receives = r.receives && r.position.z > 0.0;
-    // A surface that does not block is seen from its other side as well.
-    if (!r.blocks && dot(r.normal, r.position) > 0.0) {
-        r.normal = -r.normal;
-    }
-    return r;
+    return GBuffer(push.light_from_ndc, push.extent, push.background, is_masked());
 }
 
+// The normal of the plane that a pixel shows, on the side that light comes from.
+vec3 pixel_normal(ivec2 p, Receiver r)
+{
+    vec3 normal = facet_normal(gbuffer(), p, depth_at(p), r.position);
+    // A surface that does not block is seen from its other side as well.
+    return !r.blocks && dot(normal, r.position) > 0.0 ? -normal : normal;
+}
+
+// The part of the light above the pixel's own plane, all of it where that does not block.
+float part_above(Receiver r)
+{
+    return r.blocks ? fraction_above(r.normal.xy * push.half_light, dot(r.normal, r.position)) : 1.0;
+}
+
+// Without a normal its plane is the map's own, and means nothing.
 Place place_of(Receiver r)
 {
     vec3 position = r.position;
@@ -110,12 +125,15 @@ vec2 slope_to(Place p, float distance_from_light, vec2 point)
 }
 
 // The heights above a receiver between which a column could stop one of its rays, none where they end
-// before they start, and whether one stops
-// every ray.
+// before they start; and the window of columns that all of its rays come through there, if the map has all
+// of it.
 struct Reach {
     float start;
     float end;
-    bool umbra;
+    bool whole;
+    vec2 from;
+    float side;
+    vec4 bounds;
 };
 
 // Two are enough to close in on the penumbra (Curtis 2009 section 3.6), after the one with the whole map's
@@ -123,34 +141,36 @@ struct Reach {
 const int REFINEMENTS = 3;
 
 // Curtis 2009 section 3.6: the window of the map that rays below the highest occluder can come through says
-// how high the highest occluder within it is, and so on. As of there, the lowest one too.
+// how high the highest occluder within it is, and so on. As of there, the lowest one too. Of the place only
+// t and w are looked at.
 Reach reach_of(Place p, float distance_from_light)
 {
-    Reach reach = Reach(0.0, push.top * (1.0 + SLACK) - p.w, false);
+    Reach reach = Reach(0.0, push.top * (1.0 + SLACK) - p.w, false, vec2(0.0), 0.0, vec4(0.0));
     if (!classifies()) {
         return reach;
     }
     vec2 g_a = slope_to(p, distance_from_light, -push.half_light);
     vec2 g_b = slope_to(p, distance_from_light, push.half_light);
+    vec2 end = vec2(push.map - 1);
     for (int i = 0; i < REFINEMENTS && reach.start <= reach.end; ++i) {
-        vec2 lo = p.t + min(reach.start * g_a, reach.end * g_a);
-        vec2 hi = p.t + max(reach.start * g_b, reach.end * g_b);
-        vec2 end = vec2(push.map - 1);
-        vec2 from = floor(lo);
-        vec2 to = floor(hi);
-        vec2 from_inside = clamp(from, vec2(0.0), end);
-        vec2 to_inside = clamp(to, vec2(0.0), end);
+        vec2 from = floor(p.t + min(reach.start * g_a, reach.end * g_a));
+        vec2 to = floor(p.t + max(reach.start * g_b, reach.end * g_b));
         if (any(greaterThan(from, end)) || any(lessThan(to, vec2(0.0)))) {
-            return Reach(1.0, 0.0, false);
+            reach.end = reach.start - 1.0;
+            return reach;
         }
-        vec2 size = to_inside - from_inside + 1.0;
-        int side = int(max(size.x, size.y));
-        vec4 b = window_value(levels(), ivec2(from_inside), side);
-        vec2 matter = matter_above(p, b);
+        reach.from = clamp(from, vec2(0.0), end);
+        vec2 to_inside = clamp(to, vec2(0.0), end);
+        reach.whole = from == reach.from && to == to_inside;
+        vec2 size = to_inside - reach.from + 1.0;
+        reach.side = max(size.x, size.y);
+        // Exactly the window for the last one, up to twice as wide before.
+        reach.bounds = i + 1 < REFINEMENTS
+                           ? wider_window_value(levels(), ivec2(reach.from), int(reach.side))
+                           : window_value(levels(), ivec2(reach.from), int(reach.side));
+        vec2 matter = matter_above(p, reach.bounds);
         reach.start = max(reach.start, matter.x);
         reach.end = min(reach.end, matter.y);
-        reach.umbra = from == from_inside && to == to_inside &&
-                      stops_all(p, from, float(side), b, p.w + reach.start, p.w + reach.end);
     }
     return reach;
 }

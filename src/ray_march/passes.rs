@@ -5,7 +5,7 @@ use super::settings::{Hash, Layers, Projection, Sampling, Search, Settings};
 use crate::RectangleLight;
 use crate::depth_layers::{DepthLayers, Eye, MapView, MeshBounds, Wanted, fit_from, fit_occluders};
 use crate::graph::{Access, Graph, Need, Owner, Pass, Push, ResourceId, Use, Work};
-use crate::nbuffer::Levels;
+use crate::nbuffer::{self, Levels};
 use crate::shaders;
 use crate::visibility::{GBuffer, grid};
 use ash::vk;
@@ -74,7 +74,7 @@ pub fn declare(
     let [width, height] = gbuffer.extent;
     let arguments = graph.buffer("ray_march.arguments", 16);
     let listed = u64::from(width) * u64::from(height) * 4;
-    let pixels = graph.buffer("ray_march.pixels", 16 + 64 + listed);
+    let pixels = graph.buffer("ray_march.pixels", 16 + 64 + 3 * listed);
     // Without a filter nobody reads them.
     let filtered = if settings.filter { gbuffer.extent } else { [1, 1] };
     let mut image = |name, format| graph.image(name, format, filtered, Owner::Transient);
@@ -92,6 +92,9 @@ pub fn declare(
         inputs.need,
     ));
     let pushed = Push::new(&pixel_push(settings, inputs));
+    let usual = settings.levels == nbuffer::Kind::NBuffer
+        && settings.search == Search::Hierarchical
+        && settings.layers != Layers::Eye;
     let common = [
         Use::bound(0, gbuffer.depth, Access::SampledCompute),
         Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
@@ -101,7 +104,7 @@ pub fn declare(
     let with = |more: &[Use]| common.iter().chain(more).copied().collect::<Vec<_>>();
     graph.push(Pass::compute(
         "ray_march.classify",
-        shaders::CLASSIFY,
+        if usual { shaders::CLASSIFY } else { shaders::CLASSIFY_ANY },
         grid(gbuffer.extent),
         pushed,
         with(&[
@@ -122,7 +125,10 @@ pub fn declare(
             Use::fixed(arguments, Access::Indirect),
         ]),
         push: pushed,
-        work: Work::Indirect { shader: shaders::TRACE, arguments },
+        work: Work::Indirect {
+            shader: if usual { shaders::TRACE } else { shaders::TRACE_ANY },
+            arguments,
+        },
         need: inputs.need.clone(),
     });
     if settings.filter {
