@@ -76,6 +76,26 @@ pub const PATCH_EMIT: Module = module!("soft_shadow_map/patch_emit.comp");
 pub const PATCH_VERT: Module = module!("soft_shadow_map/patch.vert");
 /// A micro-patch's occlusion at a receiver texel.
 pub const PATCH_FRAG: Module = module!("soft_shadow_map/patch.frag");
+/// Depth layers to columns of what is solid.
+pub const COLUMNS: Module = module!("ray_march/columns.comp");
+/// The bounds of the smallest windows of columns.
+pub const FIRST_LEVEL: Module = module!("ray_march/first_level.comp");
+/// The bounds of a level's windows.
+pub const BOUNDS_LEVEL: Module = module!("ray_march/next_level.comp");
+/// An empty list of pixels.
+pub const START: Module = module!("ray_march/start.comp");
+/// Which pixels need rays.
+pub const CLASSIFY: Module = module!("ray_march/classify.comp");
+/// The same with any settings.
+pub const CLASSIFY_ANY: Module = module!("ray_march/classify_any.comp");
+/// The rays of the listed pixels.
+pub const TRACE: Module = module!("ray_march/trace.comp");
+/// The same with any settings.
+pub const TRACE_ANY: Module = module!("ray_march/trace_any.comp");
+/// The listed pixels, filtered along rows.
+pub const FILTER_ROWS: Module = module!("ray_march/filter_rows.comp");
+/// The same along columns.
+pub const FILTER_COLUMNS: Module = module!("ray_march/filter_columns.comp");
 /// The soft shadow map projected onto the G-buffer.
 pub const RESOLVE: Module = module!("visibility/resolve.comp");
 /// Everything lit.
@@ -112,6 +132,16 @@ pub const ALL: &[Module] = &[
     PATCH_EMIT,
     PATCH_VERT,
     PATCH_FRAG,
+    COLUMNS,
+    FIRST_LEVEL,
+    BOUNDS_LEVEL,
+    START,
+    CLASSIFY,
+    CLASSIFY_ANY,
+    TRACE,
+    TRACE_ANY,
+    FILTER_ROWS,
+    FILTER_COLUMNS,
     RESOLVE,
     LIT,
 ];

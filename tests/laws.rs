@@ -25,6 +25,10 @@ const WAYS: &[&str] = &[
     "technique=pcss map=65",
     "technique=back-projection map=50",
     "technique=many-lights samples=30 map=33",
+    "technique=ray-march map=64",
+    "technique=ray-march map=50 rays=9 levels=mip layers=2 hash=md5 sampling=random",
+    "technique=ray-march map=65 levels=thirds projection=orthographic filter=off",
+    "technique=ray-march map=64 search=linear projection=centre sampling=low-discrepancy",
 ];
 
 fn spheres() -> Scene {

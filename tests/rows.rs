@@ -27,6 +27,9 @@ fn descriptions() -> Vec<(String, Description)> {
         "technique=pcss taps=8",
         "technique=back-projection map=100",
         "technique=many-lights samples=3 map=65",
+        "technique=ray-march",
+        "technique=ray-march map=100 rays=7 layers=3 levels=thirds filter=off",
+        "technique=ray-march map=17 layers=2 levels=mip search=linear projection=orthographic",
     ] {
         for (mask_format, occluder_maps) in
             [(None, None), (Some(vk::Format::R8_UNORM), None), (None, Some(vk::Format::D32_SFLOAT))]
@@ -56,7 +59,7 @@ fn graphs() -> Vec<(String, Graph)> {
 
 fn modules(pass: &Pass) -> Vec<Module> {
     match pass.work {
-        Work::Dispatch { shader, .. } => vec![shader],
+        Work::Dispatch { shader, .. } | Work::Indirect { shader, .. } => vec![shader],
         Work::Raster { vertex, fragment, .. } => std::iter::once(vertex).chain(fragment).collect(),
     }
 }
@@ -120,7 +123,7 @@ fn disagreements(graph: &Graph, pass: &Pass) -> Vec<String> {
             found
                 .push(format!("{}: {bytes} bytes of push constants, pushed {pushed}", module.path));
         }
-        if matches!(pass.work, Work::Dispatch { .. }) {
+        if pass.work.compute_shader().is_some() {
             let invocations: u32 = shader.workgroup.iter().product();
             if !(1..=256).contains(&invocations) {
                 found.push(format!("{}: workgroup {:?}", module.path, shader.workgroup));

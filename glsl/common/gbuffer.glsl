@@ -70,7 +70,8 @@ vec3 facet_normal(GBuffer g, ivec2 p, float depth, vec3 position)
                         towards_viewer(g.light_from_ndc, position, g.background));
 }
 
-Receiver receiver_at(GBuffer g, ivec2 p)
+// What a pixel shows, but for the normal.
+Receiver receiver_without_normal(GBuffer g, ivec2 p)
 {
     Receiver r = Receiver(false, false, vec3(0.0), vec3(0.0));
     if (p.x >= g.extent.x || p.y >= g.extent.y) {
@@ -84,8 +85,14 @@ Receiver receiver_at(GBuffer g, ivec2 p)
     r.receives = role > 0.25;
     r.blocks = role > 0.75;
     r.position = dehomogenize(unproject(g.light_from_ndc, vec2(p), vec2(g.extent), depth));
+    return r;
+}
+
+Receiver receiver_at(GBuffer g, ivec2 p)
+{
+    Receiver r = receiver_without_normal(g, p);
     if (r.receives) {
-        r.normal = facet_normal(g, p, depth, r.position);
+        r.normal = facet_normal(g, p, depth_at(p), r.position);
     }
     return r;
 }

@@ -1,6 +1,6 @@
 //! Occluder maps that the host drew itself: what their matrix says of window and distances.
 
-use super::MapView;
+use super::{Eye, MapView};
 use crate::{Error, RectangleLight};
 use ash::vk;
 use glam::{DMat4, DVec4};
@@ -80,6 +80,7 @@ impl HostMapView {
         let ends = axes.map(|(row, s)| [tangent(row, s, -1.0), tangent(row, s, 1.0)]);
         Ok(Self {
             view: MapView {
+                eye: Eye::Behind(0.0),
                 min: ends.map(|[a, b]| a.min(b)),
                 max: ends.map(|[a, b]| a.max(b)),
                 near,
@@ -142,6 +143,7 @@ mod tests {
     #[test]
     fn a_map_views_own_matrix_gives_the_view_back() {
         let view = MapView {
+            eye: Eye::Behind(0.0),
             min: [-0.5, -0.25],
             max: [0.75, 0.5],
             near: 0.3,

@@ -25,7 +25,7 @@ mod host_maps;
 mod view;
 
 pub(crate) use host_maps::HostMapView;
-pub use view::{MapView, MeshBounds, fit_occluders, fit_receivers, is_aside};
+pub use view::{Eye, MapView, MeshBounds, fit_from, fit_occluders, fit_receivers, is_aside};
 
 use crate::graph::{
     Access, Draw, Graph, Layer, Need, Owner, Pass, Push, ResourceId, Target, Use, Work,
@@ -74,6 +74,8 @@ pub struct Wanted {
     pub map: u32,
     /// Whether the back layer is read.
     pub back: bool,
+    /// Whether the nearest back faces and the furthest front faces are read too.
+    pub inner: bool,
     /// The receiver map's side in texels, where one is read.
     pub receiver_map: Option<u32>,
 }
@@ -85,6 +87,9 @@ pub struct DepthLayers {
     pub front: ResourceId,
     /// Occluders' furthest back faces; 1 where there are none.
     pub back: Option<ResourceId>,
+    /// Occluders' nearest back faces, 0 where there are none, and their furthest front faces, 1 where
+    /// there are none.
+    pub inner: Option<[ResourceId; 2]>,
     /// Receivers' nearest faces; 0 where there are none.
     pub receivers: Option<ResourceId>,
 }
@@ -116,8 +121,10 @@ pub(crate) fn declare(
             (front, back.map(|b| taken(graph, b, map, camera, Layer::Back, need)))
         }
     };
+    let inner = (wanted.inner && matches!(occluders, Occluders::Meshes))
+        .then(|| [Layer::NearBack, Layer::FarFront].map(|layer| drawn(graph, layer, map, need)));
     let receivers = wanted.receiver_map.map(|side| drawn(graph, Layer::Receivers, side, need));
-    DepthLayers { front, back, receivers }
+    DepthLayers { front, back, inner, receivers }
 }
 
 /// How a layer is drawn.
@@ -139,6 +146,8 @@ pub fn raster_of(layer: Layer) -> Raster {
             Raster { cull: Cull::NONE, clear: 0.0, compare: Op::GREATER }
         }
         Layer::Back => Raster { cull: Cull::FRONT, clear: 1.0, compare: Op::LESS },
+        Layer::NearBack => Raster { cull: Cull::FRONT, clear: 0.0, compare: Op::GREATER },
+        Layer::FarFront => Raster { cull: Cull::BACK, clear: 1.0, compare: Op::LESS },
     }
 }
 
@@ -147,6 +156,8 @@ fn names_of(layer: Layer) -> (&'static str, &'static str) {
     match layer {
         Layer::Front => (FRONT, "depth_layers.front"),
         Layer::Back => (BACK, "depth_layers.back"),
+        Layer::NearBack => ("depth_layers.near_back_depth", "depth_layers.near_back"),
+        Layer::FarFront => ("depth_layers.far_front_depth", "depth_layers.far_front"),
         Layer::Receivers => ("depth_layers.receiver_depth", "depth_layers.receivers"),
     }
 }

@@ -15,14 +15,26 @@ const MIN_NEAR: f64 = 1e-4;
 /// The near plane stands this much before the nearest point, so that what is stored stays under 1.
 const NEAR_MARGIN: f64 = 1e-3;
 
-/// A map parallel to the light, seen from its centre.
+/// Where a map is seen from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Eye {
+    /// A point this far behind the light's centre, metres; 0 is the centre.
+    Behind(f64),
+    /// Infinitely far behind it: the projection is orthographic.
+    Infinity,
+}
+
+/// A map parallel to the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapView {
-    /// Least u and v (tangents).
+    /// Where it is seen from.
+    pub eye: Eye,
+    /// Least u and v: tangents, or metres where the projection is orthographic.
     pub min: [f64; 2],
     /// Largest u and v.
     pub max: [f64; 2],
-    /// Distance of the near plane from the light, metres.
+    /// Distance of the near plane from the eye, or from the light's plane where the eye is infinitely
+    /// far; metres.
     pub near: f64,
     /// Distance of the furthest point of what is seen, metres.
     pub far: f64,
@@ -31,16 +43,37 @@ pub struct MapView {
 }
 
 impl MapView {
-    /// Light space to clip space: reversed depth, infinite far plane.
+    /// Light space to clip space, reversed: depth is near · w without a far plane, or falls from 1 at the
+    /// near plane to 0 at the far one where the projection is orthographic.
     pub fn clip_from_light(&self) -> DMat4 {
         let [sx, sy] = [0, 1].map(|i| 2.0 / (self.max[i] - self.min[i]));
         let [cx, cy] = [0, 1].map(|i| -(self.max[i] + self.min[i]) / (self.max[i] - self.min[i]));
-        DMat4::from_cols(
-            DVec4::new(sx, 0.0, 0.0, 0.0),
-            DVec4::new(0.0, sy, 0.0, 0.0),
-            DVec4::new(cx, cy, 0.0, 1.0),
-            DVec4::new(0.0, 0.0, self.near, 0.0),
-        )
+        match self.eye {
+            Eye::Behind(behind) => DMat4::from_cols(
+                DVec4::new(sx, 0.0, 0.0, 0.0),
+                DVec4::new(0.0, sy, 0.0, 0.0),
+                DVec4::new(cx, cy, 0.0, 1.0),
+                DVec4::new(cx * behind, cy * behind, self.near, behind),
+            ),
+            Eye::Infinity => {
+                let range = self.far - self.near;
+                DMat4::from_cols(
+                    DVec4::new(sx, 0.0, 0.0, 0.0),
+                    DVec4::new(0.0, sy, 0.0, 0.0),
+                    DVec4::new(0.0, 0.0, -1.0 / range, 0.0),
+                    DVec4::new(cx, cy, self.far / range, 1.0),
+                )
+            }
+        }
+    }
+
+    /// The height of the near plane: w = 1/distance, or metres above the far plane where the projection
+    /// is orthographic. Heights are this times what is stored.
+    pub fn top(&self) -> f64 {
+        match self.eye {
+            Eye::Behind(_) => 1.0 / self.near,
+            Eye::Infinity => self.far - self.near,
+        }
     }
 
     /// Texels a unit of u and of v.
@@ -79,13 +112,21 @@ fn distances(boxes: &[[DVec3; 8]]) -> Option<(f64, f64)> {
 
 /// The tangents under which the light's centre sees the part of the boxes beyond `near`.
 fn tangents(boxes: &[[DVec3; 8]], near: f64) -> Option<([f64; 2], [f64; 2])> {
+    extents(boxes, near, |p| [p.x, p.y].map(|x| (x / p.z).clamp(-MAX_TANGENT, MAX_TANGENT)))
+}
+
+/// The least and the largest of what `of` says of the part of the boxes beyond `near`.
+fn extents(
+    boxes: &[[DVec3; 8]],
+    near: f64,
+    of: impl Fn(DVec3) -> [f64; 2],
+) -> Option<([f64; 2], [f64; 2])> {
     let mut min = [f64::INFINITY; 2];
     let mut max = [f64::NEG_INFINITY; 2];
     let mut add = |p: DVec3| {
-        for (i, x) in [p.x, p.y].into_iter().enumerate() {
-            let tangent = (x / p.z).clamp(-MAX_TANGENT, MAX_TANGENT);
-            min[i] = min[i].min(tangent);
-            max[i] = max[i].max(tangent);
+        for (i, x) in of(p).into_iter().enumerate() {
+            min[i] = min[i].min(x);
+            max[i] = max[i].max(x);
         }
     };
     for corners in boxes {
@@ -175,7 +216,36 @@ pub fn fit_occluders(
             (min, max)
         }
     };
-    Some(MapView { min, max, near, far, side })
+    Some(MapView { eye: Eye::Behind(0.0), min, max, near, far, side })
+}
+
+/// As [`fit_occluders`], from an eye behind the light; what is behind the light is not seen.
+pub fn fit_from(
+    eye: Eye,
+    light: &RectangleLight,
+    occluders: &[(MeshBounds, DMat4)],
+    side: u32,
+) -> Option<MapView> {
+    let light_from_world = light.light_from_world();
+    let boxes: Vec<_> =
+        occluders.iter().map(|(b, m)| corners(b, &(light_from_world * *m))).collect();
+    let (least, far) = distances(&boxes)?;
+    let near = (least * (1.0 - NEAR_MARGIN)).max(far * MIN_NEAR);
+    let (mut window, near, far) = match eye {
+        Eye::Behind(behind) => {
+            let of = |p: DVec3| {
+                [p.x, p.y].map(|x| (x / (p.z + behind)).clamp(-MAX_TANGENT, MAX_TANGENT))
+            };
+            (extents(&boxes, near, of)?, near + behind, far + behind)
+        }
+        Eye::Infinity => {
+            // What is furthest must not read as nothing.
+            let far = far + NEAR_MARGIN * (far - near).max(far * MIN_NEAR);
+            (extents(&boxes, near, |p| [p.x, p.y])?, near, far)
+        }
+    };
+    pad(&mut window.0, &mut window.1, side);
+    Some(MapView { eye, min: window.0, max: window.1, near, far, side })
 }
 
 /// The view that holds what of the receivers the occluders can shadow; none where that is nothing.
@@ -205,7 +275,7 @@ pub fn fit_receivers(
         }
     }
     pad(&mut min, &mut max, side);
-    Some(MapView { min, max, near, far, side })
+    Some(MapView { eye: Eye::Behind(0.0), min, max, near, far, side })
 }
 
 #[cfg(test)]

@@ -130,8 +130,12 @@ pub struct Frame<'a> {
     /// them. [`Self::meshes`] then only says where receivers are.
     pub occluder_maps: Option<OccluderMaps>,
     /// Least and largest tangent (u, v) of the occluder map; none fits it to the occluders. The
-    /// technique `many-lights` fits each of its maps, whatever this says.
+    /// technique `many-lights` fits each of its maps, and `ray-march` its map unless `projection=centre`,
+    /// whatever this says.
     pub window: Option<[[f64; 2]; 2]>,
+    /// Moves the noise of `ray-march`: added to the technique's seed. A number that is another one each
+    /// frame lets what is behind average over frames; 0 keeps the noise where it is.
+    pub noise: u32,
     /// Which of the frames in flight this is, 0 and up. The frame that last had the same number
     /// must be done before this one is recorded.
     pub slot: u32,
@@ -162,6 +166,7 @@ impl<'a> Frame<'a> {
             visibility: Visibility::Own { before: sampled, after: sampled },
             occluder_maps: None,
             window: None,
+            noise: 0,
             slot: 0,
             border_barriers: BorderBarriers::Node,
         }

@@ -8,6 +8,7 @@ use super::{
 use crate::baseline::many_lights;
 use crate::depth_layers::{self, HostMapView};
 use crate::graph::{self, Border, MeshList, Need, ResourceId};
+use crate::ray_march::{self, Projection};
 use crate::settings::Technique;
 use crate::{Error, scene::Role};
 use ash::vk;
@@ -284,14 +285,25 @@ fn look(
         }
         _ => Vec::new(),
     };
+    // Ray marching looks from behind the light.
+    let seen = match settings.technique {
+        Technique::RayMarch
+            if host_maps.is_none() && settings.ray_march.projection != Projection::Centre =>
+        {
+            ray_march::view(light, &boxes(occluders), settings.ray_march.projection, settings.map)
+        }
+        _ => None,
+    };
     let light_from_ndc = light.light_from_world() * frame.world_from_ndc;
     Ok(Views {
         points,
-        occluders: fit.unwrap_or(PLACEHOLDER),
+        occluders: seen.or(fit).unwrap_or(PLACEHOLDER),
         host_maps,
         receivers: Some(receiver_fit.unwrap_or(PLACEHOLDER)),
         need,
         light_from_ndc: light_from_ndc.as_mat4().to_cols_array(),
+        noise: frame.noise,
+        ndc_from_light: light_from_ndc.inverse().as_mat4().to_cols_array(),
         background: frame.background,
     })
 }

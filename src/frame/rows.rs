@@ -2,11 +2,11 @@
 
 use super::Description;
 use crate::baseline::{self, many_lights::LightPoint};
-use crate::depth_layers::{self, HostMapView, MapView};
+use crate::depth_layers::{self, Eye, HostMapView, MapView};
 use crate::graph::{Graph, Need, Owner, ResourceId};
 use crate::settings::{Settings, Technique};
 use crate::visibility::{self, GBuffer};
-use crate::{RectangleLight, soft_shadow_map};
+use crate::{RectangleLight, ray_march, soft_shadow_map};
 use glam::DMat4;
 
 /// What a device's limits mean to a plan.
@@ -34,7 +34,7 @@ pub(crate) struct FrameGraph {
 
 /// A view for rows that do not run.
 pub(super) const PLACEHOLDER: MapView =
-    MapView { min: [-1.0; 2], max: [1.0; 2], near: 1.0, far: 2.0, side: 16 };
+    MapView { eye: Eye::Behind(0.0), min: [-1.0; 2], max: [1.0; 2], near: 1.0, far: 2.0, side: 16 };
 
 /// What the rows depend on, beyond the description.
 pub(super) struct Views {
@@ -45,6 +45,8 @@ pub(super) struct Views {
     pub receivers: Option<MapView>,
     pub need: Need,
     pub light_from_ndc: [f32; 16],
+    pub ndc_from_light: [f32; 16],
+    pub noise: u32,
     pub background: f32,
 }
 
@@ -61,8 +63,9 @@ pub(super) fn wanted(settings: &Settings) -> depth_layers::Wanted {
     let map = settings.map;
     match settings.technique {
         Technique::SoftShadowMap => soft_shadow_map::wanted(&settings.soft_shadow_map, map),
+        Technique::RayMarch => ray_march::wanted(&settings.ray_march, map),
         Technique::Hard | Technique::Pcss | Technique::ManyLights | Technique::BackProjection => {
-            depth_layers::Wanted { map, back: false, receiver_map: None }
+            depth_layers::Wanted { map, back: false, inner: false, receiver_map: None }
         }
     }
 }
@@ -91,6 +94,8 @@ pub(crate) fn nominal(description: &Description, limits: Limits) -> FrameGraph {
         receivers: Some(view),
         need: Need::Yes("nominal".into()),
         light_from_ndc: DMat4::IDENTITY.as_mat4().to_cols_array(),
+        ndc_from_light: DMat4::IDENTITY.as_mat4().to_cols_array(),
+        noise: 0,
         background: 0.0,
     };
     build(description, limits, &RectangleLight::unit(), &views)
@@ -162,6 +167,20 @@ pub(super) fn build(
                 need,
             };
             soft_shadow_map::declare(&mut graph, &layers, visibility, settings, &inputs);
+        }
+        Technique::RayMarch => {
+            let layers = layers(&mut graph);
+            let inputs = ray_march::Inputs {
+                light,
+                view: &views.occluders,
+                gbuffer: &gbuffer,
+                ndc_from_light: views.ndc_from_light,
+                noise: views.noise,
+                snap,
+                depth_error,
+                need,
+            };
+            ray_march::declare(&mut graph, &layers, visibility, &settings.ray_march, &inputs);
         }
         Technique::Hard => {
             let front = layers(&mut graph).front;

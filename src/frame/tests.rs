@@ -1,5 +1,5 @@
 use super::*;
-use crate::depth_layers::{MapView, MeshBounds};
+use crate::depth_layers::{Eye, MapView, MeshBounds};
 use crate::graph::{MeshList, Need};
 use crate::scene::{Role, generate};
 use ash::vk::Handle;
@@ -214,7 +214,14 @@ fn what_is_lent_must_be_what_was_described() {
     let d16 = Some(vk::Format::D16_UNORM);
     let maps = Description { occluder_maps: d16, ..description(&[("map", "32")]) };
     let map = image(vk::Format::D16_UNORM, [32; 2], vk::ImageUsageFlags::SAMPLED);
-    let view = MapView { min: [-1.0; 2], max: [1.0; 2], near: 0.5, far: 9.0, side: 32 };
+    let view = MapView {
+        eye: Eye::Behind(0.0),
+        min: [-1.0; 2],
+        max: [1.0; 2],
+        near: 0.5,
+        far: 9.0,
+        side: 32,
+    };
     let clip_from_world = view.clip_from_light() * f.light.light_from_world();
     let both = OccluderMaps { front: map, back: Some(map), clip_from_world };
     let with = |maps| Frame { occluder_maps: Some(maps), ..f };

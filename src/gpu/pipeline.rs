@@ -75,7 +75,9 @@ impl RowPipeline {
             .map_err(Error::vulkan(doing("descriptor set layout")))?;
 
         let (stages, push_bytes) = match pass.work {
-            Work::Dispatch { .. } => (vk::ShaderStageFlags::COMPUTE, pass.push.bytes().len()),
+            Work::Dispatch { .. } | Work::Indirect { .. } => {
+                (vk::ShaderStageFlags::COMPUTE, pass.push.bytes().len())
+            }
             Work::Raster { draw: Draw::Layer { .. }, .. } => {
                 (vk::ShaderStageFlags::VERTEX, size_of::<DepthPush>())
             }
@@ -97,7 +99,7 @@ impl RowPipeline {
             .map_err(Error::vulkan(doing("pipeline layout")))?;
 
         match pass.work {
-            Work::Dispatch { shader, .. } => {
+            Work::Dispatch { shader, .. } | Work::Indirect { shader, .. } => {
                 let pipeline = self.compute(host, pass, shader)?;
                 self.pipelines.push(pipeline);
             }

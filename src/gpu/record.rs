@@ -71,7 +71,7 @@ impl Recorder<'_> {
         let objects = self.objects;
         let set = self.descriptors.set(pass, kind, frame.slot);
         let point = match pass.work {
-            Work::Dispatch { .. } => vk::PipelineBindPoint::COMPUTE,
+            Work::Dispatch { .. } | Work::Indirect { .. } => vk::PipelineBindPoint::COMPUTE,
             Work::Raster { .. } => vk::PipelineBindPoint::GRAPHICS,
         };
         if let Some(set) = set {
@@ -93,6 +93,14 @@ impl Recorder<'_> {
                 // SAFETY: a compute pipeline, its set and push constants are bound; the barriers
                 // that its accesses need were recorded before it.
                 unsafe { device.cmd_dispatch(cmd, x, y, z) };
+            }
+            Work::Indirect { arguments, .. } => {
+                let Object::Buffer(buffer) = objects.get(arguments) else { return };
+                // SAFETY: as for the other grids; the buffer holds one VkDispatchIndirectCommand,
+                // which an earlier row wrote.
+                unsafe { device.cmd_bind_pipeline(cmd, point, row.pipelines[0]) };
+                // SAFETY: as above.
+                unsafe { device.cmd_dispatch_indirect(cmd, buffer, 0) };
             }
             Work::Raster { target, draw, .. } => {
                 self.begin_render_pass(row, target);

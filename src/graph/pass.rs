@@ -94,6 +94,10 @@ pub enum Layer {
     Front,
     /// Occluders' furthest back faces.
     Back,
+    /// Occluders' nearest back faces.
+    NearBack,
+    /// Occluders' furthest front faces.
+    FarFront,
     /// Receivers' nearest faces.
     Receivers,
 }
@@ -102,7 +106,7 @@ impl Layer {
     /// The meshes that it shows.
     pub fn meshes(self) -> MeshList {
         match self {
-            Self::Front | Self::Back => MeshList::Occluders,
+            Self::Front | Self::Back | Self::NearBack | Self::FarFront => MeshList::Occluders,
             Self::Receivers => MeshList::Receivers,
         }
     }
@@ -127,6 +131,13 @@ pub enum Work {
         /// Workgroups in x, y and z.
         groups: [u32; 3],
     },
+    /// A compute grid of as many workgroups as an earlier pass found.
+    Indirect {
+        /// The compute shader.
+        shader: Module,
+        /// The buffer that holds a `VkDispatchIndirectCommand`, at offset 0.
+        arguments: ResourceId,
+    },
     /// A draw into one attachment.
     Raster {
         /// The vertex shader.
@@ -140,6 +151,16 @@ pub enum Work {
         /// What is drawn.
         draw: Draw,
     },
+}
+
+impl Work {
+    /// The compute shader, where it is a grid.
+    pub fn compute_shader(&self) -> Option<Module> {
+        match *self {
+            Self::Dispatch { shader, .. } | Self::Indirect { shader, .. } => Some(shader),
+            Self::Raster { .. } => None,
+        }
+    }
 }
 
 /// Whether the frame needs a pass, and why or why not.

@@ -94,6 +94,9 @@ impl Plan {
 fn work_of(graph: &Graph, work: &Work) -> String {
     match work {
         Work::Dispatch { groups: [x, y, z], .. } => format!("dispatch {x}×{y}×{z}"),
+        Work::Indirect { arguments, .. } => {
+            format!("dispatch by {}", graph.resource(*arguments).name)
+        }
         Work::Raster { draw: super::Draw::Layer { layer, .. }, .. } => {
             format!("draw {:?}", layer.meshes()).to_lowercase()
         }

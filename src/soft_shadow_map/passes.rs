@@ -47,6 +47,7 @@ pub fn wanted(settings: &Settings, map: u32) -> Wanted {
     Wanted {
         map,
         back: settings.sides != Sides::One,
+        inner: false,
         receiver_map: (settings.receivers == Receivers::Map).then_some(settings.receiver_map),
     }
 }

@@ -19,12 +19,7 @@ pub fn run_compute(
     buffers: &[&HostBuffer],
     groups: [u32; 3],
 ) -> Result<(), Error> {
-    let program = ComputeProgram::new(device, spirv, push.len(), buffers)?;
-    device.submit_and_wait(|cmd| {
-        // SAFETY: `cmd` records outside a render pass; the program and the buffers live until
-        // `submit_and_wait` has waited; it is the only dispatch, so there is nothing to order.
-        unsafe { program.record(cmd, push, groups) }
-    })
+    ComputeProgram::new(device, spirv, push.len(), buffers)?.run(push, groups)
 }
 
 /// A compute pipeline with its buffers bound, to be dispatched as often as one likes.
@@ -119,6 +114,18 @@ impl ComputeProgram {
         new.pipeline =
             made.map_err(|(_, result)| Error::vulkan("creating a compute pipeline")(result))?[0];
         Ok(new)
+    }
+
+    /// Runs one dispatch and waits. The buffers given to [`Self::new`] must live still.
+    ///
+    /// # Errors
+    /// As [`Self::record`]; [`Error::Vulkan`] if the driver refuses.
+    pub fn run(&self, push: &[u8], groups: [u32; 3]) -> Result<(), Error> {
+        self.device.submit_and_wait(|cmd| {
+            // SAFETY: `cmd` records outside a render pass; the program lives until
+            // `submit_and_wait` has waited; it is the only dispatch, so there is nothing to order.
+            unsafe { self.record(cmd, push, groups) }
+        })
     }
 
     /// Records one dispatch.

@@ -1,7 +1,13 @@
-//! Every knob: unit, range, default, and what 0 means.
+//! The technique and its knobs: setting, reading and checking them.
+
+mod knobs;
+
+pub use knobs::{KNOBS, Knob};
 
 use crate::Error;
 use crate::baseline::Settings as Baseline;
+use crate::nbuffer;
+use crate::ray_march::{Hash, Layers, Projection, Sampling, Search, Settings as RayMarch};
 use crate::soft_shadow_map::{Accumulate, Receivers, Settings as SoftShadowMap, Sides};
 use std::fmt::Display;
 use std::str::FromStr;
@@ -20,6 +26,8 @@ pub enum Technique {
     /// Micro-patches back-projected onto the light (Atty 2006).
     #[default]
     SoftShadowMap,
+    /// Rays through depth layers (Curtis 2009).
+    RayMarch,
 }
 
 impl Technique {
@@ -30,6 +38,7 @@ impl Technique {
         ("many-lights", Self::ManyLights),
         ("back-projection", Self::BackProjection),
         ("soft-shadow-map", Self::SoftShadowMap),
+        ("ray-march", Self::RayMarch),
     ];
 
     /// The name it has on a command line.
@@ -40,6 +49,7 @@ impl Technique {
             Self::ManyLights => "many-lights",
             Self::BackProjection => "back-projection",
             Self::SoftShadowMap => "soft-shadow-map",
+            Self::RayMarch => "ray-march",
         }
     }
 }
@@ -61,6 +71,8 @@ pub struct Settings {
     pub map: u32,
     /// The other knobs of [`Technique::SoftShadowMap`].
     pub soft_shadow_map: SoftShadowMap,
+    /// The other knobs of [`Technique::RayMarch`].
+    pub ray_march: RayMarch,
     /// The other knobs of what users would pick instead.
     pub baseline: Baseline,
 }
@@ -71,124 +83,11 @@ impl Default for Settings {
             technique: Technique::default(),
             map: 256,
             soft_shadow_map: SoftShadowMap::default(),
+            ray_march: RayMarch::default(),
             baseline: Baseline::default(),
         }
     }
 }
-
-/// One knob, as data.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Knob {
-    /// The key, as in `--set key=value`.
-    pub key: &'static str,
-    /// The techniques that have it; empty for all of them.
-    pub techniques: &'static [Technique],
-    /// The unit of the value.
-    pub unit: &'static str,
-    /// The values that are legal.
-    pub range: &'static str,
-    /// The value that stands where none is given.
-    pub default: &'static str,
-    /// What it does, and what 0 means where 0 is legal.
-    pub about: &'static str,
-}
-
-impl Knob {
-    /// Whether a technique has it.
-    pub fn serves(&self, technique: Technique) -> bool {
-        self.techniques.is_empty() || self.techniques.contains(&technique)
-    }
-
-    /// The names of the techniques that have it, or `all`.
-    pub fn techniques(&self) -> String {
-        match self.techniques {
-            [] => "all".into(),
-            some => some.iter().map(|t| t.name()).collect::<Vec<_>>().join(", "),
-        }
-    }
-}
-
-/// The knobs of every technique.
-pub const KNOBS: &[Knob] = &[
-    Knob {
-        key: "map",
-        techniques: &[],
-        unit: "texels",
-        range: "16 to 4096",
-        default: "256",
-        about: "side of the occluder map, or of each of them; any whole number",
-    },
-    Knob {
-        key: "receiver_map",
-        techniques: &[Technique::SoftShadowMap],
-        unit: "texels",
-        range: "16 to 4096",
-        default: "256",
-        about: "side of the soft shadow map, with receivers=map",
-    },
-    Knob {
-        key: "receivers",
-        techniques: &[Technique::SoftShadowMap],
-        unit: "choice",
-        range: "pixels, map",
-        default: "pixels",
-        about: "where visibility is computed: at the G-buffer's pixels, with self-shadowing, or on a \
-                soft shadow map that is projected onto them, without",
-    },
-    Knob {
-        key: "sides",
-        techniques: &[Technique::SoftShadowMap],
-        unit: "choice",
-        range: "one, bottom, two, mean",
-        default: "mean",
-        about: "occluders seen as their nearest faces, as those at the distance of the furthest back \
-                faces, as the larger shadow of both layers, or as the mean of both, which is nearer the \
-                truth (blending takes the larger)",
-    },
-    Knob {
-        key: "accumulate",
-        techniques: &[Technique::SoftShadowMap],
-        unit: "choice",
-        range: "gather, blend, blend-fp16",
-        default: "gather",
-        about: "how micro-patches are added up; the blends need receivers=map, and blend-fp16 is for \
-                studying what goes wrong with it",
-    },
-    Knob {
-        key: "tolerance",
-        techniques: &[Technique::SoftShadowMap],
-        unit: "visible fraction",
-        range: "0 to 0.1",
-        default: "0.0001",
-        about: "most that the gather's shortcut for far texels may add to the error; 0 uses it \
-                only where it is exact",
-    },
-    Knob {
-        key: "taps",
-        techniques: &[Technique::Pcss],
-        unit: "taps",
-        range: "1 to 64",
-        default: "16",
-        about: "places of the map that a pixel looks at to find blockers, and as many again to filter",
-    },
-    Knob {
-        key: "samples",
-        techniques: &[Technique::ManyLights],
-        unit: "points",
-        range: "1 to 4096",
-        default: "256",
-        about: "points on the light, each with a map of its own; any whole number",
-    },
-    Knob {
-        key: "seed",
-        techniques: &[Technique::ManyLights],
-        unit: "whole number",
-        range: "0 to 4294967295",
-        default: "1",
-        about: "which random places the points take in their cells of the light; 0 puts them into the \
-                middle",
-    },
-];
 
 impl Settings {
     /// Sets one knob of the technique by its key.
@@ -198,6 +97,7 @@ impl Settings {
     /// outside its range.
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), Error> {
         let s = &mut self.soft_shadow_map;
+        let r = &mut self.ray_march;
         let technique = self.technique;
         match key {
             _ if !KNOBS.iter().any(|k| k.key == key && k.serves(technique)) => {
@@ -215,6 +115,16 @@ impl Settings {
             "tolerance" => s.tolerance = number(key, value)?,
             "taps" => self.baseline.taps = number(key, value)?,
             "samples" => self.baseline.samples = number(key, value)?,
+            "rays" => r.rays = number(key, value)?,
+            "layers" => r.layers = choose(key, value, Layers::ALL)?,
+            "search" => r.search = choose(key, value, Search::ALL)?,
+            "sampling" => r.sampling = choose(key, value, Sampling::ALL)?,
+            "hash" => r.hash = choose(key, value, Hash::ALL)?,
+            "levels" => r.levels = choose(key, value, nbuffer::Kind::ALL)?,
+            "projection" => r.projection = choose(key, value, Projection::ALL)?,
+            "classify" => r.classify = choose(key, value, RayMarch::SWITCH)?,
+            "filter" => r.filter = choose(key, value, RayMarch::SWITCH)?,
+            _ if technique == Technique::RayMarch => r.seed = number(key, value)?,
             _ => self.baseline.seed = number(key, value)?,
         }
         self.check_range(key)
@@ -228,6 +138,7 @@ impl Settings {
 
     fn value(&self, key: &str) -> Option<String> {
         let s = &self.soft_shadow_map;
+        let r = &self.ray_march;
         Some(match key {
             "map" => self.map.to_string(),
             "receiver_map" => s.receiver_map.to_string(),
@@ -237,7 +148,17 @@ impl Settings {
             "tolerance" => s.tolerance.to_string(),
             "taps" => self.baseline.taps.to_string(),
             "samples" => self.baseline.samples.to_string(),
+            "seed" if self.technique == Technique::RayMarch => r.seed.to_string(),
             "seed" => self.baseline.seed.to_string(),
+            "rays" => r.rays.to_string(),
+            "layers" => name_of(Layers::ALL, r.layers),
+            "search" => name_of(Search::ALL, r.search),
+            "sampling" => name_of(Sampling::ALL, r.sampling),
+            "hash" => name_of(Hash::ALL, r.hash),
+            "levels" => name_of(nbuffer::Kind::ALL, r.levels),
+            "projection" => name_of(Projection::ALL, r.projection),
+            "classify" => name_of(RayMarch::SWITCH, r.classify),
+            "filter" => name_of(RayMarch::SWITCH, r.filter),
             _ => return None,
         })
     }
@@ -251,6 +172,7 @@ impl Settings {
         knobs.try_for_each(|k| self.check_range(k.key))?;
         match self.technique {
             Technique::SoftShadowMap => self.soft_shadow_map.check_agreement(),
+            Technique::RayMarch => self.ray_march.check_agreement(self.map),
             _ => Ok(()),
         }
     }
@@ -259,7 +181,11 @@ impl Settings {
     fn check_range(&self, key: &str) -> Result<(), Error> {
         let good = match key {
             "map" => (16..=4096).contains(&self.map),
-            _ => self.soft_shadow_map.in_range(key) && self.baseline.in_range(key),
+            _ => {
+                self.soft_shadow_map.in_range(key)
+                    && self.baseline.in_range(key)
+                    && self.ray_march.in_range(key)
+            }
         };
         if good {
             return Ok(());
@@ -325,7 +251,7 @@ mod tests {
 
     #[test]
     fn the_readme_lists_every_knob() {
-        let readme = include_str!("../README.md");
+        let readme = include_str!("../../README.md");
         for k in KNOBS {
             let techniques = k.techniques();
             let row = format!(

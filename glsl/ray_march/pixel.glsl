@@ -1,0 +1,178 @@
+// What the passes over the pixels have in common: their inputs, and where a pixel lies in the map.
+
+#ifndef RAY_MARCH_PIXEL_GLSL
+#define RAY_MARCH_PIXEL_GLSL
+
+layout(set = 0, binding = 0) uniform texture2D gbuffer_depth;
+layout(set = 0, binding = 1) uniform texture2D gbuffer_mask;
+layout(set = 0, binding = 2, std430) readonly buffer Columns { vec4 columns[]; };
+layout(set = 0, binding = 3, std430) readonly buffer Bounds { vec4 bounds[]; };
+layout(set = 0, binding = 4, r32f) writeonly uniform image2D visibility;
+
+#include "common/gbuffer.glsl"
+#include "common/light.glsl"
+
+// Nothing is known to be empty but where the shader says so.
+#ifndef SEEN
+bool seen(vec2 t, float w)
+{
+    return false;
+}
+#endif
+
+#include "ray_march/search.glsl"
+
+layout(push_constant) uniform Push {
+    mat4 light_from_ndc;
+    vec2 texels_per_unit; // map texels a unit of u and v, or a metre where the projection is orthographic
+    vec2 first;           // texel coordinates of u = v = 0
+    vec2 half_light;      // half the light's width and height, m
+    ivec2 extent;         // of the G-buffer
+    float background;
+    float eye;            // how far behind the light the projection point is, m; or the far plane's distance
+    float top;            // the height of the near plane; no occluder is higher
+    float snap;           // how far a raster moves a vertex, in texels
+    float depth_error;    // how far off an occluder's height may be beyond its rounding
+    int map;              // the map's side in texels
+    int flags;            // see below
+    uint seed;
+} push;
+
+// How many rays, from 1 to 256, and what is switched on.
+int rays() { return (push.flags & 255) + 1; }
+// Rows of cells of a jittered grid.
+int cell_rows() { return (push.flags >> 8 & 255) + 1; }
+bool is_masked() { return (push.flags & 1 << 16) != 0; }
+bool is_orthographic() { return (push.flags & 1 << 17) != 0; }
+bool is_modern() { return (push.flags & 1 << 19) != 0; }
+bool classifies() { return (push.flags & 1 << 21) != 0; }
+bool filters() { return (push.flags & 1 << 22) != 0; }
+int sampling() { return push.flags >> 23 & 3; }
+
+// With `#define USUAL` what settings seldom ask for is left out, which is a third of the time.
+#ifdef USUAL
+bool is_linear() { return false; }
+bool looks_from_eye() { return false; }
+int level_kind() { return N_BUFFER; }
+#else
+bool is_linear() { return (push.flags & 1 << 18) != 0; }
+bool looks_from_eye() { return (push.flags & 1 << 20) != 0; }
+int level_kind() { return push.flags >> 25 & 3; }
+#endif
+
+Levels levels()
+{
+    return Levels(push.map, level_kind());
+}
+
+GBuffer gbuffer()
+{
+    return GBuffer(push.light_from_ndc, push.extent, push.background, is_masked());
+}
+
+// The normal of the plane that a pixel shows, on the side that light comes from.
+vec3 pixel_normal(ivec2 p, Receiver r)
+{
+    vec3 normal = facet_normal(gbuffer(), p, depth_at(p), r.position);
+    // A surface that does not block is seen from its other side as well.
+    return !r.blocks && dot(normal, r.position) > 0.0 ? -normal : normal;
+}
+
+// The part of the light above the pixel's own plane, all of it where that does not block.
+float part_above(Receiver r)
+{
+    return r.blocks ? fraction_above(r.normal.xy * push.half_light, dot(r.normal, r.position)) : 1.0;
+}
+
+// Without a normal its plane is the map's own, and means nothing.
+Place place_of(Receiver r)
+{
+    vec3 position = r.position;
+    vec2 n = r.normal.xy / push.texels_per_unit;
+    float offset = dot(n, push.first);
+    Place p;
+    p.n = n;
+    if (is_orthographic()) {
+        p.w = push.eye - position.z;
+        p.t = position.xy * push.texels_per_unit + push.first;
+        p.n_0 = r.normal.z * push.eye - dot(r.normal, position) - offset;
+        p.c = r.normal.z;
+    } else {
+        position.z += push.eye;
+        p.w = 1.0 / position.z;
+        p.t = position.xy * p.w * push.texels_per_unit + push.first;
+        p.n_0 = r.normal.z - offset;
+        p.c = dot(r.normal, position);
+    }
+    p.margin = plane_rounding(n, p.n_0, p.c, p.t, p.w, push.snap, push.depth_error) +
+               OWN_SLOPE * 0.5 * length(1.0 / push.texels_per_unit);
+    return p;
+}
+
+// The distance from the light's plane of what is at a height.
+float distance_of(float w)
+{
+    return is_orthographic() ? push.eye - w : 1.0 / w - push.eye;
+}
+
+// Texels a unit of height along the ray to a point of the light, in metres from its centre.
+vec2 slope_to(Place p, float distance_from_light, vec2 point)
+{
+    vec2 across = push.texels_per_unit * point;
+    return is_orthographic()
+               ? (across + push.first - p.t) / distance_from_light
+               : (across + push.eye * (push.first - p.t)) / (distance_from_light * p.w);
+}
+
+// The heights above a receiver between which a column could stop one of its rays, none where they end
+// before they start; and the window of columns that all of its rays come through there, if the map has all
+// of it.
+struct Reach {
+    float start;
+    float end;
+    bool whole;
+    vec2 from;
+    float side;
+    vec4 bounds;
+};
+
+// Two are enough to close in on the penumbra (Curtis 2009 section 3.6), after the one with the whole map's
+// highest occluder.
+const int REFINEMENTS = 3;
+
+// Curtis 2009 section 3.6: the window of the map that rays below the highest occluder can come through says
+// how high the highest occluder within it is, and so on. As of there, the lowest one too. Of the place only
+// t and w are looked at.
+Reach reach_of(Place p, float distance_from_light)
+{
+    Reach reach = Reach(0.0, push.top * (1.0 + SLACK) - p.w, false, vec2(0.0), 0.0, vec4(0.0));
+    if (!classifies()) {
+        return reach;
+    }
+    vec2 g_a = slope_to(p, distance_from_light, -push.half_light);
+    vec2 g_b = slope_to(p, distance_from_light, push.half_light);
+    vec2 end = vec2(push.map - 1);
+    for (int i = 0; i < REFINEMENTS && reach.start <= reach.end; ++i) {
+        vec2 from = floor(p.t + min(reach.start * g_a, reach.end * g_a));
+        vec2 to = floor(p.t + max(reach.start * g_b, reach.end * g_b));
+        if (any(greaterThan(from, end)) || any(lessThan(to, vec2(0.0)))) {
+            reach.end = reach.start - 1.0;
+            return reach;
+        }
+        reach.from = clamp(from, vec2(0.0), end);
+        vec2 to_inside = clamp(to, vec2(0.0), end);
+        reach.whole = from == reach.from && to == to_inside;
+        vec2 size = to_inside - reach.from + 1.0;
+        reach.side = max(size.x, size.y);
+        // Exactly the window for the last one, up to twice as wide before.
+        reach.bounds = i + 1 < REFINEMENTS
+                           ? wider_window_value(levels(), ivec2(reach.from), int(reach.side))
+                           : window_value(levels(), ivec2(reach.from), int(reach.side));
+        vec2 matter = matter_above(p, reach.bounds);
+        reach.start = max(reach.start, matter.x);
+        reach.end = min(reach.end, matter.y);
+    }
+    return reach;
+}
+
+#endif

@@ -1,0 +1,215 @@
+// Whether a ray through the map meets a column.
+//
+// A ray is followed from its receiver towards the light by its height above it, `s`: over the receiver at
+// s = 0, over `t + s g` of the map at height `w + s`. It enters and leaves texels in that order, so that
+// the heights over one texel are an interval.
+//
+// The including shader declares `vec4 columns[]` and `vec4 bounds[]`, and what the eye sees, if anything:
+//     bool seen(vec2 t, float w)   whether a point of (texels, height) is known to be empty
+
+#ifndef RAY_MARCH_SEARCH_GLSL
+#define RAY_MARCH_SEARCH_GLSL
+
+#include "common/plane.glsl"
+#include "ray_march/column.glsl"
+
+#define VALUE vec4
+
+vec4 combine(vec4 a, vec4 b)
+{
+    return max(a, b);
+}
+
+vec4 value_at(int level, int index)
+{
+    return level == 0 ? bounds_of(columns[index]) : bounds[index];
+}
+
+#include "nbuffer/values.glsl"
+
+// A receiver in the map, and its own plane: a point (x, y) texels at height h lies n.x x + n.y y + n_0 - c h
+// above it (see plane.glsl). No surface that is less than `margin` above the plane at a texel's centre
+// stops the receiver's rays: it may be the receiver's own.
+struct Place {
+    vec2 t;
+    float w;
+    vec2 n;
+    float n_0;
+    float c;
+    float margin;
+};
+
+struct Ray {
+    vec2 g;      // texels a unit of height
+    float start; // s where it begins and ends
+    float end;
+};
+
+// Turns that a search takes at most; a ray that is not done by then is stopped by nothing further. Mesa's
+// CPU driver cuts an invocation off, silently, after 65535 turns of all its loops together: 256 rays with
+// their searches stay below. That is why no loop is within a turn.
+const int TURNS = 250;
+
+// Steps of a linear search, likewise, with room for halving.
+const int STEPS = 200;
+
+// Heights are compared with what they were made of by one addition; this is more than its rounding.
+const float SLACK = 1.0e-6;
+
+bool is_clear(Place p, vec2 centre, float top)
+{
+    return dot(centre, p.n) + p.n_0 - p.c * top > p.margin;
+}
+
+// Whether all columns of a window, of these bounds, stop a ray that is within it from height w0 to w1.
+bool stops_all(Place p, vec2 lo, float window, vec4 b, float w0, float w1)
+{
+    // The first top that is least clear of the plane, where the plane is highest.
+    vec2 highest = mix(lo + 0.5, lo + window - 0.5, lessThan(p.n, vec2(0.0)));
+    float top = p.c > 0.0 ? b.x : -b.z;
+    return max(w0, b.w) <= min(w1, -b.z) && is_clear(p, highest, top);
+}
+
+// Whether a ray that is over a texel from s0 to s1 meets one of its column's intervals (top, bottom).
+bool meets_interval(Place p, Ray ray, vec2 centre, vec2 interval, float s0, float s1)
+{
+    float lo = max(p.w + s0, interval.y * (1.0 - SLACK));
+    float hi = min(p.w + s1, interval.x * (1.0 + SLACK));
+    if (interval.x <= 0.0 || lo > hi || !is_clear(p, centre, interval.x)) {
+        return false;
+    }
+    // In what the layers take for solid it may still be where the eye looks through.
+    float s = 0.5 * (lo + hi) - p.w;
+    return !seen(p.t + s * ray.g, p.w + s);
+}
+
+// The hit test: whether a ray that is over a texel from s0 to s1 meets its column.
+bool meets(Place p, Ray ray, ivec2 texel, vec4 column, float s0, float s1)
+{
+    vec2 centre = vec2(texel) + 0.5;
+    return meets_interval(p, ray, centre, column.xy, s0, s1) ||
+           meets_interval(p, ray, centre, column.zw, s0, s1);
+}
+
+// The heights above a receiver between which bounds have matter.
+vec2 matter_above(Place p, vec4 b)
+{
+    return vec2(-b.y * (1.0 - SLACK), b.x * (1.0 + SLACK)) - p.w;
+}
+
+vec2 inverse_of(vec2 g)
+{
+    // A ray that stays over one row never leaves it.
+    return vec2(abs(g.x) < 1.0e-30 ? 1.0e30 : 1.0 / g.x, abs(g.y) < 1.0e-30 ? 1.0e30 : 1.0 / g.y);
+}
+
+// Cuts a ray to what lies over the map.
+Ray over_map(Place p, Ray ray, int map)
+{
+    vec2 inverse = inverse_of(ray.g);
+    vec2 a = -p.t * inverse;
+    vec2 b = (float(map) - p.t) * inverse;
+    vec2 from = min(a, b);
+    vec2 to = max(a, b);
+    return Ray(ray.g, max(ray.start, max(from.x, from.y)), min(ray.end, min(to.x, to.y)));
+}
+
+// Algorithm 2 of Curtis 2009: windows that cannot stop the ray are passed at once, and larger ones tried;
+// in others smaller ones. Two departures: the window lies ahead of the ray instead of around it, and one
+// whose columns have a height in common that the ray passes stops it, whatever is in its texels.
+// `s` is where the ray is stopped.
+bool search_hierarchical(Place p, Ray ray, Levels l, bool eye, out float s)
+{
+    vec2 inverse = inverse_of(ray.g);
+    bvec2 up = greaterThanEqual(ray.g, vec2(0.0));
+    // Texels are entered by this much, which is more than the rounding of where a ray is.
+    vec2 nudge = mix(vec2(-1.0), vec2(1.0), up) * (float(l.map) / 1048576.0);
+    s = ray.start;
+    vec2 extent = abs((ray.end - ray.start) * ray.g);
+    int top = top_of(l);
+    int level = clamp(l.kind == THIRDS ? log_three(int(max(extent.x, extent.y)) + 1)
+                                       : log_above(int(max(extent.x, extent.y)) + 1), 0, top);
+    for (int turn = 0; turn < TURNS; ++turn) {
+        ivec2 texel = clamp(ivec2(floor(p.t + s * ray.g + nudge)), ivec2(0), ivec2(l.map - 1));
+        int window = window_of(l, level);
+        ivec2 node = node_at(l, level, l.kind == MIP ? texel : mix(texel - window + 1, texel, up));
+        vec2 lo = vec2(l.kind == MIP ? node << level : node);
+        vec2 leaves = (mix(lo, lo + float(window), up) - p.t) * inverse;
+        float next = min(max(min(leaves.x, leaves.y), s * (1.0 + 1.0e-6)), ray.end);
+        int index = index_of(l, level, node);
+        vec4 column = level == 0 ? columns[index] : vec4(0.0);
+        vec4 b = level == 0 ? bounds_of(column) : bounds[index];
+        vec2 matter = matter_above(p, b);
+        bool passes = next < matter.x || s > matter.y;
+        if (!passes && level > 0) {
+            if (!eye && stops_all(p, lo, float(window), b, p.w + s, p.w + next)) {
+                return true;
+            }
+            // Below everything in the window there is nothing to meet.
+            s = max(s, matter.x);
+            --level;
+        } else {
+            if (!passes && meets(p, ray, node, column, s, next)) {
+                return true;
+            }
+            if (next >= ray.end) {
+                return false;
+            }
+            s = next;
+            level = passes ? min(level + 1, top) : level;
+        }
+    }
+    return false;
+}
+
+// The column over which a ray is.
+vec4 column_under(Place p, Ray ray, float s, int map, out ivec2 texel)
+{
+    texel = clamp(ivec2(floor(p.t + s * ray.g)), ivec2(0), ivec2(map - 1));
+    return columns[texel.y * map + texel.x];
+}
+
+bool meets_either(Place p, Ray ray, float s0, float s1, int map)
+{
+    ivec2 texel;
+    vec4 column = column_under(p, ray, s0, map, texel);
+    if (meets(p, ray, texel, column, s0, s1)) {
+        return true;
+    }
+    column = column_under(p, ray, s1, map, texel);
+    return meets(p, ray, texel, column, s0, s1);
+}
+
+// Linear search with binary refinement (section 3.3). A step covers a texel at most, unless the ray is
+// longer than STEPS texels, and is looked at from both its ends over all the heights between them, so that
+// nothing between two steps is lost, however thin; halving the step then says whether what was found is
+// really where the ray is.
+bool search_linear(Place p, Ray ray, int map, out float s)
+{
+    s = ray.start;
+    vec2 extent = abs((ray.end - ray.start) * ray.g);
+    int steps = clamp(int(ceil(max(extent.x, extent.y))), 1, STEPS);
+    float width = (ray.end - ray.start) / float(steps);
+    for (int i = 0; i < steps; ++i) {
+        float s0 = ray.start + float(i) * width;
+        float s1 = i + 1 < steps ? s0 + width : ray.end;
+        bool met = meets_either(p, ray, s0, s1, map);
+        // Three halvings are an eighth of a texel.
+        for (int halving = 0; met && halving < 3; ++halving) {
+            float middle = 0.5 * (s0 + s1);
+            if (meets_either(p, ray, s0, middle, map)) {
+                s1 = middle;
+            } else {
+                met = meets_either(p, ray, middle, s1, map);
+                s0 = middle;
+            }
+        }
+        if (met) {
+            s = s0;
+            return true;
+        }
+    }
+    return false;
+}
+
+#endif

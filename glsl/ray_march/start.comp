@@ -1,0 +1,21 @@
+#version 450
+
+// An empty list of pixels, and what the passes over it need to know that a push constant cannot hold.
+
+layout(local_size_x = 1) in;
+
+layout(set = 0, binding = 0, std430) buffer Arguments { uint groups[4]; };
+layout(set = 0, binding = 1, std430) buffer Pixels { uint count; uint none[3]; mat4 ndc_from_light; uint pixels[]; };
+
+layout(push_constant) uniform Push {
+    mat4 ndc_from_light;
+} push;
+
+void main()
+{
+    groups[0] = 0u;
+    groups[1] = 1u;
+    groups[2] = 1u;
+    count = 0u;
+    ndc_from_light = push.ndc_from_light;
+}

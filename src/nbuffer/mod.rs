@@ -1,0 +1,117 @@
+//! N-buffers: what any window of a map holds, in a handful of fetches.
+//!
+//! ```text
+//!   level 0        level 1          level 2           a window of 6 texels
+//!   ·  ·  ·  ·     ┌──┬  ·  ·  ·    ┌─────┐· ·  ·     ┌────┬─┬────┐  four overlapping
+//!   ·  ·  ·  ·     ├──┼──┐ ·  ·     │     │           │  a │ │ b  │  windows of level 2
+//!   ·  ·  ·  ·     ·  └──┘ ·  ·     │     │ …         ├────┼─┼────┤  hold exactly it
+//!   the map        2×2 at every     4×4 at every      │  c │ │ d  │
+//!                  texel            texel             └────┴─┴────┘
+//! ```
+//! Level k holds the least, the largest or the mean over the 2^k × 2^k texels of a window that begins at
+//! each texel (Décoret 2005), one or more values a texel, each level made of four values of the one before
+//! it. Two things that the same query serves need less memory: powers of three instead of two (Curtis 2009
+//! section 5.1), and mip pyramids, of which a window needs up to four nodes that hold up to 16 times as
+//! many texels as were asked for.
+//!
+//! **Borders.** Décoret's windows begin at their texel and stick out of the map at one end; Curtis 2009
+//! section 3.5 centres them so that they hold more near the borders. Here a window lies in the map whole:
+//! level k has n + 1 − 2^k of them a side, for a map of any n, and one that is asked for across the border
+//! is moved inside. It holds then all of the map that it would have held, at no level less than a centred
+//! one, and the levels are smaller: 0.6 of what full ones need at 256 texels a side.
+//!
+//! `glsl/nbuffer/values.glsl` leaves open what a value is. The least of a channel is the largest of its
+//! negative, so that one `max` of a `vec4` makes all four of a technique's bounds.
+
+pub mod twin;
+
+/// Which windows there are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Kind {
+    /// 2^k × 2^k texels, one beginning at every texel.
+    #[default]
+    NBuffer,
+    /// 3^k × 3^k texels, one beginning at every texel.
+    Thirds,
+    /// 2^k × 2^k texels, side by side.
+    Mip,
+}
+
+impl Kind {
+    /// Every kind, with the name it has as a setting.
+    pub const ALL: &[(&str, Self)] =
+        &[("n-buffer", Self::NBuffer), ("thirds", Self::Thirds), ("mip", Self::Mip)];
+
+    /// As shaders have it.
+    pub fn code(self) -> i32 {
+        match self {
+            Self::NBuffer => 0,
+            Self::Thirds => 1,
+            Self::Mip => 2,
+        }
+    }
+}
+
+/// How the levels of a map lie in memory, as `levels.glsl` has it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Levels {
+    /// The map's side in texels, 1 to 4096.
+    pub map: u32,
+    /// Which windows there are.
+    pub kind: Kind,
+}
+
+impl Levels {
+    /// Texels a side of a window.
+    pub fn window(&self, level: u32) -> u32 {
+        match self.kind {
+            Kind::Thirds => 3u32.pow(level),
+            Kind::NBuffer | Kind::Mip => 1 << level,
+        }
+    }
+
+    /// Windows a side.
+    pub fn side(&self, level: u32) -> u32 {
+        match self.kind {
+            Kind::Mip => ((self.map - 1) >> level) + 1,
+            Kind::NBuffer | Kind::Thirds => self.map + 1 - self.window(level),
+        }
+    }
+
+    /// The last level.
+    pub fn top(&self) -> u32 {
+        match self.kind {
+            Kind::NBuffer => self.map.ilog2(),
+            Kind::Thirds => self.map.ilog(3),
+            Kind::Mip => self.map.next_power_of_two().ilog2(),
+        }
+    }
+
+    /// Windows a row in memory.
+    pub fn row(&self, level: u32) -> u32 {
+        match self.kind {
+            Kind::Mip if level > 0 => self.map.next_power_of_two() >> level,
+            _ => self.side(level),
+        }
+    }
+
+    /// Where a level begins, in values, from level 1 on; that of the level behind the last is how many
+    /// values there are.
+    pub fn start(&self, level: u32) -> u32 {
+        (1..level).map(|k| self.row(k).pow(2)).sum()
+    }
+
+    /// Values of all levels from 1 on.
+    pub fn values(&self) -> u32 {
+        self.start(self.top() + 1)
+    }
+
+    /// The level of the windows that cover a window of `side` texels.
+    pub fn covering(&self, side: u32) -> u32 {
+        match self.kind {
+            Kind::NBuffer => side.ilog2(),
+            Kind::Thirds => side.ilog(3),
+            Kind::Mip => side.next_power_of_two().ilog2(),
+        }
+    }
+}

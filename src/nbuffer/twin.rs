@@ -1,0 +1,64 @@
+//! The CPU twin of `glsl/nbuffer/values.glsl`, for any value and any way to combine two.
+
+use super::{Kind, Levels};
+
+/// A map and its levels, each a list of rows.
+#[derive(Clone, Debug)]
+pub struct Values<V> {
+    /// How they lie.
+    pub levels: Levels,
+    /// Level 0, row by row, and then each level's, with rows as long as in memory.
+    pub of_level: Vec<Vec<V>>,
+}
+
+impl<V: Copy + Default> Values<V> {
+    /// Builds every level of a square map, row by row: `combine` makes one value of those of a window's
+    /// parts (fewer than all where the window sticks out of the map).
+    pub fn new(levels: Levels, map: Vec<V>, combine: impl Fn(&[V]) -> V) -> Self {
+        let fan = if levels.kind == Kind::Thirds { 3 } else { 2 };
+        let mut of_level = vec![map];
+        for level in 1..=levels.top() {
+            let (apart, times) = match levels.kind {
+                Kind::Mip => (1, 2),
+                Kind::NBuffer | Kind::Thirds => (levels.window(level - 1), 1),
+            };
+            let (end, finer_row) = (levels.side(level - 1), levels.row(level - 1));
+            let finer = &of_level[level as usize - 1];
+            let row = levels.row(level);
+            let mut values = vec![V::default(); (row * row) as usize];
+            for y in 0..levels.side(level) {
+                for x in 0..levels.side(level) {
+                    let parts: Vec<V> = (0..fan * fan)
+                        .map(|i| [times * x + apart * (i % fan), times * y + apart * (i / fan)])
+                        .filter(|at| at.iter().all(|i| *i < end))
+                        .map(|[x, y]| finer[(y * finer_row + x) as usize])
+                        .collect();
+                    values[(y * row + x) as usize] = combine(&parts);
+                }
+            }
+            of_level.push(values);
+        }
+        Self { levels, of_level }
+    }
+
+    /// The values of the nodes that cover a square window, which is moved into the map first.
+    pub fn covering(&self, first: [i32; 2], side: u32) -> Vec<V> {
+        let Levels { map, kind } = self.levels;
+        let side = side.min(map);
+        let first = first.map(|x| x.clamp(0, (map - side) as i32) as u32);
+        let level = self.levels.covering(side);
+        let along = |first: u32| -> Vec<u32> {
+            match kind {
+                Kind::Mip => (first >> level..=(first + side - 1) >> level).collect(),
+                Kind::NBuffer | Kind::Thirds => {
+                    let window = self.levels.window(level);
+                    let last = first + side - window;
+                    (first..last).step_by(window as usize).chain([last]).collect()
+                }
+            }
+        };
+        let (columns, row) = (along(first[0]), self.levels.row(level));
+        let nodes = along(first[1]).into_iter().flat_map(|y| columns.iter().map(move |x| (*x, y)));
+        nodes.map(|(x, y)| self.of_level[level as usize][(y * row + x) as usize]).collect()
+    }
+}

@@ -1,0 +1,55 @@
+//! Rays through depth layers (Curtis 2009): the visible fraction as the share of rays that arrive.
+//!
+//! ```text
+//!             light           once         columns      what the layers say is solid over each texel
+//!       ──────────────                     levels       what windows of columns have in common
+//!         \  |    /           each pixel   classify     lit, umbra, or a place in a list
+//!   ┌──┐   \ |  ╱  first      each listed  trace        rays to the light, through the columns
+//!   │  │    \|╱│   interval                filter       noise spread over the pixel's own surface
+//!   └──┘    ╱└─┘
+//!         ╱  ┌─┐   second interval
+//!  ──────●───┴─┴──────────    a height above the far plane, the same along every ray and column
+//! ```
+//! A light-space map is seen from a point so far behind the light that the light fits its window (eq. 3.1),
+//! or from infinitely far. In (texels, height) with height = 1/distance, or metres where the projection is
+//! orthographic, rays are straight, so that a search needs no conversions between texture and world.
+//!
+//! **What is solid** (section 3.3): the matter between the nearest and the furthest faces of the occluders
+//! (`layers=2`). What the eye looks through is not (section 3.4, `layers=3`; it takes a G-buffer that shows
+//! the occluders). Where we depart (`layers=4`, the default): the nearest *back* faces and the furthest
+//! *front* faces are drawn too, two more passes without peeling, and matter then lies in two pieces, from
+//! the nearest face to the nearest back face and from the furthest front face to the furthest back face.
+//! Whatever has no more than two pieces over a texel, an ear over a back, a leaf over a leaf, is as it is,
+//! and light falls between. A face without its other side is a sheet. Between texels a sheet or a thin
+//! plate that is steep would let rays through: each piece reaches down to where its top goes on in the
+//! neighbouring texels (`step_down`).
+//!
+//! **Search** (section 3.5): windows of an N-buffer hold the highest top and the lowest bottom of their
+//! columns; a ray that stays above or below passes at once, otherwise it looks at smaller windows. We
+//! also keep the lowest first top and the highest first bottom: between them all columns are solid, and a
+//! ray that passes through there is stopped without a look at any. The same stops all rays of a pixel, which
+//! is how umbra is known. `search=linear` visits the ray a texel at a time and halves where it met something
+//! (section 3.3). Both ask one hit test, [`twin::meets`] being the same by a walk over every texel.
+//! A search takes no more than 250 turns; a ray that is not done by then passes.
+//!
+//! **Bias** (eq. 3.2). A pixel's own surface must not stop its rays. Instead of rays shortened by a texel over
+//! the cosine, a column counts where its top lies above the pixel's own plane, which the G-buffer's depth
+//! gives, by what a surface bent from facet to facet may rise within a texel: the same bias as the other
+//! techniques here have, exact for flat receivers at any slope, and nothing is lost at contact. The part of
+//! the light under that plane is a closed form; its rays are not traced.
+//!
+//! **Noise.** Rays go to Sobol's points, scrambled for each pixel by a hash, to jittered cells (section 3.1)
+//! or anywhere. The filter is a separable Gaussian over the pixel's own surface (section 3), whose width
+//! follows from the penumbra's width and the noise of so many rays: see `filter.glsl`.
+//!
+//! **Limits.** Three pieces of matter over one texel lose the middle one, unless they overlap. Meshes are
+//! expected closed or thin: an open sheet above a solid counts as solid down to the solid's back.
+//! Lent occluder maps have the light's centre as their projection point and two layers.
+
+mod passes;
+pub mod push;
+mod settings;
+pub mod twin;
+
+pub use passes::{Inputs, declare, view, wanted};
+pub use settings::{Hash, Layers, Projection, Sampling, Search, Settings};

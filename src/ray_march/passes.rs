@@ -1,0 +1,263 @@
+//! The rows: layers → columns → levels; pixels → list → rays.
+
+use super::push;
+use super::settings::{Hash, Layers, Projection, Sampling, Search, Settings};
+use crate::RectangleLight;
+use crate::depth_layers::{DepthLayers, Eye, MapView, MeshBounds, Wanted, fit_from, fit_occluders};
+use crate::graph::{Access, Graph, Need, Owner, Pass, Push, ResourceId, Use, Work};
+use crate::nbuffer::{self, Levels};
+use crate::shaders;
+use crate::visibility::{GBuffer, grid};
+use ash::vk;
+use glam::DMat4;
+
+/// What a frame gives the technique.
+#[derive(Clone, Copy, Debug)]
+pub struct Inputs<'a> {
+    /// The light.
+    pub light: &'a RectangleLight,
+    /// How the layers look at the scene.
+    pub view: &'a MapView,
+    /// The host's pixels.
+    pub gbuffer: &'a GBuffer,
+    /// Light space to the G-buffer's NDC, by column.
+    pub ndc_from_light: [f32; 16],
+    /// Added to the seed.
+    pub noise: u32,
+    /// 2^−(sub-pixel bits): how far the device's rasters move a vertex, in texels.
+    pub snap: f32,
+    /// How far off the w of an occluder may be beyond its rounding, 1/m.
+    pub depth_error: f64,
+    /// Whether anything can be shadowed.
+    pub need: &'a Need,
+}
+
+/// The depth layers that these settings read, with maps of `map` texels a side.
+pub fn wanted(settings: &Settings, map: u32) -> Wanted {
+    Wanted { map, back: true, inner: settings.layers == Layers::Four, receiver_map: None }
+}
+
+/// How the layers look at the occluders; none where there are none in front of the light.
+///
+/// The projection point lies so far behind the light that the light fills the angle under which its centre
+/// sees the occluders (Curtis 2009 eq. 3.1). Rays need no more than that: they are cut to what lies over
+/// the map, and beyond the map there are no occluders.
+pub fn view(
+    light: &RectangleLight,
+    occluders: &[(MeshBounds, DMat4)],
+    projection: Projection,
+    side: u32,
+) -> Option<MapView> {
+    let eye = match projection {
+        Projection::Centre => Eye::Behind(0.0),
+        Projection::Orthographic => Eye::Infinity,
+        Projection::Behind => {
+            let from_centre = fit_occluders(light, occluders, None, side)?;
+            let tangent = |i: usize| from_centre.max[i].abs().max(from_centre.min[i].abs());
+            let half = light.half_extents();
+            Eye::Behind([0, 1].map(|i| half[i] / tangent(i)).into_iter().fold(0.0, f64::max))
+        }
+    };
+    fit_from(eye, light, occluders, side)
+}
+
+/// Adds the rows that turn depth layers into `visibility`.
+pub fn declare(
+    graph: &mut Graph,
+    layers: &DepthLayers,
+    visibility: ResourceId,
+    settings: &Settings,
+    inputs: &Inputs,
+) {
+    let (columns, bounds) = declare_levels(graph, layers, settings, inputs);
+    let gbuffer = inputs.gbuffer;
+    let [width, height] = gbuffer.extent;
+    let arguments = graph.buffer("ray_march.arguments", 16);
+    let listed = u64::from(width) * u64::from(height) * 4;
+    let pixels = graph.buffer("ray_march.pixels", 16 + 64 + 3 * listed);
+    // Without a filter nobody reads them.
+    let filtered = if settings.filter { gbuffer.extent } else { [1, 1] };
+    let mut image = |name, format| graph.image(name, format, filtered, Owner::Transient);
+    let noisy = image("ray_march.noisy", vk::Format::R32G32B32A32_SFLOAT);
+    let halfway = image("ray_march.halfway", vk::Format::R32_SFLOAT);
+    graph.push(Pass::compute(
+        "ray_march.start",
+        shaders::START,
+        [1, 1, 1],
+        Push::new(&push::Start { ndc_from_light: inputs.ndc_from_light }),
+        vec![
+            Use::bound(0, arguments, Access::BufferWriteCompute),
+            Use::bound(1, pixels, Access::BufferWriteCompute),
+        ],
+        inputs.need,
+    ));
+    let pushed = Push::new(&pixel_push(settings, inputs));
+    let usual = settings.levels == nbuffer::Kind::NBuffer
+        && settings.search == Search::Hierarchical
+        && settings.layers != Layers::Eye;
+    let common = [
+        Use::bound(0, gbuffer.depth, Access::SampledCompute),
+        Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
+        Use::bound(2, columns, Access::BufferReadCompute),
+        Use::bound(3, bounds, Access::BufferReadCompute),
+    ];
+    let with = |more: &[Use]| common.iter().chain(more).copied().collect::<Vec<_>>();
+    graph.push(Pass::compute(
+        "ray_march.classify",
+        if usual { shaders::CLASSIFY } else { shaders::CLASSIFY_ANY },
+        grid(gbuffer.extent),
+        pushed,
+        with(&[
+            Use::bound(4, visibility, Access::ImageWrite),
+            Use::bound(5, arguments, Access::BufferUpdate),
+            Use::bound(6, pixels, Access::BufferUpdate),
+            Use::bound(7, noisy, Access::ImageWrite),
+            Use::bound(8, halfway, Access::ImageWrite),
+        ]),
+        inputs.need,
+    ));
+    graph.push(Pass {
+        name: "ray_march.trace",
+        uses: with(&[
+            Use::bound(4, visibility, Access::ImageUpdate),
+            Use::bound(5, pixels, Access::BufferReadCompute),
+            Use::bound(6, noisy, Access::ImageUpdate),
+            Use::fixed(arguments, Access::Indirect),
+        ]),
+        push: pushed,
+        work: Work::Indirect {
+            shader: if usual { shaders::TRACE } else { shaders::TRACE_ANY },
+            arguments,
+        },
+        need: inputs.need.clone(),
+    });
+    if settings.filter {
+        let pushed = Push::new(&push::Filter {
+            light_from_ndc: gbuffer.light_from_ndc,
+            extent: gbuffer.extent.map(|e| e as i32),
+        });
+        let common = [
+            Use::bound(0, gbuffer.depth, Access::SampledCompute),
+            Use::bound(1, pixels, Access::BufferReadCompute),
+            Use::bound(2, noisy, Access::SampledCompute),
+            Use::fixed(arguments, Access::Indirect),
+        ];
+        let with = |more: &[Use]| common.iter().chain(more).copied().collect::<Vec<_>>();
+        graph.push(Pass {
+            name: "ray_march.filter_rows",
+            uses: with(&[Use::bound(3, halfway, Access::ImageUpdate)]),
+            push: pushed,
+            work: Work::Indirect { shader: shaders::FILTER_ROWS, arguments },
+            need: inputs.need.clone(),
+        });
+        graph.push(Pass {
+            name: "ray_march.filter_columns",
+            uses: with(&[
+                Use::bound(3, halfway, Access::SampledCompute),
+                Use::bound(4, visibility, Access::ImageUpdate),
+            ]),
+            push: pushed,
+            work: Work::Indirect { shader: shaders::FILTER_COLUMNS, arguments },
+            need: inputs.need.clone(),
+        });
+    }
+}
+
+/// Adds the rows that turn the layers into columns, and these into bounds of windows.
+fn declare_levels(
+    graph: &mut Graph,
+    layers: &DepthLayers,
+    settings: &Settings,
+    inputs: &Inputs,
+) -> (ResourceId, ResourceId) {
+    let map = inputs.view.side;
+    let levels = Levels { map, kind: settings.levels };
+    let value = size_of::<[f32; 4]>() as u64;
+    let columns = graph.buffer("ray_march.columns", u64::from(map) * u64::from(map) * value);
+    let bounds = graph.buffer("ray_march.bounds", u64::from(levels.values()) * value);
+    let back = layers.back.unwrap_or(layers.front);
+    let [near_back, far_front] = layers.inner.unwrap_or([layers.front; 2]);
+    let four = layers.inner.is_some();
+    graph.push(Pass::compute(
+        "ray_march.columns",
+        shaders::COLUMNS,
+        grid([map; 2]),
+        Push::new(&push::Columns {
+            map: map as i32,
+            layers: if four { 4 } else { 2 },
+            height: inputs.view.top() as f32,
+        }),
+        vec![
+            Use::bound(0, layers.front, Access::SampledCompute),
+            Use::bound(1, back, Access::SampledCompute),
+            Use::bound(2, near_back, Access::SampledCompute),
+            Use::bound(3, far_front, Access::SampledCompute),
+            Use::bound(4, columns, Access::BufferWriteCompute),
+        ],
+        inputs.need,
+    ));
+    let kind = settings.levels.code();
+    graph.push(Pass::compute(
+        "ray_march.first_level",
+        shaders::FIRST_LEVEL,
+        grid([levels.side(1); 2]),
+        Push::new(&push::FirstLevel { map: map as i32, kind }),
+        vec![
+            Use::bound(0, columns, Access::BufferReadCompute),
+            Use::bound(1, bounds, Access::BufferWriteCompute),
+        ],
+        inputs.need,
+    ));
+    for level in 2..=levels.top() {
+        graph.push(Pass::compute(
+            "ray_march.next_level",
+            shaders::BOUNDS_LEVEL,
+            grid([levels.side(level); 2]),
+            Push::new(&push::NextLevel { map: map as i32, kind, level: level as i32 }),
+            vec![Use::bound(0, bounds, Access::BufferUpdate)],
+            inputs.need,
+        ));
+    }
+    (columns, bounds)
+}
+
+fn pixel_push(settings: &Settings, inputs: &Inputs) -> push::Pixels {
+    let Inputs { view, gbuffer, light, .. } = inputs;
+    let [half_x, half_y] = light.half_extents();
+    let rays = f64::from(settings.rays);
+    let rows = (rays * half_y / half_x).sqrt().round().clamp(1.0, rays) as i32;
+    let bit = |on: bool, at: i32| i32::from(on) << at;
+    let flags = (settings.rays as i32 - 1)
+        | (rows - 1) << 8
+        | bit(gbuffer.mask.is_some(), 16)
+        | bit(view.eye == Eye::Infinity, 17)
+        | bit(settings.search == Search::Linear, 18)
+        | bit(settings.hash == Hash::Pcg, 19)
+        | bit(settings.layers == Layers::Eye, 20)
+        | bit(settings.classify, 21)
+        | bit(settings.filter, 22)
+        | match settings.sampling {
+            Sampling::Jittered => 0,
+            Sampling::Random => 1,
+            Sampling::LowDiscrepancy => 2,
+        } << 23
+        | settings.levels.code() << 25;
+    push::Pixels {
+        light_from_ndc: gbuffer.light_from_ndc,
+        texels_per_unit: view.texels_per_uv().map(|x| x as f32),
+        first: view.first().map(|x| x as f32),
+        half_light: light.half_extents().map(|x| x as f32),
+        extent: gbuffer.extent.map(|e| e as i32),
+        background: gbuffer.background,
+        eye: match view.eye {
+            Eye::Behind(behind) => behind as f32,
+            Eye::Infinity => view.far as f32,
+        },
+        top: view.top() as f32,
+        snap: inputs.snap,
+        depth_error: inputs.depth_error as f32,
+        map: view.side as i32,
+        flags,
+        seed: settings.seed.wrapping_add(inputs.noise),
+    }
+}

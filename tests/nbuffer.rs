@@ -1,0 +1,300 @@
+//! N-buffers and what serves beside them: their levels and their windows, against a scan of the map.
+
+// A test says what went wrong by panicking.
+#![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
+
+use antumbra::gpu::headless::{ComputeProgram, HeadlessDevice, HostBuffer};
+use antumbra::nbuffer::twin::Values;
+use antumbra::nbuffer::{Kind, Levels};
+use antumbra_tests::compile::try_compile;
+use antumbra_tests::{Function, device};
+use ash::vk;
+use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::TestRunner;
+
+/// The largest map that is tried.
+const MOST: u32 = 300;
+
+/// Windows that are asked for of each map.
+const WINDOWS: usize = 64;
+
+/// A way to combine values: GLSL for `combine`, the twin of it, and the mean's switch.
+struct Way {
+    name: &'static str,
+    combine: &'static str,
+    of: fn(&[f32]) -> f32,
+    mean: bool,
+}
+
+const WAYS: [Way; 3] = [
+    Way {
+        name: "least",
+        combine: "return min(a, b);",
+        of: |parts| parts.iter().copied().fold(f32::INFINITY, f32::min),
+        mean: false,
+    },
+    Way {
+        name: "largest",
+        combine: "return max(a, b);",
+        of: |parts| parts.iter().copied().fold(f32::NEG_INFINITY, f32::max),
+        mean: false,
+    },
+    Way { name: "mean", combine: "return a + b;", of: |_| f32::NAN, mean: true },
+];
+
+/// Builds levels and asks for windows, of values of so many channels.
+struct Machine<'a> {
+    way: &'a Way,
+    channels: usize,
+    map: HostBuffer,
+    levels: HostBuffer,
+    windows: HostBuffer,
+    results: HostBuffer,
+    build: ComputeProgram,
+    query: Option<ComputeProgram>,
+}
+
+impl<'a> Machine<'a> {
+    fn new(device: &HeadlessDevice, way: &'a Way, channels: usize) -> Self {
+        let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
+        let kinds = [Kind::NBuffer, Kind::Thirds, Kind::Mip];
+        let most = kinds.iter().map(|&kind| {
+            (1..=MOST).map(|map| Levels { map, kind }.values()).max().unwrap() as usize
+        });
+        let buffer = |name, words: usize| {
+            HostBuffer::with_data(device, name, &vec![0u32; words], storage).unwrap()
+        };
+        let map = buffer("map", (MOST * MOST) as usize * channels);
+        let levels = buffer("levels", most.max().unwrap() * channels);
+        let windows = buffer("windows", 4 * WINDOWS);
+        let results = buffer("results", WINDOWS * channels);
+        let value = ["float", "vec2", "", "vec4"][channels - 1];
+        let common = format!(
+            "#version 450\n#extension GL_GOOGLE_include_directive : require\n\
+             #define VALUE {value}\n{}\
+             layout(set = 0, binding = 0, std430) readonly buffer Map {{ VALUE map_values[]; }};\n\
+             layout(set = 0, binding = 1, std430) buffer Made {{ VALUE made[]; }};\n\
+             VALUE combine(VALUE a, VALUE b) {{ {} }}\n\
+             VALUE value_at(int level, int index)\n\
+             {{ return level == 0 ? map_values[index] : made[index]; }}\n\
+             #include \"nbuffer/values.glsl\"\n",
+            if way.mean { "#define MEAN\n" } else { "" },
+            way.combine
+        );
+        let build = format!(
+            "{common}layout(local_size_x = 8, local_size_y = 8) in;\n\
+             layout(push_constant) uniform Push {{ int map; int kind; int level; }} push;\n\
+             void main() {{\n\
+                 ivec2 p = ivec2(gl_GlobalInvocationID.xy);\n\
+                 Levels l = Levels(push.map, push.kind);\n\
+                 int side = side_of(l, push.level);\n\
+                 if (p.x < side && p.y < side)\n\
+                     made[index_of(l, push.level, p)] = combined(l, push.level, p);\n\
+             }}\n"
+        );
+        let query = format!(
+            "{common}layout(local_size_x = 64) in;\n\
+             layout(set = 0, binding = 2, std430) readonly buffer Windows {{ ivec4 windows[]; }};\n\
+             layout(set = 0, binding = 3, std430) buffer Results {{ VALUE results[]; }};\n\
+             layout(push_constant) uniform Push {{ int map; int kind; }} push;\n\
+             void main() {{\n\
+                 uint i = gl_GlobalInvocationID.x;\n\
+                 Levels l = Levels(push.map, push.kind);\n\
+                 results[i] = window_value(l, windows[i].xy, windows[i].z);\n\
+             }}\n"
+        );
+        let compile = |name: &str, source: &str| {
+            try_compile(name, source).unwrap_or_else(|log| panic!("{log}"))
+        };
+        let build =
+            ComputeProgram::new(device, &compile("build.comp", &build), 12, &[&map, &levels]);
+        let buffers = [&map, &levels, &windows, &results];
+        let query = (!way.mean).then(|| {
+            ComputeProgram::new(device, &compile("query.comp", &query), 8, &buffers).unwrap()
+        });
+        let build = build.unwrap();
+        Self { way, channels, map, levels, windows, results, build, query }
+    }
+
+    /// Builds every level of a map of `side` texels.
+    fn build(&mut self, levels: Levels, map: &[f32]) {
+        self.map.write(map).unwrap();
+        for level in 1..=levels.top() {
+            let push = [levels.map as i32, levels.kind.code(), level as i32];
+            let groups = levels.side(level).div_ceil(8);
+            self.build.run(bytemuck::cast_slice(&push), [groups, groups, 1]).unwrap();
+        }
+    }
+
+    /// One channel of the levels, as the device made them, beside the twin's.
+    fn check_levels(&self, levels: Levels, map: &[f32]) {
+        let made: Vec<f32> = self.levels.read();
+        for channel in 0..self.channels {
+            let own = map.iter().skip(channel).step_by(self.channels).copied().collect();
+            let fan = if levels.kind == Kind::Thirds { 9.0 } else { 4.0 };
+            let twin = if self.way.mean {
+                Values::new(levels, own, |parts| {
+                    parts[1..].iter().fold(parts[0], |sum, v| sum + v) / fan
+                })
+            } else {
+                Values::new(levels, own, self.way.of)
+            };
+            for level in 1..=levels.top() {
+                let (start, row) = (levels.start(level), levels.row(level));
+                for (y, x) in (0..levels.side(level))
+                    .flat_map(|y| (0..levels.side(level)).map(move |x| (y, x)))
+                {
+                    let at = (y * row + x) as usize;
+                    let device = made[(start as usize + at) * self.channels + channel];
+                    let expected = twin.of_level[level as usize][at];
+                    // Up to nine numbers below 1,040 in another order.
+                    let off = (device - expected).abs();
+                    assert!(
+                        device == expected || self.way.mean && off <= 9.0 * 1040.0 * f32::EPSILON,
+                        "{} of {levels:?}, level {level}, node ({x}, {y}): {device}, not {expected}",
+                        self.way.name
+                    );
+                }
+            }
+        }
+    }
+
+    /// The windows' values by the device.
+    fn windows(&mut self, levels: Levels, windows: &[[i32; 3]]) -> Vec<f32> {
+        let words: Vec<i32> = windows.iter().flat_map(|&[x, y, side]| [x, y, side, 0]).collect();
+        self.windows.write(&words).unwrap();
+        let push = [levels.map as i32, levels.kind.code()];
+        let query = self.query.as_ref().unwrap();
+        query.run(bytemuck::cast_slice(&push), [WINDOWS as u32 / 64, 1, 1]).unwrap();
+        self.results.read()
+    }
+}
+
+/// What a scan finds in a window: of each texel's own channel, moved into the map whole.
+fn scanned(
+    levels: Levels,
+    map: &[f32],
+    channels: usize,
+    window: [i32; 3],
+    channel: usize,
+    way: &Way,
+) -> f32 {
+    let n = levels.map as i32;
+    let side = window[2].min(n);
+    let [x, y] = [window[0], window[1]].map(|i| i.clamp(0, n - side));
+    let texel = |x: i32, y: i32| map[((y * n + x) as usize) * channels + channel];
+    let inside: Vec<f32> =
+        (y..y + side).flat_map(|y| (x..x + side).map(move |x| texel(x, y))).collect();
+    (way.of)(&inside)
+}
+
+/// The part of the map that the nodes of a mip pyramid hold around a window.
+fn around(levels: Levels, window: [i32; 3]) -> [i32; 4] {
+    let n = levels.map as i32;
+    let side = window[2].min(n);
+    let level = levels.covering(side as u32);
+    let [x, y] = [window[0], window[1]].map(|i| i.clamp(0, n - side));
+    let down = |i: i32| i >> level << level;
+    let up = |i: i32| ((i >> level) + 1 << level).min(n);
+    [down(x), down(y), up(x + side - 1), up(y + side - 1)]
+}
+
+/// Every side from 1 to 300, each kind, least, largest and mean, of 1, 2 and 4 channels in turn.
+#[test]
+fn levels_and_windows_are_what_a_scan_finds() {
+    let device = device();
+    let mut runner = TestRunner::deterministic();
+    for (nth, way) in WAYS.iter().enumerate() {
+        for channels in [1, 2, 4] {
+            let mut machine = Machine::new(&device, way, channels);
+            let mut tightness = [0.0f64; 3];
+            // All sides over all three ways and channels, each at least once with each way.
+            let first = 1 + [1, 2, 4].iter().position(|c| *c == channels).unwrap() as u32;
+            for map in (first..=MOST).step_by(3) {
+                let count = (map * map) as usize * channels;
+                let words = prop::collection::vec(-1e3..1e3f32, 257);
+                let random = words.new_tree(&mut runner).unwrap().current();
+                let values: Vec<f32> =
+                    (0..count).map(|i| random[i * 7919 % 257] + (i % 31) as f32).collect();
+                let side = map as i32;
+                // Few large ones, which take the scan its time.
+                let sides = prop_oneof![7 => 1..24.min(side + 8), 1 => 1..side + 8];
+                let window = (-8..side + 8, -8..side + 8, sides);
+                let windows = prop::collection::vec(window, WINDOWS);
+                let windows: Vec<_> = windows.new_tree(&mut runner).unwrap().current();
+                let windows: Vec<_> = windows.into_iter().map(|(x, y, s)| [x, y, s]).collect();
+                for (kind_nth, kind) in
+                    [Kind::NBuffer, Kind::Thirds, Kind::Mip].into_iter().enumerate()
+                {
+                    let levels = Levels { map, kind };
+                    machine.build(levels, &values);
+                    // All of the levels where that is quick, or the first time.
+                    if map % 24 < 3 {
+                        machine.check_levels(levels, &values);
+                    }
+                    if way.mean {
+                        continue;
+                    }
+                    let results = machine.windows(levels, &windows);
+                    for (i, &window) in windows.iter().enumerate() {
+                        for channel in 0..channels {
+                            let found = results[i * channels + channel];
+                            let expected = if kind == Kind::Mip {
+                                let [x0, y0, x1, y1] = around(levels, window);
+                                let texel = |x: i32, y: i32| {
+                                    values[((y * side + x) as usize) * channels + channel]
+                                };
+                                let inside: Vec<f32> = (y0..y1)
+                                    .flat_map(|y| (x0..x1).map(move |x| texel(x, y)))
+                                    .collect();
+                                let s = f64::from(window[2].min(side));
+                                tightness[kind_nth] += f64::from((x1 - x0) * (y1 - y0)) / (s * s);
+                                (way.of)(&inside)
+                            } else {
+                                tightness[kind_nth] += 1.0;
+                                scanned(levels, &values, channels, window, channel, way)
+                            };
+                            assert_eq!(found, expected, "{} of {levels:?}, {window:?}", way.name);
+                        }
+                    }
+                }
+            }
+            let asked = f64::from(MOST / 3) * (WINDOWS * channels) as f64;
+            if nth == 0 {
+                println!(
+                    "{channels} channels: texels held for each that was asked for: n-buffer {:.2}, \
+                     thirds {:.2}, mip {:.2}",
+                    tightness[0] / asked,
+                    tightness[1] / asked,
+                    tightness[2] / asked
+                );
+            }
+        }
+    }
+}
+
+/// Where levels lie: the shader's formulas against sums.
+#[test]
+fn levels_lie_one_behind_the_other() {
+    let glue = "ivec4 layout_of(int map, int kind, int level) { Levels l = Levels(map, kind); \
+                return ivec4(top_of(l), side_of(l, level), row_of(l, level), start_of(l, level)); }";
+    let mut function =
+        Function::new("nbuffer/levels.glsl", "ivec4 layout_of(int map, int kind, int level)")
+            .glue(glue);
+    let kinds = [Kind::NBuffer, Kind::Thirds, Kind::Mip];
+    for map in (1..=300).chain([511, 512, 513, 1000, 1024, 2047, 2048, 2187, 4095, 4096]) {
+        for kind in kinds {
+            for level in 1..=(Levels { map, kind }).top() {
+                function = function.case((map, kind.code(), level));
+            }
+        }
+    }
+    function
+        .bits(move |x| {
+            let kind = kinds[x[1] as usize];
+            let levels = Levels { map: x[0], kind };
+            vec![levels.top(), levels.side(x[2]), levels.row(x[2]), levels.start(x[2])]
+        })
+        .check(&device());
+}

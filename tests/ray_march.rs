@@ -1,0 +1,260 @@
+//! Rays through depth layers: against a walk over every texel, its laws, and how far from the truth.
+
+// A test says what went wrong by panicking.
+#![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
+
+use antumbra::gpu::headless::{HeadlessDevice, Stage, View};
+use antumbra::scene::{Scene, generate};
+use antumbra_tests::device;
+use antumbra_tests::measure::{Setup, model, percent, summary};
+
+fn light(side: f64) -> antumbra::RectangleLight {
+    generate::square_light(side).unwrap()
+}
+
+/// The view of a scene's own camera, everything in it seen.
+fn seen(scene: &Scene) -> Setup<'_> {
+    let extent = [320, 240];
+    let view = View::perspective(&scene.camera.unwrap(), extent);
+    Setup { scene, view, extent, window: None, occluders_seen: true }
+}
+
+fn image(device: &HeadlessDevice, setup: &Setup, words: &str) -> Vec<f32> {
+    setup.visibility(&mut setup.stage(device, words))
+}
+
+/// The mean of |a − b| over the pixels that both do not have lit.
+fn apart(a: &[f32], b: &[f32]) -> f64 {
+    let pairs = || a.iter().zip(b).filter(|(a, b)| **a < 1.0 || **b < 1.0);
+    pairs().map(|(a, b)| f64::from((a - b).abs())).sum::<f64>() / pairs().count() as f64
+}
+
+/// Windows that show a pixel to be lit or in umbra, and heights that a ray need not look at, are ones that
+/// the search would not have found anything else in.
+#[test]
+fn classification_changes_nothing() {
+    let device = device();
+    let bunny = model("bunny");
+    let spheres = generate::spheres(light(0.4));
+    let tall_box = generate::tall_box(light(1.0));
+    let setups = [
+        ("bunny", seen(&bunny)),
+        ("spheres", Setup::ground(&spheres, 2.2, 96)),
+        ("box", Setup::ground(&tall_box, 3.5, 96)),
+    ];
+    for (name, setup) in &setups {
+        for more in
+            ["", "layers=2", "layers=3", "levels=mip", "levels=thirds", "projection=orthographic"]
+        {
+            let words = format!("technique=ray-march map=128 filter=off {more}");
+            let with = image(&device, setup, &words);
+            let without = image(&device, setup, &format!("{words} classify=off"));
+            let worst = with.iter().zip(&without).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+            let differ =
+                with.iter().zip(&without).filter(|(a, b)| (**a - **b).abs() > 1e-6).count();
+            println!("{name}, {more}: {differ} of {} differ, by up to {worst:.1e}", with.len());
+            assert!(worst <= 1e-6, "{name}, {more}: {differ} pixels, {worst}");
+        }
+    }
+}
+
+/// Whatever the windows, the same rays meet the same columns, but for those that pass within rounding of
+/// one: a pixel differs by a ray then.
+#[test]
+fn every_search_finds_the_same() {
+    let device = device();
+    let bunny = model("bunny");
+    let spheres = generate::spheres(light(0.4));
+    let slats = generate::slats(light(0.4), 24);
+    let setups = [
+        ("bunny", seen(&bunny)),
+        ("spheres", Setup::ground(&spheres, 2.2, 96)),
+        ("slats", Setup::ground(&slats, 2.2, 96)),
+    ];
+    for (name, setup) in &setups {
+        let words = "technique=ray-march map=128 filter=off";
+        let first = image(&device, setup, words);
+        for (more, bound) in
+            [("levels=mip", 1e-4), ("levels=thirds", 1e-4), ("search=linear", 0.02)]
+        {
+            let other = image(&device, setup, &format!("{words} {more}"));
+            let mean = apart(&first, &other);
+            println!("{name}, {more}: {mean:.1e}");
+            assert!(mean <= bound, "{name}, {more}: {mean}");
+        }
+    }
+}
+
+/// The mean of one ray a pixel over 256 seeds is what 256 rays say. Both are means of as many rays: of the
+/// one the variance of a pixel is v(1 − v)/256, of the other less; so the mean over p pixels is off by no
+/// more than 4 · √(2/4/256/p), and the mean square of the differences is the variances' mean, to within
+/// 4 · √(2/p) of it.
+#[test]
+fn one_ray_is_right_in_the_mean() {
+    let device = device();
+    let scene = generate::spheres(light(0.4));
+    let setup = Setup::ground(&scene, 2.2, 64);
+    let many = image(&device, &setup, "technique=ray-march rays=256 filter=off map=128");
+    for (sampling, hash) in [("random", "md5"), ("low-discrepancy", "pcg")] {
+        let mut sum = vec![0.0f64; many.len()];
+        let words = format!(
+            "technique=ray-march rays=1 filter=off map=128 sampling={sampling} hash={hash}"
+        );
+        let mut stage = setup.stage(&device, &words);
+        for noise in 0..256 {
+            let plan = stage.plan_with(&setup.light(), |frame| frame.noise = noise).unwrap();
+            stage.run(&plan).unwrap();
+            let one = stage.visibility().unwrap();
+            sum.iter_mut().zip(&one).for_each(|(s, v)| *s += f64::from(*v) / 256.0);
+        }
+        let open: Vec<(f64, f64)> = sum
+            .iter()
+            .zip(&many)
+            .map(|(s, v)| (*s, f64::from(*v)))
+            .filter(|(_, v)| *v > 0.0 && *v < 1.0)
+            .collect();
+        let p = open.len() as f64;
+        let mean = open.iter().map(|(s, v)| s - v).sum::<f64>() / p;
+        let square = open.iter().map(|(s, v)| (s - v).powi(2)).sum::<f64>() / p;
+        let variance = open.iter().map(|(_, v)| v * (1.0 - v) / 256.0).sum::<f64>() / p;
+        println!(
+            "{sampling}, {hash}: {p} pixels, mean {mean:.1e}, ratio of squares {:.2}",
+            square / variance
+        );
+        assert!(mean.abs() <= 4.0 * (0.5 / 256.0 / p).sqrt(), "{sampling}, {hash}: {mean}");
+        assert!(
+            square <= (1.0 + 4.0 * (2.0 / p).sqrt()) * variance,
+            "{sampling}, {hash}: {square} for {variance}"
+        );
+    }
+}
+
+/// The noise falls with the root of the rays where they go anywhere; faster where each has a part of the
+/// light of its own, of which the shadow's edge crosses only √n: with n^(−3/4).
+#[test]
+fn noise_falls_as_it_should() {
+    let device = device();
+    let scene = generate::spheres(light(0.4));
+    let setup = Setup::ground(&scene, 2.2, 96);
+    let reference = image(
+        &device,
+        &setup,
+        "technique=ray-march rays=256 sampling=low-discrepancy filter=off map=128 seed=77",
+    );
+    for (sampling, least, most) in
+        [("random", -0.6, -0.4), ("jittered", -0.9, -0.6), ("low-discrepancy", -1.0, -0.6)]
+    {
+        let counts = [1u32, 4, 16, 64];
+        let noise = counts.map(|rays| {
+            let words =
+                format!("technique=ray-march rays={rays} sampling={sampling} filter=off map=128");
+            let seen = image(&device, &setup, &words);
+            let open = || seen.iter().zip(&reference).filter(|(_, v)| **v > 0.0 && **v < 1.0);
+            (open().map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>() / open().count() as f64)
+                .sqrt()
+        });
+        // A line through the logarithms.
+        let points: Vec<_> =
+            counts.iter().zip(noise).map(|(n, e)| (f64::from(*n).ln(), e.ln())).collect();
+        let count = points.len() as f64;
+        let (mx, my) =
+            points.iter().fold((0.0, 0.0), |(x, y), p| (x + p.0 / count, y + p.1 / count));
+        let slope = points.iter().map(|p| (p.0 - mx) * (p.1 - my)).sum::<f64>()
+            / points.iter().map(|p| (p.0 - mx).powi(2)).sum::<f64>();
+        println!("{sampling}: {noise:.4?}, exponent {slope:.2}");
+        assert!((least..=most).contains(&slope), "{sampling}: {slope}");
+    }
+}
+
+/// Settings and the mean error in percent; in the order of [`scenes`].
+type Row = (&'static str, [f64; 9]);
+
+/// Measured on lavapipe, 256² maps; the truth's own noise is 0.3 of it or less where 0.4 is measured. What
+/// explains them:
+/// * 16 rays leave their noise, which the filter takes away where penumbrae are wide: less on the box, which
+///   touches the ground, and on slats, whose penumbrae are narrow and many;
+/// * 256 rays leave what the maps do not tell: on slats that strips are a whole number of texels wide;
+/// * two layers fill what is between leaves, and between the bunny's ear and its back; the eye layer takes
+///   away what the eye sees of that; in four layers it is not there;
+/// * a third of the bunny's own error is in pixels on creases, whose plane the G-buffer's depth does not
+///   tell.
+const TABLE: &[Row] = &[
+    ("rays=16", [0.49, 2.08, 1.31, 0.87, 0.81, 0.79, 1.63, 2.08, 0.84]),
+    ("rays=16 sampling=jittered", [0.71, 2.69, 1.81, 0.94, 0.80, 0.78, 1.61, 2.15, 0.97]),
+    ("rays=256", [0.28, 1.50, 0.37, 0.45, 0.42, 0.43, 0.97, 1.67, 0.47]),
+    ("rays=16 layers=2", [0.49, 2.08, 1.31, 0.90, 0.82, 0.79, 2.31, 2.49, 0.97]),
+    ("rays=16 layers=3", [0.00, 0.00, 0.00, 0.00, 0.00, 0.00, 0.00, 2.06, 0.88]),
+];
+
+fn scenes() -> Vec<(&'static str, Scene, bool)> {
+    let normalized = |name, side| generate::normalized(&model(name), light(side)).unwrap();
+    vec![
+        ("card", generate::card(light(0.4)), false),
+        ("slats", generate::slats(light(0.4), 24), false),
+        ("tall box, 1 m", generate::tall_box(light(1.0)), false),
+        ("bunny", normalized("bunny", 0.4), false),
+        ("bunny, 1 m", normalized("bunny", 1.0), false),
+        ("suzanne, 1 m", normalized("suzanne", 1.0), false),
+        ("foliage", generate::foliage(light(0.4), 300, 7), false),
+        ("bunny, both", model("bunny"), true),
+        ("suzanne, both", model("suzanne"), true),
+    ]
+}
+
+/// Room for drivers that place edges differently, in percentage points.
+const ROOM: f64 = 0.3;
+
+#[test]
+fn errors_are_what_they_were_measured_to_be() {
+    let device = device();
+    let mut problems = Vec::new();
+    for (nth, (name, scene, both)) in scenes().iter().enumerate() {
+        let setup = if *both {
+            seen(scene)
+        } else {
+            Setup::ground(scene, if name.contains("1 m") { 3.5 } else { 2.2 }, 160)
+        };
+        let mut truth = None;
+        for (words, measured) in TABLE {
+            // Without the occluders in the picture the eye layer says that they are not there.
+            if words.contains("layers=3") && !both {
+                continue;
+            }
+            let mut stage = setup.stage(&device, &format!("technique=ray-march {words}"));
+            let image = setup.visibility(&mut stage);
+            let (truth, noise) = truth.get_or_insert_with(|| setup.traced(&stage, 512));
+            let s = summary(truth, &image);
+            let line = format!(
+                "{name}, {words}: mean {:.2} %, bias {:.2}, p99 {:.3}, on lit pixels {:.3} % (truth's noise {:.2} points)",
+                percent(truth, &image),
+                100.0 * s.bias,
+                s.p99,
+                100.0 * s.lit_error,
+                100.0 * *noise
+            );
+            println!("{line}");
+            if 100.0 * s.mean_abs_error > measured[nth] + ROOM || s.lit_error > 0.0005 {
+                problems.push(line);
+            }
+        }
+    }
+    assert!(problems.is_empty(), "worse than measured:\n{}", problems.join("\n"));
+}
+
+/// Why a stage's own frame does what it does: rays only where they are needed.
+#[test]
+fn pixels_that_need_no_rays_get_none() {
+    let device = device();
+    let scene = generate::card(light(0.4));
+    let setup = Setup::ground(&scene, 2.2, 64);
+    let mut stage: Stage = setup.stage(&device, "technique=ray-march rays=1 filter=off");
+    let one = setup.visibility(&mut stage);
+    let truth = setup.closed_form_of_card(&stage);
+    let wrong = one
+        .iter()
+        .zip(&truth)
+        .filter(|(s, v)| (**v == 0.0 || **v == 1.0) && (**s - **v).abs() > 0.0);
+    let wrong = wrong.count();
+    println!("{wrong} of {} pixels that see all or nothing of the light got it wrong", one.len());
+    assert!(wrong * 100 <= one.len(), "{wrong}");
+}
