@@ -196,7 +196,7 @@ fn around(levels: Levels, window: [i32; 3]) -> [i32; 4] {
     let level = levels.covering(side as u32);
     let [x, y] = [window[0], window[1]].map(|i| i.clamp(0, n - side));
     let down = |i: i32| i >> level << level;
-    let up = |i: i32| ((i >> level) + 1 << level).min(n);
+    let up = |i: i32| (((i >> level) + 1) << level).min(n);
     [down(x), down(y), up(x + side - 1), up(y + side - 1)]
 }
 

@@ -188,11 +188,9 @@ pub fn meets(
 ) -> (bool, f64) {
     // All heights at which the ray goes from texel to texel.
     let mut borders = vec![start, end];
-    for axis in 0..2 {
-        if g[axis] != 0.0 {
-            let at = (0..=side).map(|b| (f64::from(b) - place.t[axis]) / g[axis]);
-            borders.extend(at.filter(|s| *s > start && *s < end));
-        }
+    for (t, g) in place.t.into_iter().zip(g).filter(|(_, g)| *g != 0.0) {
+        let at = (0..=side).map(|b| (f64::from(b) - t) / g);
+        borders.extend(at.filter(|s| *s > start && *s < end));
     }
     borders.sort_by(f64::total_cmp);
     let mut nearest = f64::INFINITY;
