@@ -49,7 +49,8 @@ pub struct LayerPass {
 /// The image that holds the result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct VisibilityImage {
-    /// R32_SFLOAT, usage STORAGE | SAMPLED | TRANSFER_SRC.
+    /// R32_SFLOAT, or R32G32B32A32_SFLOAT where the description asks for color; usage STORAGE | SAMPLED |
+    /// TRANSFER_SRC.
     pub image: vk::Image,
     /// A 2D view of it.
     pub view: vk::ImageView,

@@ -96,10 +96,22 @@ pub const TRACE_ANY: Module = module!("ray_march/trace_any.comp");
 pub const FILTER_ROWS: Module = module!("ray_march/filter_rows.comp");
 /// The same along columns.
 pub const FILTER_COLUMNS: Module = module!("ray_march/filter_columns.comp");
+/// Which pixels need rays, in color.
+pub const CLASSIFY_COLOR: Module = module!("ray_march/classify_color.comp");
+/// Rays weighed by what the light emits.
+pub const TRACE_TEXTURED: Module = module!("ray_march/trace_textured.comp");
+/// The same in color.
+pub const TRACE_COLOR: Module = module!("ray_march/trace_color.comp");
+/// The listed pixels, filtered along rows, in color.
+pub const FILTER_ROWS_COLOR: Module = module!("ray_march/filter_rows_color.comp");
+/// The same along columns.
+pub const FILTER_COLUMNS_COLOR: Module = module!("ray_march/filter_columns_color.comp");
 /// The soft shadow map projected onto the G-buffer.
 pub const RESOLVE: Module = module!("visibility/resolve.comp");
 /// Everything lit.
 pub const LIT: Module = module!("visibility/lit.comp");
+/// The same in color.
+pub const LIT_COLOR: Module = module!("visibility/lit_color.comp");
 
 /// Positions and normals of the headless G-buffer.
 #[cfg(feature = "headless")]
@@ -142,6 +154,12 @@ pub const ALL: &[Module] = &[
     TRACE_ANY,
     FILTER_ROWS,
     FILTER_COLUMNS,
+    CLASSIFY_COLOR,
+    TRACE_TEXTURED,
+    TRACE_COLOR,
+    FILTER_ROWS_COLOR,
+    FILTER_COLUMNS_COLOR,
     RESOLVE,
     LIT,
+    LIT_COLOR,
 ];

@@ -6,7 +6,7 @@
 use antumbra::depth_layers::DepthPush;
 use antumbra::graph::{Draw, Graph, PUSH_BYTES, Pass, Work};
 use antumbra::shaders::Module;
-use antumbra::{Description, frame};
+use antumbra::{Description, LightTexture, frame};
 use antumbra_tests::measure::settings;
 use antumbra_tests::reflect::{Interface, reflect};
 use ash::vk;
@@ -31,9 +31,14 @@ fn descriptions() -> Vec<(String, Description)> {
         "technique=ray-march map=100 rays=7 layers=3 levels=thirds filter=off",
         "technique=ray-march map=17 layers=2 levels=mip search=linear projection=orthographic",
     ] {
-        for (mask_format, occluder_maps) in
+        let textures: &[Option<bool>] =
+            if words.contains("ray-march") { &[None, Some(false), Some(true)] } else { &[None] };
+        for ((mask_format, occluder_maps), texture) in
             [(None, None), (Some(vk::Format::R8_UNORM), None), (None, Some(vk::Format::D32_SFLOAT))]
+                .into_iter()
+                .flat_map(|formats| textures.iter().map(move |t| (formats, *t)))
         {
+            let format = vk::Format::R8G8B8A8_UNORM;
             if occluder_maps.is_some() && words.contains("many-lights") {
                 continue;
             }
@@ -41,11 +46,14 @@ fn descriptions() -> Vec<(String, Description)> {
                 settings: settings(words),
                 mask_format,
                 occluder_maps,
+                light_texture: texture.map(|color| LightTexture { format, color }),
                 lent_visibility: occluder_maps.is_some(),
                 ..Description::new([641, 479])
             };
             all.push((
-                format!("{words}, mask {mask_format:?}, maps {occluder_maps:?}"),
+                format!(
+                    "{words}, mask {mask_format:?}, maps {occluder_maps:?}, texture {texture:?}"
+                ),
                 description,
             ));
         }
@@ -128,6 +136,17 @@ fn disagreements(graph: &Graph, pass: &Pass) -> Vec<String> {
             if !(1..=256).contains(&invocations) {
                 found.push(format!("{}: workgroup {:?}", module.path, shader.workgroup));
             }
+        }
+    }
+    // What every device has for a stage: maxPerStageDescriptorStorageBuffers and so on.
+    for (kind, most) in [
+        (vk::DescriptorType::STORAGE_BUFFER, 4),
+        (vk::DescriptorType::STORAGE_IMAGE, 4),
+        (vk::DescriptorType::SAMPLED_IMAGE, 16),
+    ] {
+        let bound = pass.uses.iter().filter(|u| u.access.descriptor() == Some(kind)).count();
+        if bound > most {
+            found.push(format!("{}: {bound} of {kind:?}, where {most} are guaranteed", pass.name));
         }
     }
     for binding in pass.uses.iter().filter_map(|u| u.binding) {

@@ -7,9 +7,10 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 5, std430) buffer Arguments { uint groups[4]; };
 layout(set = 0, binding = 6, std430) buffer Pixels { uint count; uint none[3]; mat4 ndc_from_light; uint pixels[]; };
 
-#define NOISY_BINDING 7
+layout(set = 0, binding = 7, FRACTION_FORMAT) writeonly uniform image2D halfway;
+#define NOISY_BINDING 8
+#define SURFACE_BINDING 9
 #include "ray_march/noisy.glsl"
-layout(set = 0, binding = 8, r32f) writeonly uniform image2D halfway;
 
 // Pixels a group of the passes over the list.
 const uint GROUP = 64u;
@@ -33,7 +34,8 @@ void main()
         if (open || r.blocks) {
             r.normal = pixel_normal(p, r);
             v = part_above(r);
-            open = open && v > 0.0;
+            // Which part of a texture is above the plane only rays tell.
+            open = v > 0.0 && (open || (is_textured() && v < 1.0));
         }
         if (open && v == 1.0 && reach.whole && !looks_from_eye()) {
             Place place = place_of(r);

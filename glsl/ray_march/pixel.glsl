@@ -3,11 +3,13 @@
 #ifndef RAY_MARCH_PIXEL_GLSL
 #define RAY_MARCH_PIXEL_GLSL
 
+#include "ray_march/fraction.glsl"
+
 layout(set = 0, binding = 0) uniform texture2D gbuffer_depth;
 layout(set = 0, binding = 1) uniform texture2D gbuffer_mask;
 layout(set = 0, binding = 2, std430) readonly buffer Columns { vec4 columns[]; };
 layout(set = 0, binding = 3, std430) readonly buffer Bounds { vec4 bounds[]; };
-layout(set = 0, binding = 4, r32f) writeonly uniform image2D visibility;
+layout(set = 0, binding = 4, FRACTION_FORMAT) writeonly uniform image2D visibility;
 
 #include "common/gbuffer.glsl"
 #include "common/light.glsl"
@@ -54,10 +56,12 @@ int sampling() { return push.flags >> 23 & 3; }
 bool is_linear() { return false; }
 bool looks_from_eye() { return false; }
 int level_kind() { return N_BUFFER; }
+bool is_textured() { return false; }
 #else
 bool is_linear() { return (push.flags & 1 << 18) != 0; }
 bool looks_from_eye() { return (push.flags & 1 << 20) != 0; }
 int level_kind() { return push.flags >> 25 & 3; }
+bool is_textured() { return (push.flags & 1 << 27) != 0; }
 #endif
 
 Levels levels()

@@ -69,7 +69,7 @@ impl Frame<'_> {
         }
         let written = Wanted {
             name: "visibility",
-            format: visibility::FORMAT,
+            format: visibility::format(description.has_color()),
             extent,
             usage: Usage::STORAGE,
             read: false,
@@ -81,6 +81,17 @@ impl Frame<'_> {
                 return bad(
                     "a visibility image must be lent each frame exactly where the description says \
                      lent_visibility",
+                );
+            }
+        }
+        match (&self.light_texture, description.light_texture) {
+            (Some(image), Some(texture)) => {
+                check_image(image, &read("light.texture", texture.format, image.extent))?;
+            }
+            (None, None) => {}
+            _ => {
+                return bad(
+                    "a light texture must be lent each frame exactly where the description has one",
                 );
             }
         }

@@ -18,6 +18,7 @@ pub(crate) use rows::{FrameGraph, nominal};
 pub use rows::{Limits, full_graph};
 
 use crate::graph::{self, Scope};
+use crate::ray_march::{self, GUARANTEED_RANGE};
 use crate::settings::{Settings, Technique};
 use crate::{Error, RectangleLight};
 use ash::vk;
@@ -46,9 +47,28 @@ pub struct Description {
     /// The format of the occluder maps that the host draws itself and lends each frame
     /// ([`Frame::occluder_maps`]); without, the node draws meshes.
     pub occluder_maps: Option<vk::Format>,
+    /// What the light's emission looks like, lent each frame ([`Frame::light_texture`]); without, it is
+    /// the same all over the light. `ray-march` alone weighs it.
+    pub light_texture: Option<LightTexture>,
+}
+
+/// An image of what a light emits over its surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LightTexture {
+    /// The image's format: one whose components a shader reads as numbers from 0 up. Red, green and blue
+    /// are linear.
+    pub format: vk::Format,
+    /// Whether the visible fraction is one of red, green and blue each, in an image of
+    /// R32G32B32A32_SFLOAT; otherwise it is one of luminance.
+    pub color: bool,
 }
 
 impl Description {
+    /// Whether the visible fraction is one of each color.
+    pub(crate) fn has_color(&self) -> bool {
+        self.light_texture.is_some_and(|t| t.color)
+    }
+
     /// The default settings for a D32_SFLOAT G-buffer without a mask, two frames in flight and
     /// tightly packed positions.
     pub fn new(extent: [u32; 2]) -> Self {
@@ -62,6 +82,7 @@ impl Description {
             position_strides: vec![12],
             lent_visibility: false,
             occluder_maps: None,
+            light_texture: None,
         }
     }
 
@@ -92,6 +113,31 @@ impl Description {
                  from its centre alone; lend meshes, or choose another technique"
                     .into(),
             ));
+        }
+        let pixels = self.extent.iter().map(|e| u64::from(*e)).product::<u64>();
+        if self.settings.technique == Technique::RayMarch
+            && pixels * ray_march::PIXEL_BYTES + 80 > GUARANTEED_RANGE
+        {
+            let [w, h] = self.extent;
+            return Err(Error::Frame(format!(
+                "ray-march keeps a list of pixels that for {w}×{h} takes more than the 128 MiB that \
+                 every device binds; up to 11 million pixels work"
+            )));
+        }
+        if let Some(texture) = &self.light_texture {
+            if self.settings.technique != Technique::RayMarch {
+                return Err(Error::Frame(format!(
+                    "{} does not weigh what the light emits where; choose ray-march, or leave \
+                     light_texture out",
+                    self.settings.technique.name()
+                )));
+            }
+            if graph::is_depth_format(texture.format) {
+                return Err(Error::Frame(format!(
+                    "the light texture's format {:?} holds no color",
+                    texture.format
+                )));
+            }
         }
         match self.position_strides.iter().find(|&&s| s < 12 || s % 4 != 0 || s > 2048) {
             Some(s) => Err(Error::Frame(format!(
@@ -129,6 +175,10 @@ pub struct Frame<'a> {
     /// The host's own depth images of the occluders, exactly where the description has a format for
     /// them. [`Self::meshes`] then only says where receivers are.
     pub occluder_maps: Option<OccluderMaps>,
+    /// What the light emits over its surface, exactly where the description has a texture: of any size,
+    /// its first row where the light's second half-axis points, its last column where the first one does.
+    /// With SAMPLED usage.
+    pub light_texture: Option<HostImage>,
     /// Least and largest tangent (u, v) of the occluder map; none fits it to the occluders. The
     /// technique `many-lights` fits each of its maps, and `ray-march` its map unless `projection=centre`,
     /// whatever this says.
@@ -165,6 +215,7 @@ impl<'a> Frame<'a> {
             mask: None,
             visibility: Visibility::Own { before: sampled, after: sampled },
             occluder_maps: None,
+            light_texture: None,
             window: None,
             noise: 0,
             slot: 0,

@@ -181,6 +181,7 @@ pub fn plan(description: &Description, limits: Limits, frame: &Frame) -> Result<
         lent(built.mask, frame.mask),
         lent(built.occluder_maps[0], maps.map(|m| m.front)),
         lent(built.occluder_maps[1], maps.and_then(|m| m.back)),
+        lent(built.light_texture, frame.light_texture),
         lent(Some(built.visibility), result),
     ]
     .into_iter()

@@ -29,6 +29,7 @@ pub(crate) struct FrameGraph {
     pub depth: ResourceId,
     pub mask: Option<ResourceId>,
     pub occluder_maps: [Option<ResourceId>; 2],
+    pub light_texture: Option<ResourceId>,
     pub visibility: ResourceId,
 }
 
@@ -128,8 +129,13 @@ pub(super) fn build(
     };
     let front = map(&mut graph, "occluder_maps.front");
     let back = if wanted.back { map(&mut graph, "occluder_maps.back") } else { None };
+    // Its size is the frame's to say; nothing is made from it.
+    let light_texture = description
+        .light_texture
+        .map(|t| graph.image("light.texture", t.format, [1, 1], Owner::Imported));
+    let color = description.has_color();
     let visibility =
-        visibility::declare(&mut graph, description.extent, description.lent_visibility);
+        visibility::declare(&mut graph, description.extent, color, description.lent_visibility);
     let gbuffer = GBuffer {
         depth,
         mask,
@@ -176,6 +182,8 @@ pub(super) fn build(
                 gbuffer: &gbuffer,
                 ndc_from_light: views.ndc_from_light,
                 noise: views.noise,
+                light_texture,
+                color,
                 snap,
                 depth_error,
                 need,
@@ -203,6 +211,6 @@ pub(super) fn build(
         Need::Yes(_) => Need::No("something can be shadowed, and is written elsewhere".into()),
         Need::No(why) => Need::Yes(why.clone()),
     };
-    visibility::lit(&mut graph, visibility, description.extent, lit);
-    FrameGraph { graph, depth, mask, occluder_maps: [front, back], visibility }
+    visibility::lit(&mut graph, visibility, description.extent, color, lit);
+    FrameGraph { graph, depth, mask, occluder_maps: [front, back], light_texture, visibility }
 }

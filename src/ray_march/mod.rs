@@ -42,6 +42,10 @@
 //! or anywhere. The filter is a separable Gaussian over the pixel's own surface (section 3), whose width
 //! follows from the penumbra's width and the noise of so many rays: see `filter.glsl`.
 //!
+//! **Textured and coloured lights** (section 5.1): each ray is weighed by what the light emits where it goes,
+//! and the visible fraction is that of the emission: of its luminance, or of red, green and blue each
+//! (`Description::light_texture`). The part of the light under the pixel's own plane is then up to the rays.
+//!
 //! **Limits.** Three pieces of matter over one texel lose the middle one, unless they overlap. Meshes are
 //! expected closed or thin: an open sheet above a solid counts as solid down to the solid's back.
 //! Lent occluder maps have the light's centre as their projection point and two layers.
@@ -51,5 +55,7 @@ pub mod push;
 mod settings;
 pub mod twin;
 
+pub(crate) use passes::PIXEL_BYTES;
 pub use passes::{Inputs, declare, view, wanted};
+pub(crate) use settings::GUARANTEED_RANGE;
 pub use settings::{Hash, Layers, Projection, Sampling, Search, Settings};

@@ -6,10 +6,12 @@ use crate::RectangleLight;
 use crate::depth_layers::{DepthLayers, Eye, MapView, MeshBounds, Wanted, fit_from, fit_occluders};
 use crate::graph::{Access, Graph, Need, Owner, Pass, Push, ResourceId, Use, Work};
 use crate::nbuffer::{self, Levels};
-use crate::shaders;
-use crate::visibility::{GBuffer, grid};
-use ash::vk;
+use crate::shaders::{self, Module};
+use crate::visibility::{self, COLOR_FORMAT, GBuffer, grid};
 use glam::DMat4;
+
+/// A listed pixel: where it is, and the heights that its rays need look at.
+pub(crate) const PIXEL_BYTES: u64 = 12;
 
 /// What a frame gives the technique.
 #[derive(Clone, Copy, Debug)]
@@ -24,6 +26,10 @@ pub struct Inputs<'a> {
     pub ndc_from_light: [f32; 16],
     /// Added to the seed.
     pub noise: u32,
+    /// What the light emits over its surface; the same everywhere without.
+    pub light_texture: Option<ResourceId>,
+    /// Whether the visible fraction is one of each color.
+    pub color: bool,
     /// 2^−(sub-pixel bits): how far the device's rasters move a vertex, in texels.
     pub snap: f32,
     /// How far off the w of an occluder may be beyond its rounding, 1/m.
@@ -61,6 +67,45 @@ pub fn view(
     fit_from(eye, light, occluders, side)
 }
 
+/// The shaders of some settings.
+struct Shaders {
+    classify: Module,
+    trace: Module,
+    rows: Module,
+    columns: Module,
+}
+
+/// What most settings have is compiled apart from what seldom is asked for.
+fn shaders_of(settings: &Settings, inputs: &Inputs) -> Shaders {
+    let usual = settings.levels == nbuffer::Kind::NBuffer
+        && settings.search == Search::Hierarchical
+        && settings.layers != Layers::Eye;
+    let (rows, columns) = (shaders::FILTER_ROWS, shaders::FILTER_COLUMNS);
+    match (inputs.light_texture, inputs.color) {
+        (Some(_), true) => Shaders {
+            classify: shaders::CLASSIFY_COLOR,
+            trace: shaders::TRACE_COLOR,
+            rows: shaders::FILTER_ROWS_COLOR,
+            columns: shaders::FILTER_COLUMNS_COLOR,
+        },
+        (Some(_), false) => {
+            let (classify, trace) = (shaders::CLASSIFY_ANY, shaders::TRACE_TEXTURED);
+            Shaders { classify, trace, rows, columns }
+        }
+        _ if usual => Shaders { classify: shaders::CLASSIFY, trace: shaders::TRACE, rows, columns },
+        _ => Shaders { classify: shaders::CLASSIFY_ANY, trace: shaders::TRACE_ANY, rows, columns },
+    }
+}
+
+/// The images between the rays and the filter.
+#[derive(Clone, Copy)]
+struct Unfiltered {
+    noisy: ResourceId,
+    halfway: ResourceId,
+    /// The pixels' normals, where the others have no room for them.
+    surfaces: Option<ResourceId>,
+}
+
 /// Adds the rows that turn depth layers into `visibility`.
 pub fn declare(
     graph: &mut Graph,
@@ -73,13 +118,17 @@ pub fn declare(
     let gbuffer = inputs.gbuffer;
     let [width, height] = gbuffer.extent;
     let arguments = graph.buffer("ray_march.arguments", 16);
-    let listed = u64::from(width) * u64::from(height) * 4;
-    let pixels = graph.buffer("ray_march.pixels", 16 + 64 + 3 * listed);
+    let pixels =
+        graph.buffer("ray_march.pixels", 80 + PIXEL_BYTES * u64::from(width) * u64::from(height));
     // Without a filter nobody reads them.
     let filtered = if settings.filter { gbuffer.extent } else { [1, 1] };
     let mut image = |name, format| graph.image(name, format, filtered, Owner::Transient);
-    let noisy = image("ray_march.noisy", vk::Format::R32G32B32A32_SFLOAT);
-    let halfway = image("ray_march.halfway", vk::Format::R32_SFLOAT);
+    let unfiltered = Unfiltered {
+        noisy: image("ray_march.noisy", COLOR_FORMAT),
+        halfway: image("ray_march.halfway", visibility::format(inputs.color)),
+        surfaces: inputs.color.then(|| image("ray_march.surfaces", COLOR_FORMAT)),
+    };
+    let Unfiltered { noisy, halfway, surfaces } = unfiltered;
     graph.push(Pass::compute(
         "ray_march.start",
         shaders::START,
@@ -92,75 +141,72 @@ pub fn declare(
         inputs.need,
     ));
     let pushed = Push::new(&pixel_push(settings, inputs));
-    let usual = settings.levels == nbuffer::Kind::NBuffer
-        && settings.search == Search::Hierarchical
-        && settings.layers != Layers::Eye;
+    let shaders = shaders_of(settings, inputs);
     let common = [
         Use::bound(0, gbuffer.depth, Access::SampledCompute),
         Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
         Use::bound(2, columns, Access::BufferReadCompute),
         Use::bound(3, bounds, Access::BufferReadCompute),
     ];
-    let with = |more: &[Use]| common.iter().chain(more).copied().collect::<Vec<_>>();
-    graph.push(Pass::compute(
-        "ray_march.classify",
-        if usual { shaders::CLASSIFY } else { shaders::CLASSIFY_ANY },
-        grid(gbuffer.extent),
-        pushed,
-        with(&[
-            Use::bound(4, visibility, Access::ImageWrite),
-            Use::bound(5, arguments, Access::BufferUpdate),
-            Use::bound(6, pixels, Access::BufferUpdate),
-            Use::bound(7, noisy, Access::ImageWrite),
-            Use::bound(8, halfway, Access::ImageWrite),
-        ]),
-        inputs.need,
-    ));
-    graph.push(Pass {
-        name: "ray_march.trace",
-        uses: with(&[
-            Use::bound(4, visibility, Access::ImageUpdate),
-            Use::bound(5, pixels, Access::BufferReadCompute),
-            Use::bound(6, noisy, Access::ImageUpdate),
-            Use::fixed(arguments, Access::Indirect),
-        ]),
-        push: pushed,
-        work: Work::Indirect {
-            shader: if usual { shaders::TRACE } else { shaders::TRACE_ANY },
-            arguments,
-        },
-        need: inputs.need.clone(),
-    });
+    let mut uses = common.to_vec();
+    uses.extend([
+        Use::bound(4, visibility, Access::ImageWrite),
+        Use::bound(5, arguments, Access::BufferUpdate),
+        Use::bound(6, pixels, Access::BufferUpdate),
+        Use::bound(7, halfway, Access::ImageWrite),
+        Use::bound(8, noisy, Access::ImageWrite),
+    ]);
+    uses.extend(surfaces.map(|s| Use::bound(9, s, Access::ImageWrite)));
+    let name = "ray_march.classify";
+    let groups = grid(gbuffer.extent);
+    graph.push(Pass::compute(name, shaders.classify, groups, pushed, uses, inputs.need));
+
+    let mut uses = common.to_vec();
+    uses.extend([
+        Use::bound(4, visibility, Access::ImageUpdate),
+        Use::bound(5, pixels, Access::BufferReadCompute),
+        Use::bound(6, noisy, Access::ImageUpdate),
+    ]);
+    uses.extend(surfaces.map(|s| Use::bound(7, s, Access::ImageUpdate)));
+    uses.extend(inputs.light_texture.map(|t| Use::bound(8, t, Access::SampledCompute)));
+    listed(graph, "ray_march.trace", shaders.trace, arguments, pushed, uses, inputs.need);
+
     if settings.filter {
         let pushed = Push::new(&push::Filter {
             light_from_ndc: gbuffer.light_from_ndc,
             extent: gbuffer.extent.map(|e| e as i32),
         });
-        let common = [
+        let mut common = vec![
             Use::bound(0, gbuffer.depth, Access::SampledCompute),
             Use::bound(1, pixels, Access::BufferReadCompute),
             Use::bound(2, noisy, Access::SampledCompute),
-            Use::fixed(arguments, Access::Indirect),
         ];
-        let with = |more: &[Use]| common.iter().chain(more).copied().collect::<Vec<_>>();
-        graph.push(Pass {
-            name: "ray_march.filter_rows",
-            uses: with(&[Use::bound(3, halfway, Access::ImageUpdate)]),
-            push: pushed,
-            work: Work::Indirect { shader: shaders::FILTER_ROWS, arguments },
-            need: inputs.need.clone(),
-        });
-        graph.push(Pass {
-            name: "ray_march.filter_columns",
-            uses: with(&[
-                Use::bound(3, halfway, Access::SampledCompute),
-                Use::bound(4, visibility, Access::ImageUpdate),
-            ]),
-            push: pushed,
-            work: Work::Indirect { shader: shaders::FILTER_COLUMNS, arguments },
-            need: inputs.need.clone(),
-        });
+        common.extend(surfaces.map(|s| Use::bound(5, s, Access::SampledCompute)));
+        let mut uses = common.clone();
+        uses.push(Use::bound(3, halfway, Access::ImageUpdate));
+        let name = "ray_march.filter_rows";
+        listed(graph, name, shaders.rows, arguments, pushed, uses, inputs.need);
+        let mut uses = common;
+        uses.push(Use::bound(3, halfway, Access::SampledCompute));
+        uses.push(Use::bound(4, visibility, Access::ImageUpdate));
+        let name = "ray_march.filter_columns";
+        listed(graph, name, shaders.columns, arguments, pushed, uses, inputs.need);
     }
+}
+
+/// Adds a row that runs for the listed pixels.
+fn listed(
+    graph: &mut Graph,
+    name: &'static str,
+    shader: Module,
+    arguments: ResourceId,
+    push: Push,
+    mut uses: Vec<Use>,
+    need: &Need,
+) {
+    uses.push(Use::fixed(arguments, Access::Indirect));
+    let work = Work::Indirect { shader, arguments };
+    graph.push(Pass { name, uses, push, work, need: need.clone() });
 }
 
 /// Adds the rows that turn the layers into columns, and these into bounds of windows.
@@ -241,7 +287,8 @@ fn pixel_push(settings: &Settings, inputs: &Inputs) -> push::Pixels {
             Sampling::Random => 1,
             Sampling::LowDiscrepancy => 2,
         } << 23
-        | settings.levels.code() << 25;
+        | settings.levels.code() << 25
+        | bit(inputs.light_texture.is_some(), 27);
     push::Pixels {
         light_from_ndc: gbuffer.light_from_ndc,
         texels_per_unit: view.texels_per_uv().map(|x| x as f32),

@@ -92,7 +92,7 @@ impl Hash {
 }
 
 /// The largest storage buffer that every device binds (maxStorageBufferRange).
-const GUARANTEED_RANGE: u64 = 1 << 27;
+pub(crate) const GUARANTEED_RANGE: u64 = 1 << 27;
 
 /// Every knob of ray marching but the maps' side, which all techniques share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

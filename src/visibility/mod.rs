@@ -15,6 +15,14 @@ use bytemuck::{Pod, Zeroable};
 /// The visibility image's format.
 pub const FORMAT: vk::Format = vk::Format::R32_SFLOAT;
 
+/// The same where the visible fraction is one of red, green and blue each; alpha is 1.
+pub const COLOR_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+
+/// The visibility image's format, with color or without.
+pub fn format(color: bool) -> vk::Format {
+    if color { COLOR_FORMAT } else { FORMAT }
+}
+
 /// The host's pixels, as resources of the graph.
 #[derive(Clone, Copy, Debug)]
 pub struct GBuffer {
@@ -74,9 +82,9 @@ pub struct Resolve<'a> {
 }
 
 /// Declares the visibility image: the node's own, or `lent` by the host.
-pub fn declare(graph: &mut Graph, extent: [u32; 2], lent: bool) -> ResourceId {
+pub fn declare(graph: &mut Graph, extent: [u32; 2], color: bool, lent: bool) -> ResourceId {
     let owner = if lent { Owner::Lent } else { Owner::Exported };
-    graph.image("visibility", FORMAT, extent, owner)
+    graph.image("visibility", format(color), extent, owner)
 }
 
 /// One invocation a pixel, in groups of 8×8.
@@ -85,12 +93,15 @@ pub(crate) fn grid(extent: [u32; 2]) -> [u32; 3] {
 }
 
 /// Adds the row that makes every pixel lit.
-pub fn lit(graph: &mut Graph, visibility: ResourceId, extent: [u32; 2], need: Need) {
+pub fn lit(graph: &mut Graph, visibility: ResourceId, extent: [u32; 2], color: bool, need: Need) {
     graph.push(Pass {
         name: "visibility.lit",
         uses: vec![Use::bound(0, visibility, Access::ImageWrite)],
         push: Push::new(&LitPush { extent: extent.map(|e| e as i32) }),
-        work: Work::Dispatch { shader: shaders::LIT, groups: grid(extent) },
+        work: Work::Dispatch {
+            shader: if color { shaders::LIT_COLOR } else { shaders::LIT },
+            groups: grid(extent),
+        },
         need,
     });
 }

@@ -191,6 +191,21 @@ impl Stage {
         read_image(&self.device, &source, RESULT.layout)
     }
 
+    /// Reads the visible fraction of every pixel's red, green and blue, and 1, where the description asks
+    /// for color.
+    ///
+    /// # Errors
+    /// As [`read_image`].
+    pub fn visibility_of_color(&mut self) -> Result<Vec<[f32; 4]>, Error> {
+        let result = self.node()?.visibility();
+        let (format, extent) = (visibility::COLOR_FORMAT, result.extent);
+        read_image(
+            &self.device,
+            &ImageSource { image: result.image, format, extent },
+            RESULT.layout,
+        )
+    }
+
     /// Reads one of the node's own images behind a frame of `plan`: its texels and its side.
     ///
     /// # Errors
