@@ -55,7 +55,7 @@ void main()
         pixels[3u * at + 1u] = floatBitsToUint(reach.start);
         pixels[3u * at + 2u] = floatBitsToUint(reach.end);
     } else {
-        imageStore(visibility, p, vec4(v));
+        imageStore(visibility, p, stored_fraction(FRACTION(v)));
         if (filters()) {
             // What is known for sure is not filtered, but neighbours are with it.
             put_known(p, receives ? v : NO_RECEIVER);
