@@ -176,8 +176,8 @@ type Row = (&'static str, [f64; 9]);
 /// * 256 rays leave what the maps do not tell: on slats that strips are a whole number of texels wide;
 /// * two layers fill what is between leaves, and between the bunny's ear and its back; the eye layer takes
 ///   away what the eye sees of that; in four layers it is not there;
-/// * a third of the bunny's own error is in pixels on creases, whose plane the G-buffer's depth does not
-///   tell.
+/// * the bunny and Suzanne as their own occluders have pixels on creases too, whose plane the G-buffer's
+///   depth does not tell.
 const TABLE: &[Row] = &[
     ("rays=16", [0.49, 2.08, 1.31, 0.87, 0.81, 0.79, 1.63, 2.08, 1.47]),
     ("rays=16 sampling=jittered", [0.71, 2.69, 1.81, 0.94, 0.80, 0.78, 1.61, 2.15, 1.57]),

@@ -1,8 +1,8 @@
 //! What soft shadow maps cost, and what that buys.
 //!
 //! `cargo bench --bench soft_shadow_map` (`-- --quick` for fewer rounds, `--out DIR` for the rows as
-//! CSV, and names of tables for those alone). Everything is measured in one process, the things that are compared in turns, and told as
-//! medians with the quartiles beside them.
+//! CSV, and names of tables for those alone). Everything is measured in one process, the things that
+//! are compared in turns, and told as medians with the quartiles beside them.
 
 // A bench tells what goes wrong by panicking.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]

@@ -51,7 +51,7 @@ bool classifies() { return (push.flags & 1 << 21) != 0; }
 bool filters() { return (push.flags & 1 << 22) != 0; }
 int sampling() { return push.flags >> 23 & 3; }
 
-// With `#define USUAL` what settings seldom ask for is left out, which is a third of the time.
+// With `#define USUAL` what settings seldom ask for is left out: the rays take 0.4 of the time.
 #ifdef USUAL
 bool is_linear() { return false; }
 bool looks_from_eye() { return false; }

@@ -47,10 +47,11 @@ struct Ray {
 
 // Turns that a search takes at most; a ray that is not done by then is stopped by nothing further. Mesa's
 // CPU driver cuts an invocation off, silently, after 65535 turns of all its loops together: 256 rays with
-// their searches stay below. That is why no loop is within a turn.
+// their searches stay below, as no loop is within a turn.
 const int TURNS = 250;
 
-// Steps of a linear search, likewise, with room for halving.
+// Steps of a linear search, with room for halvings; a pixel of 256 rays that often halve in vain may still
+// come to Mesa's limit.
 const int STEPS = 200;
 
 // Heights are compared with what they were made of by one addition; this is more than its rounding.

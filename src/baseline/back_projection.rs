@@ -19,7 +19,8 @@
 //! pixel's plane as well, which the pixel's own slope is not.
 //!
 //! **Limits.** Gaps are filled, overlaps are not taken out: where a near edge passes before something
-//! further, both count, and shadows come out too dark: 2 % in the mean on spheres and the bunny. A pixel in a wide penumbra costs as many
+//! further, both count, and shadows come out too dark: 2 % in the
+//! mean on spheres and the bunny. A pixel in a wide penumbra costs as many
 //! fetches as its window has texels, so the time grows with the square of the light's and the map's side.
 //! Mesa's CPU driver stops a shader after 65,535 turns of its loops; eight texels a turn are enough for a
 //! window of 700² texels.

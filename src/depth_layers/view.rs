@@ -203,20 +203,25 @@ pub fn fit_occluders(
     window: Option<[[f64; 2]; 2]>,
     side: u32,
 ) -> Option<MapView> {
+    let Some([min, max]) = window else {
+        return fit_from(Eye::Behind(0.0), light, occluders, side);
+    };
+    let (_, near, far) = boxes_of(light, occluders)?;
+    Some(MapView { eye: Eye::Behind(0.0), min, max, near, far, side })
+}
+
+/// The occluders' corners in light space, and the distances of the near plane and of the furthest of them;
+/// none where all lie behind the light.
+fn boxes_of(
+    light: &RectangleLight,
+    occluders: &[(MeshBounds, DMat4)],
+) -> Option<(Vec<[DVec3; 8]>, f64, f64)> {
     let light_from_world = light.light_from_world();
     let boxes: Vec<_> =
         occluders.iter().map(|(b, m)| corners(b, &(light_from_world * *m))).collect();
     let (least, far) = distances(&boxes)?;
     let near = (least * (1.0 - NEAR_MARGIN)).max(far * MIN_NEAR);
-    let (min, max) = match window {
-        Some([min, max]) => (min, max),
-        None => {
-            let (mut min, mut max) = tangents(&boxes, near)?;
-            pad(&mut min, &mut max, side);
-            (min, max)
-        }
-    };
-    Some(MapView { eye: Eye::Behind(0.0), min, max, near, far, side })
+    Some((boxes, near, far))
 }
 
 /// As [`fit_occluders`], from an eye behind the light; what is behind the light is not seen.
@@ -226,11 +231,7 @@ pub fn fit_from(
     occluders: &[(MeshBounds, DMat4)],
     side: u32,
 ) -> Option<MapView> {
-    let light_from_world = light.light_from_world();
-    let boxes: Vec<_> =
-        occluders.iter().map(|(b, m)| corners(b, &(light_from_world * *m))).collect();
-    let (least, far) = distances(&boxes)?;
-    let near = (least * (1.0 - NEAR_MARGIN)).max(far * MIN_NEAR);
+    let (boxes, near, far) = boxes_of(light, occluders)?;
     let (mut window, near, far) = match eye {
         Eye::Behind(behind) => {
             let of = |p: DVec3| {

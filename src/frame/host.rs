@@ -55,7 +55,8 @@ pub enum Visibility {
         /// The host's first use of what this frame writes.
         after: Scope,
     },
-    /// The host's: R32_SFLOAT (R32G32B32A32_SFLOAT with color), as large as the G-buffer, with STORAGE usage. Every pixel of it is
+    /// The host's: R32_SFLOAT (R32G32B32A32_SFLOAT with color), as large as the G-buffer, with STORAGE
+    /// usage. Every pixel of it is
     /// written, so what it held need not be kept.
     Lent(HostImage),
 }

@@ -18,7 +18,7 @@ pub(crate) use rows::{FrameGraph, nominal};
 pub use rows::{Limits, full_graph};
 
 use crate::graph::{self, Scope};
-use crate::ray_march::{self, GUARANTEED_RANGE};
+use crate::ray_march;
 use crate::settings::{Settings, Technique};
 use crate::{Error, RectangleLight};
 use ash::vk;
@@ -114,9 +114,8 @@ impl Description {
                     .into(),
             ));
         }
-        let pixels = self.extent.iter().map(|e| u64::from(*e)).product::<u64>();
         if self.settings.technique == Technique::RayMarch
-            && pixels * ray_march::PIXEL_BYTES + 80 > GUARANTEED_RANGE
+            && ray_march::list_bytes(self.extent) > graph::STORAGE_BYTES
         {
             let [w, h] = self.extent;
             return Err(Error::Frame(format!(

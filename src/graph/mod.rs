@@ -19,7 +19,9 @@ mod show;
 
 pub use access::{Access, Scope};
 pub use barrier::{Barrier, State};
-pub use pass::{Draw, Layer, MeshList, Need, PUSH_BYTES, Pass, Push, Target, Use, Work};
+pub use pass::{
+    Draw, Layer, MeshList, Need, PUSH_BYTES, Pass, Push, STORAGE_BYTES, Target, Use, Work,
+};
 pub use plan::{Border, BoundaryUse, Plan, ResourceBarrier, Skipped, Step, compile};
 pub(crate) use resource::aspects;
 pub use resource::{Owner, Resource, ResourceId, Shape, is_depth_format};

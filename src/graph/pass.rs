@@ -8,6 +8,9 @@ use std::borrow::Cow;
 /// The most that Vulkan guarantees for push constants.
 pub const PUSH_BYTES: usize = 128;
 
+/// The largest storage buffer that every device binds (maxStorageBufferRange), in bytes.
+pub const STORAGE_BYTES: u64 = 1 << 27;
+
 /// The push constants of a pass, as bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Push {

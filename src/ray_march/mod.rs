@@ -30,7 +30,8 @@
 //! ray that passes through there is stopped without a look at any. The same stops all rays of a pixel, which
 //! is how umbra is known. `search=linear` visits the ray a texel at a time and halves where it met something
 //! (section 3.3). Both ask one hit test, [`twin::meets`] being the same by a walk over every texel.
-//! A search takes no more than 250 turns; a ray that is not done by then passes.
+//! A search takes no more than 250 turns (the linear one 200 steps, longer than a texel on longer rays); a
+//! ray that is not done by then passes.
 //!
 //! **Bias** (eq. 3.2). A pixel's own surface must not stop its rays. Instead of rays shortened by a texel over
 //! the cosine, a column counts where its top lies above the pixel's own plane, which the G-buffer's depth
@@ -55,7 +56,6 @@ pub mod push;
 mod settings;
 pub mod twin;
 
-pub(crate) use passes::PIXEL_BYTES;
+pub(crate) use passes::list_bytes;
 pub use passes::{Inputs, declare, view, wanted};
-pub(crate) use settings::GUARANTEED_RANGE;
 pub use settings::{Hash, Layers, Projection, Sampling, Search, Settings};

@@ -10,8 +10,10 @@ use crate::shaders::{self, Module};
 use crate::visibility::{self, COLOR_FORMAT, GBuffer, grid};
 use glam::DMat4;
 
-/// A listed pixel: where it is, and the heights that its rays need look at.
-pub(crate) const PIXEL_BYTES: u64 = 12;
+/// The list of pixels: its head, and for each where it is and the heights that its rays need look at.
+pub(crate) fn list_bytes([width, height]: [u32; 2]) -> u64 {
+    80 + 12 * u64::from(width) * u64::from(height)
+}
 
 /// What a frame gives the technique.
 #[derive(Clone, Copy, Debug)]
@@ -97,15 +99,6 @@ fn shaders_of(settings: &Settings, inputs: &Inputs) -> Shaders {
     }
 }
 
-/// The images between the rays and the filter.
-#[derive(Clone, Copy)]
-struct Unfiltered {
-    noisy: ResourceId,
-    halfway: ResourceId,
-    /// The pixels' normals, where the others have no room for them.
-    surfaces: Option<ResourceId>,
-}
-
 /// Adds the rows that turn depth layers into `visibility`.
 pub fn declare(
     graph: &mut Graph,
@@ -116,19 +109,15 @@ pub fn declare(
 ) {
     let (columns, bounds) = declare_levels(graph, layers, settings, inputs);
     let gbuffer = inputs.gbuffer;
-    let [width, height] = gbuffer.extent;
     let arguments = graph.buffer("ray_march.arguments", 16);
-    let pixels =
-        graph.buffer("ray_march.pixels", 80 + PIXEL_BYTES * u64::from(width) * u64::from(height));
+    let pixels = graph.buffer("ray_march.pixels", list_bytes(gbuffer.extent));
     // Without a filter nobody reads them.
     let filtered = if settings.filter { gbuffer.extent } else { [1, 1] };
     let mut image = |name, format| graph.image(name, format, filtered, Owner::Transient);
-    let unfiltered = Unfiltered {
-        noisy: image("ray_march.noisy", COLOR_FORMAT),
-        halfway: image("ray_march.halfway", visibility::format(inputs.color)),
-        surfaces: inputs.color.then(|| image("ray_march.surfaces", COLOR_FORMAT)),
-    };
-    let Unfiltered { noisy, halfway, surfaces } = unfiltered;
+    let noisy = image("ray_march.noisy", COLOR_FORMAT);
+    let halfway = image("ray_march.halfway", visibility::format(inputs.color));
+    // The pixels' normals, where the others have no room for them.
+    let surfaces = inputs.color.then(|| image("ray_march.surfaces", COLOR_FORMAT));
     graph.push(Pass::compute(
         "ray_march.start",
         shaders::START,

@@ -1,6 +1,7 @@
 //! The knobs of ray marching.
 
 use crate::Error;
+use crate::graph::STORAGE_BYTES;
 use crate::nbuffer::{self, Levels};
 
 /// The depth layers that say what is solid.
@@ -91,9 +92,6 @@ impl Hash {
     pub const ALL: &[(&str, Self)] = &[("pcg", Self::Pcg), ("md5", Self::Md5)];
 }
 
-/// The largest storage buffer that every device binds (maxStorageBufferRange).
-pub(crate) const GUARANTEED_RANGE: u64 = 1 << 27;
-
 /// Every knob of ray marching but the maps' side, which all techniques share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
@@ -145,7 +143,7 @@ impl Settings {
     /// Checks the knobs that must agree with each other and with the maps' side.
     pub(crate) fn check_agreement(&self, map: u32) -> Result<(), Error> {
         let levels = Levels { map, kind: self.levels };
-        if u64::from(levels.values()) * 16 <= GUARANTEED_RANGE {
+        if u64::from(levels.values()) * 16 <= STORAGE_BYTES {
             return Ok(());
         }
         Err(Error::Setting {

@@ -3,7 +3,9 @@
 use super::{Accumulate, Receivers, Settings, Sides, push, spread_of};
 use crate::RectangleLight;
 use crate::depth_layers::{DepthLayers, MapView, Wanted};
-use crate::graph::{Access, Draw, Graph, Need, Owner, Pass, Push, ResourceId, Target, Use, Work};
+use crate::graph::{
+    Access, Draw, Graph, Need, Owner, Pass, Push, ResourceId, STORAGE_BYTES, Target, Use, Work,
+};
 use crate::shaders;
 use crate::visibility::{self, GBuffer};
 use ash::vk;
@@ -17,9 +19,6 @@ const BACK_OR_FRONT: i32 = 2;
 pub(crate) const BLEND_STEPS: f32 = 16_777_216.0;
 /// A superblock and its blocks, as they lie together.
 const FAMILY: u64 = 17;
-/// The largest storage buffer that every device binds (maxStorageBufferRange). Above N = 2048 the
-/// prefix sums are larger; blocks beyond it do without.
-const GUARANTEED_RANGE: u64 = 1 << 27;
 /// Blocks a group, as in `patch_count.comp`.
 const GROUP: u32 = 64;
 
@@ -128,7 +127,8 @@ fn declare_nodes(
         blocks: graph.buffer("soft_shadow_map.blocks", count(block_row) * node_bytes),
         sums: graph.buffer(
             "soft_shadow_map.sums",
-            (count(block_row) * texels_a_block * 16).min(GUARANTEED_RANGE),
+            // Above N = 2048 they would be larger; blocks beyond do without.
+            (count(block_row) * texels_a_block * 16).min(STORAGE_BYTES),
         ),
         families: graph
             .buffer("soft_shadow_map.families", count(superblock_row) * FAMILY * node_bytes),
