@@ -6,6 +6,7 @@
 // A bench tells what goes wrong by panicking.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod levels;
 #[path = "../soft_shadow_map/table.rs"]
 #[allow(dead_code, reason = "another bench uses the rest")]
 mod table;
@@ -16,6 +17,7 @@ use antumbra::scene::{Role, Scene, from_gltf, generate};
 use antumbra::truth::{ErrorSummary, Receiver, Sampling, Tracer};
 use antumbra::{FramePlan, RectangleLight, Settings, Technique};
 use glam::DVec3;
+use levels::{BUILD, megabytes, tightness};
 use std::path::Path;
 use std::time::Instant;
 use table::{Table, median};
@@ -28,7 +30,7 @@ struct Options {
 type Study = (&'static str, fn(&HeadlessDevice, &Options) -> Table);
 
 const STUDIES: [Study; 4] = [
-    ("levels", levels),
+    ("levels", kinds),
     ("search", search),
     ("classification", classification),
     ("bandwidth", bandwidth),
@@ -118,13 +120,9 @@ impl Ready {
     }
 }
 
-/// Milliseconds of passes by their names' ends.
 fn ms(times: &FrameTimes, names: &[&str]) -> f64 {
-    let of = |name: &str| names.iter().any(|n| name == format!("ray_march.{n}"));
-    times.passes.iter().filter(|(name, _)| of(name)).map(|(_, ms)| ms).sum()
+    levels::ms(times.passes.iter().copied(), names)
 }
-
-const BUILD: [&str; 2] = ["first_level", "next_level"];
 
 /// Runs several in turns; each one's frames.
 fn in_turns(ready: &mut [Ready], rounds: usize) -> Vec<Vec<FrameTimes>> {
@@ -145,10 +143,11 @@ fn frame_ms(times: &FrameTimes) -> f64 {
     times.frame.as_secs_f64() * 1e3
 }
 
-/// The kinds of windows: memory, how long they take to make, and what the search makes of them. N-buffers
-/// have shaders of their own, without the branches of the others.
-fn levels(device: &HeadlessDevice, options: &Options) -> Table {
-    let columns = ["scene", "N", "levels", "MB", "build ms", "classify", "trace", "sum"];
+/// The kinds of windows: memory, how long they take to make, what the search makes of them, and how many
+/// texels they hold for each that is asked for. N-buffers have shaders of their own, without the branches
+/// of the others.
+fn kinds(device: &HeadlessDevice, options: &Options) -> Table {
+    let columns = ["scene", "N", "levels", "MB", "build ms", "classify", "trace", "sum", "held"];
     let mut table = Table::new("levels", &columns);
     for name in ["bunny", "foliage"] {
         let scene = scene(name, 0.4);
@@ -159,18 +158,18 @@ fn levels(device: &HeadlessDevice, options: &Options) -> Table {
                 .collect();
             let all = in_turns(&mut ready, options.rounds);
             for ((kind_name, kind), times) in Kind::ALL.iter().zip(&all) {
-                let bytes = 16.0 * f64::from(Levels { map: n, kind: *kind }.values());
                 let [build, classify, trace] =
                     [&BUILD[..], &["classify"], &["trace"]].map(|p| median_of(times, |t| ms(t, p)));
                 table.row(vec![
                     name.into(),
                     n.to_string(),
                     (*kind_name).into(),
-                    format!("{:.1}", bytes / 1e6),
+                    format!("{:.1}", megabytes(Levels { map: n, kind: *kind })),
                     format!("{build:.1}"),
                     format!("{classify:.1}"),
                     format!("{trace:.1}"),
                     format!("{:.1}", build + classify + trace),
+                    format!("{:.2}", tightness(*kind)),
                 ]);
             }
         }

@@ -1,7 +1,7 @@
 //! Models, and stages to measure them on.
 
 use antumbra::gpu::headless::{FrameTimes, HeadlessDevice, Stage, View};
-use antumbra::scene::{Mesh, Role, Scene, from_gltf};
+use antumbra::scene::{Role, Scene, from_gltf};
 use antumbra::truth::{Receiver, Sampling, Tracer};
 use antumbra::{FramePlan, Settings};
 use glam::DVec3;
@@ -11,32 +11,6 @@ use std::path::Path;
 pub fn committed(name: &str) -> Scene {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
     from_gltf(&root.join(format!("{name}.glb"))).unwrap()
-}
-
-/// An ASCII PLY of triangles: positions first on each vertex line, faces as `3 a b c`.
-pub fn ply(path: &Path) -> Option<Mesh> {
-    let text = std::fs::read_to_string(path).ok()?;
-    let count = |element: &str| -> Option<usize> {
-        let line = text.lines().find(|l| l.starts_with(&format!("element {element} ")))?;
-        line.rsplit(' ').next()?.trim().parse().ok()
-    };
-    let (vertices, faces) = (count("vertex")?, count("face")?);
-    let mut lines = text.lines().skip_while(|l| l.trim() != "end_header").skip(1);
-    let mut mesh = Mesh::default();
-    for _ in 0..vertices {
-        let mut numbers = lines.next()?.split_whitespace().map(str::parse::<f32>);
-        let mut next = || numbers.next()?.ok();
-        mesh.positions.push([next()?, next()?, next()?]);
-    }
-    for _ in 0..faces {
-        let mut numbers = lines.next()?.split_whitespace().map(str::parse::<u32>);
-        let corners = numbers.next()?.ok()?;
-        assert_eq!(corners, 3, "{}: a face is no triangle", path.display());
-        mesh.indices.extend((0..3).filter_map(|_| numbers.next()?.ok()));
-    }
-    // Only depth is drawn of it.
-    mesh.normals = vec![[0.0, 1.0, 0.0]; mesh.positions.len()];
-    Some(mesh)
 }
 
 /// Settings from the words of a command line.

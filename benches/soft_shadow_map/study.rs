@@ -1,7 +1,8 @@
 //! The comparisons, one function each.
 
 use super::Options;
-use super::model::{Ready, accumulation_ms, committed, ply};
+use super::model::{Ready, accumulation_ms, committed};
+use super::ply::ply;
 use super::table::{Table, exponent, line, median, quantile, spread};
 use antumbra::gpu::headless::{HeadlessDevice, ReadbackScheme};
 use antumbra::scene::{Role, Scene, generate};

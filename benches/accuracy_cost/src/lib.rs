@@ -11,14 +11,19 @@
 //! Everything left of `measure` is data, and everything right of `store` is a pure function of the
 //! stored rows: a report can be made of whatever a killed run left behind.
 
+pub mod curtis;
 pub mod findings;
 pub mod groups;
 pub mod hills;
+#[path = "../../ray_march/levels.rs"]
+mod levels;
 pub mod measure;
 pub mod options;
 pub mod pareto;
 pub mod picture;
 pub mod plot;
+#[path = "../../soft_shadow_map/ply.rs"]
+mod ply;
 pub mod progress;
 pub mod report;
 pub mod run;

@@ -1,7 +1,7 @@
 //! The scenes, each under three lights, and anyone's own.
 
-use crate::Problem;
 use crate::hills::hills;
+use crate::{Problem, curtis};
 use antumbra::RectangleLight;
 use antumbra::scene::generate::{self, GROUND_SIDE};
 use antumbra::scene::{Role, Scene, from_gltf};
@@ -174,6 +174,8 @@ pub fn made(name: &str, light: RectangleLight) -> Result<Scene, Problem> {
         "slats" => generate::slats(light, 8),
         "foliage" => generate::foliage(light, LEAVES, 1),
         "hills" => over_hills(light)?,
+        curtis::CUBE => curtis::elongated_cube(light),
+        curtis::DRAGON => curtis::dragon(light)?,
         model => {
             generate::normalized(&committed(model)?, light).map_err(|e| format!("{model}: {e}"))?
         }

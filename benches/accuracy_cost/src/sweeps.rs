@@ -1,9 +1,11 @@
-//! The sweeps that reproduce the figures of Atty 2006, the tables of Curtis 2009 and Eisemann 2008,
-//! and a technique that is wrong on purpose.
+//! The sweeps that reproduce the figures of Atty 2006 and Eisemann 2008's table, the kinds of levels, and
+//! a technique that is wrong on purpose.
 
+use crate::curtis;
 use crate::groups::{Against, Entry, Group, Scale, Stage};
 use crate::scenes::SceneSpec;
 use crate::scenes::Source;
+use antumbra::nbuffer::Kind;
 use glam::DVec3;
 
 /// Error and time against N: Atty 2006 Figs. 17 and 22.
@@ -18,8 +20,8 @@ pub const VERTICAL: &str = "vertical position";
 pub const POLYGONS: &str = "polygons";
 /// A light 10 % too big, handed to the node and not to the truth.
 pub const WRONG: &str = "wrong on purpose";
-/// Curtis 2009 Tables 4.1 to 4.4.
-pub const CURTIS: &str = "Curtis 2009";
+/// Kinds of levels of ray marching: Curtis 2009 section 5.1.
+pub const LEVELS: &str = "kinds of levels";
 /// Eisemann 2008 Figure 2's table.
 pub const EISEMANN: &str = "Eisemann 2008";
 
@@ -77,7 +79,8 @@ pub fn all(scale: &Scale) -> Vec<Group> {
         groups.extend(moved(scale, model));
     }
     groups.extend(polygons(scale));
-    groups.extend(curtis(scale));
+    groups.extend(levels(scale));
+    groups.extend(curtis::groups(scale));
     groups.push(eisemann());
     groups
 }
@@ -164,48 +167,24 @@ fn polygons(scale: &Scale) -> Vec<Group> {
     rows.iter().map(group).collect()
 }
 
-/// The models of Curtis 2009's tables, as near as what is here comes to them: its dragon is a scan of
-/// 100,000 triangles, its elongated cube a tall box.
-const CURTIS_MODELS: [(&str, Source); 2] =
-    [("bunny", Source::Committed("bunny")), ("tall box", Source::Made("tall box"))];
-
-/// What Curtis 2009 varies: tables 4.1 and 4.2 the map at 1024×768, 4.3 and 4.4 the screen at 512².
-fn curtis(scale: &Scale) -> Vec<Group> {
-    let mut groups = Vec::new();
-    for (name, source) in CURTIS_MODELS {
-        let spec = SceneSpec { name: name.into(), source };
-        for extent in [[800, 600], [1024, 768], [1280, 1024]] {
-            let maps: &[u32] = if extent == [1024, 768] { &[256, 512, 1024] } else { &[512] };
-            let mut entries = Vec::new();
-            for search in ["hierarchical", "linear"] {
-                for rays in [4, 9] {
-                    for map in maps {
-                        entries.push(Entry {
-                            technique: "ray-march",
-                            ..entry(
-                                &format!("{search}, {rays} rays"),
-                                format!("search={search} rays={rays} map={map}"),
-                                f64::from(*map),
-                            )
-                        });
-                    }
-                }
-            }
-            groups.push(Group {
-                study: CURTIS,
-                scene: name.into(),
-                light: "medium".into(),
-                stage: Stage::Seen(spec.clone(), "medium"),
-                extent,
-                against: Against::Traced,
-                at: Some(f64::from(extent[0])),
-                entries,
-            });
-        }
-    }
-    // The quick run has room for one of them.
-    groups.truncate(if scale.quick { 1 } else { groups.len() });
-    groups
+/// Kinds of levels at several map sizes, on a solid and on what has many edges.
+fn levels(scale: &Scale) -> Vec<Group> {
+    let (models, maps): (&[&str], &[u32]) = if scale.quick {
+        (&["bunny"], &[256, 512])
+    } else {
+        (&["bunny", "foliage"], &[256, 512, 1024])
+    };
+    let group = |&model: &&'static str| {
+        let entries = maps.iter().flat_map(|map| {
+            Kind::ALL.iter().map(move |(kind, _)| Entry {
+                technique: "ray-march",
+                ..entry(kind, format!("levels={kind} map={map}"), f64::from(*map))
+            })
+        });
+        let extent = [3 * scale.grid; 2];
+        Group { extent, entries: entries.collect(), ..group(scale, LEVELS, model, 0.4) }
+    };
+    models.iter().map(group).collect()
 }
 
 /// Three prefilters at three map sizes.

@@ -152,6 +152,35 @@ pub const CURVES: &[Curve] = &[
         shown: Some(2),
     },
     Curve {
+        technique: "ray-march",
+        label: "ray march, unfiltered",
+        sweeps: "rays",
+        steps: &[
+            ("filter=off rays=16", false),
+            ("filter=off rays=64", false),
+            ("filter=off rays=256", false),
+        ],
+        shown: None,
+    },
+    Curve {
+        technique: "ray-march",
+        label: "ray march as published, two layers",
+        sweeps: "rays",
+        steps: &[
+            ("layers=2 sampling=jittered hash=md5 rays=4", true),
+            ("layers=2 sampling=jittered hash=md5 rays=9", false),
+            ("layers=2 sampling=jittered hash=md5 rays=16", false),
+        ],
+        shown: None,
+    },
+    Curve {
+        technique: "ray-march",
+        label: "ray march, 16 rays",
+        sweeps: "map",
+        steps: &[("rays=16 map=64", false), ("rays=16 map=128", false), ("rays=16 map=512", false)],
+        shown: None,
+    },
+    Curve {
         technique: "occlusion-textures",
         label: "occlusion textures",
         sweeps: "slices",

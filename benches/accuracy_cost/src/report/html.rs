@@ -1,6 +1,6 @@
 //! The page: everything in one file.
 
-use super::{Report, charts, strip, tables};
+use super::{Report, charts, curtis, strip, tables};
 use crate::groups::MATRIX;
 use crate::plot::escape;
 
@@ -65,10 +65,13 @@ pub fn page(report: &Report) -> String {
             charts.concat()
         );
     }
-    out += "<h2>Curtis 2009 and Eisemann 2008</h2>\n<p>Published times are of a GPU of their year, and \
-            of other models than here; what compares is how they grow.</p>\n<details><summary>The \
-            tables</summary>\n";
-    out += &tables::published(report);
+    out += "<h2>Ray marching against Curtis 2009</h2>\n<p>Published times are of a GPU of their year; \
+            what compares is how they grow, and which of two is faster.</p>\n";
+    out += &curtis::tables(report);
+    out += "<h3>Kinds of levels</h3>\n";
+    out += &curtis::levels(report);
+    out += "<h2>Eisemann 2008</h2>\n<details><summary>The table</summary>\n";
+    out += &tables::eisemann(report);
     out += "</details>\n<h2>What is missing</h2>\n";
     out += &tables::gaps(report);
     out += &method();

@@ -1,6 +1,7 @@
 //! The report, from the rows alone.
 
 mod charts;
+mod curtis;
 pub mod docs;
 mod files;
 mod headline;

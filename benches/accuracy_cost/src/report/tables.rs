@@ -8,21 +8,12 @@ use crate::plot::escape;
 use crate::store::{Outcome, Row};
 use crate::sweeps;
 
-/// Curtis 2009 tables 4.1 to 4.4, the rows with deferred shading, which is what a G-buffer is: frames
-/// a second for 2×2 and 3×3 rays by the hierarchical search, then by the linear one, each for the
-/// three maps (4.1, 4.2) or screens (4.3, 4.4).
-const CURTIS: [(&str, [[u32; 3]; 4]); 4] = [
-    ("4.1, dragon", [[46, 40, 28], [37, 34, 21], [25, 18, 15], [12, 11, 10]]),
-    ("4.2, cube", [[70, 50, 35], [60, 45, 31], [36, 32, 23], [25, 22, 17]]),
-    ("4.3, dragon", [[45, 40, 32], [40, 34, 22], [27, 18, 14], [17, 11, 8]]),
-    ("4.4, cube", [[74, 50, 41], [61, 45, 34], [41, 32, 23], [31, 22, 15]]),
-];
-
 /// Eisemann 2008 Figure 2's table, in ms: mip, summed-area table and N-buffer at 256², 512², 1024².
 const EISEMANN: [[&str; 3]; 3] =
     [["under 1", "under 1", "under 1"], ["5.1", "21.9", "96.8"], ["under 1", "1.7", "7.3"]];
 
-fn row_of(cells: impl IntoIterator<Item = String>, tag: &str) -> String {
+/// A row of cells.
+pub(super) fn row_of(cells: impl IntoIterator<Item = String>, tag: &str) -> String {
     let cells: String = cells.into_iter().map(|c| format!("<{tag}>{c}</{tag}>")).collect();
     format!("<tr>{cells}</tr>\n")
 }
@@ -126,32 +117,11 @@ fn frame(row: &Row) -> String {
     }
 }
 
-/// The tables of the other two papers, filled in as far as their techniques are there.
-pub fn published(report: &Report) -> String {
+/// Eisemann 2008's table, filled in as far as its technique is there.
+pub fn eisemann(report: &Report) -> String {
     let mut out = String::from("<table>");
     let head = ["table", "scene", "image", "settings", "published", "here"];
     out += &row_of(head.map(String::from), "th");
-    for row in report.study(sweeps::CURTIS) {
-        let search = usize::from(row.settings.contains("linear")) * 2;
-        let line = search + usize::from(row.settings.contains("rays=9"));
-        let cube = usize::from(row.scene == "tall box");
-        let map = [256.0, 512.0, 1024.0].iter().position(|m| *m == row.x).unwrap_or(1);
-        let screen = [800, 1024, 1280].iter().position(|w| *w == row.extent[0]).unwrap_or(1);
-        // 512² at 1024×768 stands in both tables.
-        let (table, column) = if screen == 1 { (cube, map) } else { (2 + cube, screen) };
-        let (name, values) = &CURTIS[table];
-        out += &row_of(
-            [
-                format!("Curtis 2009 {name}"),
-                escape(&row.scene),
-                format!("{}×{}", row.extent[0], row.extent[1]),
-                escape(&row.settings),
-                format!("{} fps", values[line][column]),
-                frame(row),
-            ],
-            "td",
-        );
-    }
     for row in report.study(sweeps::EISEMANN) {
         let filter = ["mip", "sat", "n-buffer"].iter().position(|f| *f == row.curve).unwrap_or(0);
         let map = [256.0, 512.0, 1024.0].iter().position(|m| *m == row.x).unwrap_or(0);

@@ -1,0 +1,178 @@
+//! What Curtis 2009 measures in chapter 4: its two scenes, its versions of ray marching, and what
+//! tables 4.1 to 4.4 vary.
+
+use crate::Problem;
+use crate::groups::{Against, Entry, Group, Scale, Stage};
+use crate::ply::ply;
+use crate::scenes::{SceneSpec, Source};
+use antumbra::RectangleLight;
+use antumbra::scene::generate::{self, cuboid};
+use antumbra::scene::{Role, Scene};
+use glam::{DMat4, DVec3};
+use std::path::PathBuf;
+
+/// The study's name.
+pub const STUDY: &str = "Curtis 2009";
+/// The scene of tables 4.1 and 4.3, where it was fetched.
+pub const DRAGON: &str = "dragon";
+/// The scene of tables 4.1 and 4.3, where it was not.
+pub const STAND_IN: &str = "bunny in the dragon's place";
+/// The scene of tables 4.2 and 4.4.
+pub const CUBE: &str = "elongated cube";
+
+/// The paper's dragon has 100,000 triangles. Of the versions that `benches/fetch_dragon.sh` fetches
+/// this one's 47,794 are nearest; the next has 202,520.
+const DRAGON_FILE: &str = "dragon_vrip_res3";
+
+/// The light of both, as large as the objects: the paper shows wide penumbrae.
+const LIGHT: &str = "large";
+
+/// One of the versions that are compared.
+pub struct Version {
+    /// Its curve's name, and how the report's tables call it.
+    pub name: &'static str,
+    /// As on a command line.
+    pub technique: &'static str,
+    /// The settings, but for rays and map.
+    words: &'static str,
+}
+
+/// The paper's, with its jittered cells and its hash, then the node's defaults. The hierarchical search
+/// has two layers there and the linear one three (its chapter 4).
+pub const VERSIONS: [Version; 3] = [
+    Version {
+        name: "hierarchical",
+        technique: "ray-march",
+        words: "search=hierarchical layers=2 sampling=jittered hash=md5",
+    },
+    Version {
+        name: "linear/binary",
+        technique: "ray-march",
+        words: "search=linear layers=3 sampling=jittered hash=md5",
+    },
+    Version { name: "the node's defaults", technique: "ray-march", words: "" },
+];
+
+/// Rays a pixel: 2×2 and 3×3.
+pub const RAYS: [u32; 2] = [4, 9];
+/// Tables 4.1 and 4.2 vary the map at the second of [`SCREENS`].
+pub const MAPS: [u32; 3] = [256, 512, 1024];
+/// Tables 4.3 and 4.4 vary the screen with the second of [`MAPS`].
+pub const SCREENS: [[u32; 2]; 3] = [[800, 600], [1024, 768], [1280, 1024]];
+
+/// A cube stretched to four times its height and floating half a metre over the ground. As in the
+/// paper's figure 4.2 the light of 1 m sees past its top to all of the ground below, which is in umbra for
+/// the bottom alone: seen from there the top hides (0.25 · 4/1.5)² = 0.44 of the light, the bottom all.
+pub fn elongated_cube(light: RectangleLight) -> Scene {
+    let mut scene = generate::stage(light);
+    scene.add(
+        CUBE,
+        cuboid(DVec3::new(0.25, 1.0, 0.25)),
+        DMat4::from_translation(DVec3::Y),
+        Role::Both,
+    );
+    scene
+}
+
+fn dragon_path() -> PathBuf {
+    crate::options::Options::root().join(format!("target/dragon/{DRAGON_FILE}.ply"))
+}
+
+/// The dragon, its largest extent 1 m, standing on the ground. Both scenes' objects block and receive, as
+/// in the paper.
+///
+/// # Errors
+/// A sentence where it was not fetched.
+pub fn dragon(light: RectangleLight) -> Result<Scene, Problem> {
+    let path = dragon_path();
+    let mesh = ply(&path).ok_or_else(|| {
+        format!("{}: no PLY of triangles; benches/fetch_dragon.sh fetches it", path.display())
+    })?;
+    let mut object = Scene::default();
+    object.add(DRAGON, mesh, DMat4::IDENTITY, Role::Both);
+    let scene = generate::normalized(&object, light).map_err(|e| e.to_string())?;
+    let low = scene.bounds(|i| i.role.blocks()).map_or(0.0, |b| b.min.y);
+    let mut scene = scene.with_occluders_as(Role::Both);
+    for instance in scene.instances.iter_mut().filter(|i| i.role.blocks()) {
+        instance.world_from_mesh =
+            DMat4::from_translation(DVec3::NEG_Y * low) * instance.world_from_mesh;
+    }
+    Ok(scene)
+}
+
+/// Both scenes under their lights, the cube first: a quick run has room for one.
+fn scenes() -> [(SceneSpec, &'static str); 2] {
+    let spec = |name: &str, source| SceneSpec { name: name.into(), source };
+    let dragon = if dragon_path().exists() {
+        (spec(DRAGON, Source::Made(DRAGON)), LIGHT)
+    } else {
+        (spec(STAND_IN, Source::Committed("bunny")), "medium")
+    };
+    [(spec(CUBE, Source::Made(CUBE)), LIGHT), dragon]
+}
+
+/// The rows of a screen: all maps or one.
+fn entries(maps: &[u32]) -> Vec<Entry> {
+    let mut all = Vec::new();
+    for version in &VERSIONS {
+        for rays in RAYS {
+            all.extend(maps.iter().map(|map| Entry {
+                technique: version.technique,
+                curve: version.name.into(),
+                words: format!("{} rays={rays} map={map}", version.words).trim_start().into(),
+                x: f64::from(*map),
+                light_scale: 1.0,
+                shown: false,
+            }));
+        }
+    }
+    all
+}
+
+/// A group a scene and screen.
+pub fn groups(scale: &Scale) -> Vec<Group> {
+    let mut groups = Vec::new();
+    for (spec, light) in scenes() {
+        for extent in SCREENS {
+            groups.push(Group {
+                study: STUDY,
+                scene: spec.name.clone(),
+                light: light.into(),
+                stage: Stage::Seen(spec.clone(), light),
+                extent,
+                against: Against::Traced,
+                at: Some(f64::from(extent[0])),
+                entries: entries(if extent == SCREENS[1] { &MAPS } else { &MAPS[1..2] }),
+            });
+        }
+    }
+    groups.truncate(if scale.quick { 1 } else { groups.len() });
+    groups
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_cubes_top_hides_less_than_half_of_the_light_from_below() {
+        let scene = elongated_cube(crate::scenes::square(1.0).unwrap());
+        let bounds = scene.bounds(|i| i.role.blocks()).unwrap();
+        let light = scene.light(None).unwrap().light;
+        let height = light.center().y;
+        let share = |y: f64| {
+            let side = bounds.size().x * height / y;
+            (side / (2.0 * light.half_extents()[0])).powi(2)
+        };
+        assert!(share(bounds.max.y) < 0.5 && share(bounds.min.y) > 1.0);
+    }
+
+    #[test]
+    fn the_tables_are_complete() {
+        let groups = groups(&crate::groups::FULL);
+        assert_eq!(groups.len(), 6);
+        let count =
+            |extent: [u32; 2]| groups.iter().find(|g| g.extent == extent).unwrap().entries.len();
+        assert_eq!(count(SCREENS[1]), 3 * count(SCREENS[0]));
+    }
+}
