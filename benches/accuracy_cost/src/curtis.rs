@@ -111,8 +111,8 @@ fn scenes() -> [(SceneSpec, &'static str); 2] {
     [(spec(CUBE, Source::Made(CUBE)), LIGHT), dragon]
 }
 
-/// The rows of a screen: all maps or one.
-fn entries(maps: &[u32]) -> Vec<Entry> {
+/// The rows of a screen: all maps or one. With `shown` pictures are kept of the most rays.
+fn entries(maps: &[u32], shown: bool) -> Vec<Entry> {
     let mut all = Vec::new();
     for version in &VERSIONS {
         for rays in RAYS {
@@ -122,7 +122,7 @@ fn entries(maps: &[u32]) -> Vec<Entry> {
                 words: format!("{} rays={rays} map={map}", version.words).trim_start().into(),
                 x: f64::from(*map),
                 light_scale: 1.0,
-                shown: false,
+                shown: shown && rays == RAYS[1],
             }));
         }
     }
@@ -142,7 +142,10 @@ pub fn groups(scale: &Scale) -> Vec<Group> {
                 extent,
                 against: Against::Traced,
                 at: Some(f64::from(extent[0])),
-                entries: entries(if extent == SCREENS[1] { &MAPS } else { &MAPS[1..2] }),
+                entries: entries(
+                    if extent == SCREENS[1] { &MAPS } else { &MAPS[1..2] },
+                    extent == SCREENS[0],
+                ),
             });
         }
     }

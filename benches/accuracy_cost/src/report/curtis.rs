@@ -1,9 +1,10 @@
 //! Tables 4.1 to 4.4 of Curtis 2009 as they are there, and the kinds of levels of its section 5.1.
 
 use super::tables::row_of;
-use super::{Report, ms};
-use crate::curtis::{self, MAPS, RAYS, SCREENS, VERSIONS};
+use super::{Report, ms, once};
+use crate::curtis::{self, MAPS, RAYS, SCREENS, VERSIONS, Version};
 use crate::levels::{BUILD, megabytes, ms as sum_of, tightness};
+use crate::picture::{self, Pictures};
 use crate::plot::escape;
 use crate::store::{Outcome, Row};
 use crate::sweeps;
@@ -117,13 +118,39 @@ fn cell(row: Option<&Row>, then: Option<u32>) -> String {
     then.map_or(here.clone(), |fps| format!("{here} <small>({fps} fps)</small>"))
 }
 
-/// The four tables.
+/// Figures 4.1 and 4.2: the truth and each version, 3×3 rays, with what is wrong below.
+fn figures(report: &Report) -> String {
+    let pictures = Pictures::new(report.cache);
+    let image = |scene: &str, name: &str| {
+        let url = pictures.url(scene, name)?;
+        Some(format!("<img src=\"{url}\" alt=\"{}\">", escape(&format!("{scene}, {name}"))))
+    };
+    let mut out = String::from("<div class=\"wide\"><table class=\"strip figure\">\n");
+    let names = VERSIONS.iter().map(|v| v.name);
+    out += &row_of(std::iter::once("truth").chain(names).map(String::from), "th");
+    let mut any = false;
+    for scene in once(report.study(curtis::STUDY).map(|r| r.scene.as_str())) {
+        let Some(truth) = image(scene, picture::TRUTH) else { continue };
+        any = true;
+        let of = |v: &Version| {
+            let [seen, wrong] = [v.name.to_string(), picture::error_of(v.name)]
+                .map(|name| image(scene, &name).unwrap_or_default());
+            format!("{seen}<br>{wrong}")
+        };
+        let first = format!("{truth}<br>{}", escape(scene));
+        out += &row_of(std::iter::once(first).chain(VERSIONS.iter().map(of)), "td");
+    }
+    if any { out + "</table></div>\n" } else { String::new() }
+}
+
+/// The four tables, and the pictures that belong to them.
 pub fn tables(report: &Report) -> String {
     let intro = "<p>Time of a frame and mean error here; in brackets the paper's frames a second, on a \
                  GPU of 2009. Its versions have two layers (hierarchical) and three (linear), jittered \
                  rays and a hash of MD5; the last two rows are what the node does unasked. Models and \
                  lights are as near as the text tells.</p>\n";
-    TABLES.iter().fold(intro.to_string(), |out, table| out + &table.html(report))
+    let start = intro.to_string() + &figures(report);
+    TABLES.iter().fold(start, |out, table| out + &table.html(report))
 }
 
 /// Memory, time and tightness of the kinds of levels.

@@ -17,6 +17,7 @@ th { background: #f4f4f4; } .n td { font-variant-numeric: tabular-nums; white-sp
 i { color: #999; } .wide { overflow-x: auto; }
 .strip th, .strip td { border: 0; padding: .15em .3em; text-align: center; background: none; }
 .strip img { width: 142px; display: inline-block; }
+.strip.figure img { width: 290px; }
 .strip th:first-child { text-align: right; vertical-align: middle; max-width: 8em; }
 .strip td { line-height: 1.1; padding: 1px 2px; }
 .charts { display: flex; flex-wrap: wrap; gap: .4em 1em; }
