@@ -12,13 +12,6 @@ struct GBuffer {
     bool masked;      // gbuffer_mask holds the receivers' roles
 };
 
-struct Receiver {
-    bool receives;
-    bool blocks;   // its own surface blocks light
-    vec3 position; // light space, metres
-    vec3 normal;   // of the geometric plane, on the viewer's side
-};
-
 float depth_at(ivec2 p)
 {
     return texelFetch(gbuffer_depth, p, 0).x;

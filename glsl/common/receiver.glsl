@@ -3,6 +3,13 @@
 #ifndef COMMON_RECEIVER_GLSL
 #define COMMON_RECEIVER_GLSL
 
+struct Receiver {
+    bool receives;
+    bool blocks;   // its own surface blocks light
+    vec3 position; // light space, metres
+    vec3 normal;   // of the geometric plane, on the viewer's side
+};
+
 // A pixel with depth `depth` to a homogeneous point of light space. `ndc` runs from -1 to 1.
 vec4 unproject(mat4 light_from_ndc, vec2 pixel, vec2 extent, float depth)
 {

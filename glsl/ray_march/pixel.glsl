@@ -1,17 +1,26 @@
 // What the passes over the pixels have in common: their inputs, and where a pixel lies in the map.
+//
+// With `#define FORWARD` the pixels are fragments, whose place and plane the including shader knows without
+// a G-buffer: it declares `vec3 pixel_normal(ivec2 p, Receiver r)`.
 
 #ifndef RAY_MARCH_PIXEL_GLSL
 #define RAY_MARCH_PIXEL_GLSL
 
 #include "ray_march/fraction.glsl"
 
+#ifndef FORWARD
 layout(set = 0, binding = 0) uniform texture2D gbuffer_depth;
 layout(set = 0, binding = 1) uniform texture2D gbuffer_mask;
+#endif
 layout(set = 0, binding = 2, std430) readonly buffer Columns { vec4 columns[]; };
 layout(set = 0, binding = 3, std430) readonly buffer Bounds { vec4 bounds[]; };
+#ifdef FORWARD
+#include "common/receiver.glsl"
+#else
 layout(set = 0, binding = 4, FRACTION_FORMAT) writeonly uniform image2D visibility;
 
 #include "common/gbuffer.glsl"
+#endif
 #include "common/light.glsl"
 
 // Nothing is known to be empty but where the shader says so.
@@ -24,7 +33,12 @@ bool seen(vec2 t, float w)
 
 #include "ray_march/search.glsl"
 
+#ifdef FORWARD
+// The push constants are the drawn mesh's.
+layout(set = 0, binding = 0, std140) uniform Push {
+#else
 layout(push_constant) uniform Push {
+#endif
     mat4 light_from_ndc;
     vec2 texels_per_unit; // map texels a unit of u and v, or a metre where the projection is orthographic
     vec2 first;           // texel coordinates of u = v = 0
@@ -69,6 +83,7 @@ Levels levels()
     return Levels(push.map, level_kind());
 }
 
+#ifndef FORWARD
 GBuffer gbuffer()
 {
     return GBuffer(push.light_from_ndc, push.extent, push.background, is_masked());
@@ -81,6 +96,7 @@ vec3 pixel_normal(ivec2 p, Receiver r)
     // A surface that does not block is seen from its other side as well.
     return !r.blocks && dot(normal, r.position) > 0.0 ? -normal : normal;
 }
+#endif
 
 // The part of the light above the pixel's own plane, all of it where that does not block.
 float part_above(Receiver r)

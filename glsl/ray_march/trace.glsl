@@ -13,31 +13,12 @@ layout(set = 0, binding = 5, std430) readonly buffer Pixels {
 bool seen(vec2 t, float w);
 
 #include "ray_march/pixel.glsl"
-#include "ray_march/sampling.glsl"
+#include "ray_march/rays.glsl"
 #include "ray_march/filter.glsl"
 
 #define NOISY_BINDING 6
 #define SURFACE_BINDING 7
 #include "ray_march/noisy.glsl"
-
-#ifdef TEXTURED
-layout(set = 0, binding = 8) uniform texture2D light_texture;
-
-// What the light sends out at a point of [0, 1]^2. Light space has y against the light's second half-axis,
-// so that the texture's first row is where that points.
-FRACTION emitted_at(vec2 s)
-{
-    ivec2 size = textureSize(light_texture, 0);
-    ivec2 texel = clamp(ivec2(s * vec2(size)), ivec2(0), size - 1);
-    vec3 color = max(texelFetch(light_texture, texel, 0).rgb, vec3(0.0));
-#ifdef COLOR
-    return color;
-#else
-    // Luminance of linear sRGB.
-    return dot(color, vec3(0.2126, 0.7152, 0.0722));
-#endif
-}
-#endif
 
 // The eye layer (Curtis 2009 section 3.4): what the eye sees through is empty.
 bool seen(vec2 t, float w)
@@ -69,55 +50,17 @@ void main()
     float end = uintBitsToFloat(pixels[3u * at + 2u]);
     Receiver r = receiver_without_normal(gbuffer(), p);
     r.normal = pixel_normal(p, r);
-    Place place = place_of(r);
-    float above = part_above(r);
-    int hidden = 0;
-    float heights = 0.0; // where rays are stopped
-#ifdef TEXTURED
-    FRACTION emitted = FRACTION(0.0);
-    FRACTION arrived = FRACTION(0.0);
-#endif
-    for (int i = 0; i < rays(); ++i) {
-        vec2 s = light_sample(sampling(), is_modern(), i, rays(), cell_rows(), uvec2(p), push.seed);
-        vec2 point = (2.0 * s - 1.0) * push.half_light;
-#ifdef TEXTURED
-        FRACTION weight = emitted_at(s);
-        emitted += weight;
-#endif
-        // What the pixel's own surface hides is known without a ray.
-        if (r.blocks && dot(r.normal, vec3(point, 0.0) - r.position) <= 0.0) {
-            continue;
-        }
-        Ray ray = over_map(place, Ray(slope_to(place, r.position.z, point), start, end), push.map);
-        bool hit = false;
-        if (ray.start <= ray.end) {
-            float height;
-            hit = is_linear() ? search_linear(place, ray, push.map, height)
-                              : search_hierarchical(place, ray, levels(), looks_from_eye(), height);
-            hidden += int(hit);
-            heights += hit ? height : 0.0;
-        }
-#ifdef TEXTURED
-        arrived += hit ? FRACTION(0.0) : weight;
-#endif
-    }
-#ifdef TEXTURED
-    // Of what the rays' points send out; all of it where that is nothing.
-    FRACTION nothing = FRACTION(1.0e-30);
-    FRACTION v = (arrived + nothing) / (emitted + nothing);
-#else
-    float v = max(above - float(hidden) / float(rays()), 0.0);
-#endif
+    Found found = found_by_rays(p, r, start, end);
     if (!filters()) {
-        imageStore(visibility, p, stored_fraction(v));
+        imageStore(visibility, p, stored_fraction(found.visible));
         return;
     }
     // The penumbra of an occluder at the mean of the heights where rays are stopped.
-    float s = hidden > 0 ? heights / float(hidden) : 0.5 * (start + end);
-    float z = distance_of(place.w + s);
+    float s = found.hidden > 0 ? found.heights / float(found.hidden) : 0.5 * (start + end);
+    float z = distance_of(place_of(r).w + s);
     float side = 2.0 * min(push.half_light.x, push.half_light.y);
     float penumbra = side * max(r.position.z - z, 0.0) / max(z, 1.0e-30);
     float pixel = pixel_width(push.light_from_ndc, vec2(p), push.extent, depth_at(p));
     float width = filter_width(penumbra, pixel, noise_of(rays(), sampling() == RANDOM));
-    put_noisy(p, v, width, r.normal);
+    put_noisy(p, found.visible, width, r.normal);
 }

@@ -1,0 +1,47 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+
+// Ray marching without a G-buffer: every fragment that passes the depth test when it is drawn sends its
+// rays, whatever is drawn over it later (Curtis 2009 section 4.2, "deferred shading: no"). The functions are
+// those of classify.comp and trace.comp; there is no list and no filter.
+
+#define FORWARD
+#define USUAL
+#include "ray_march/pixel.glsl"
+
+layout(push_constant) uniform Mesh {
+    layout(offset = 124) float role; // as the G-buffer's
+} mesh;
+
+layout(location = 0) out float visible;
+
+// A triangle's plane is that of any fragment and its neighbours, though these are outside of it.
+vec3 fragment_normal;
+
+vec3 pixel_normal(ivec2 p, Receiver r)
+{
+    return !r.blocks && dot(fragment_normal, r.position) > 0.0 ? -fragment_normal : fragment_normal;
+}
+
+#include "ray_march/open.glsl"
+#include "ray_march/rays.glsl"
+
+void main()
+{
+    ivec2 p = ivec2(gl_FragCoord.xy);
+    Receiver r;
+    r.receives = mesh.role > 0.25;
+    r.blocks = mesh.role > 0.75;
+    // What a G-buffer would hold is this very depth.
+    r.position = dehomogenize(
+        unproject(push.light_from_ndc, vec2(p), vec2(push.extent), gl_FragCoord.z));
+    r.normal = vec3(0.0);
+    fragment_normal = plane_normal(dFdx(r.position), dFdy(r.position),
+                                   towards_viewer(push.light_from_ndc, r.position, push.background));
+    float v;
+    Reach reach;
+    if (is_open(p, r, v, reach)) {
+        v = found_by_rays(p, r, reach.start, reach.end).visible;
+    }
+    visible = v;
+}
