@@ -248,6 +248,15 @@ impl ShadowNode {
             .collect()
     }
 
+    /// What is behind a resource of a plan's rows.
+    #[cfg(feature = "headless")]
+    pub(crate) fn object(&self, plan: &FramePlan, name: &str) -> crate::gpu::objects::Object {
+        let graph = &plan.plan.graph;
+        let ids = (0..graph.resources().len()).map(|index| graph.id(index));
+        let found = ids.into_iter().find(|&id| graph.resource(id).name == name);
+        found.map_or(crate::gpu::objects::Object::None, |id| self.objects.get(id))
+    }
+
     /// Name and bytes of everything the node holds in device memory.
     pub fn memory(&self) -> Vec<(&'static str, u64)> {
         self.objects.memory()

@@ -123,6 +123,10 @@ pub const QUADS_VERT: Module = module!("headless/quads.vert");
 #[cfg(feature = "headless")]
 pub const GBUFFER_FRAG: Module = module!("headless/gbuffer.frag");
 
+/// The rays of a fragment.
+#[cfg(feature = "headless")]
+pub const FORWARD_FRAG: Module = module!("headless/forward.frag");
+
 /// Every module of the node's passes.
 pub const ALL: &[Module] = &[
     DEPTH_VERT,

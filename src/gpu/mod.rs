@@ -8,7 +8,7 @@ mod descriptors;
 mod host;
 mod memory;
 mod node_objects;
-mod objects;
+pub(crate) mod objects;
 mod pipeline;
 mod record;
 mod retired;

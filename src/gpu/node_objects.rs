@@ -98,6 +98,12 @@ impl NodeObjects {
         Ok(old)
     }
 
+    /// What is behind a resource.
+    #[cfg(feature = "headless")]
+    pub fn get(&self, id: ResourceId) -> Object {
+        self.objects.get(id)
+    }
+
     /// The image behind a resource; null handles for what is no image.
     pub fn image(&self, id: ResourceId) -> (vk::Image, vk::ImageView) {
         match self.objects.get(id) {

@@ -31,8 +31,8 @@ pub struct Stage {
     gbuffer: GBuffer,
     view: View,
     instances: Vec<MeshInstance>,
-    /// Keeps the buffers that `instances` name alive.
-    _buffers: SceneBuffers,
+    /// The buffers that `instances` name.
+    buffers: SceneBuffers,
 }
 
 /// The layout that the visibility image is handed back in.
@@ -75,7 +75,7 @@ impl Stage {
             gbuffer,
             view: *view,
             instances: buffers.instances(scene),
-            _buffers: buffers,
+            buffers,
         };
         stage.configure(settings)?;
         Ok(stage)
@@ -120,6 +120,16 @@ impl Stage {
     /// The G-buffer.
     pub fn gbuffer(&self) -> &GBuffer {
         &self.gbuffer
+    }
+
+    /// How its pixels look at the scene.
+    pub(super) fn view(&self) -> &View {
+        &self.view
+    }
+
+    /// The scene's buffers.
+    pub(super) fn buffers(&self) -> &SceneBuffers {
+        &self.buffers
     }
 
     /// The node.
