@@ -124,7 +124,7 @@ fn ms(times: &FrameTimes, names: &[&str]) -> f64 {
     times.passes.iter().filter(|(name, _)| of(name)).map(|(_, ms)| ms).sum()
 }
 
-const BUILD: [&str; 2] = ["first_level", "next_level"];
+const BUILD: [&str; 1] = ["level"];
 
 /// Runs several in turns; each one's frames.
 fn in_turns(ready: &mut [Ready], rounds: usize) -> Vec<Vec<FrameTimes>> {
@@ -159,7 +159,7 @@ fn levels(device: &HeadlessDevice, options: &Options) -> Table {
                 .collect();
             let all = in_turns(&mut ready, options.rounds);
             for ((kind_name, kind), times) in Kind::ALL.iter().zip(&all) {
-                let bytes = 16.0 * f64::from(Levels { map: n, kind: *kind }.values());
+                let bytes = 16.0 * Levels { map: n, kind: *kind }.texels() as f64;
                 let [build, classify, trace] =
                     [&BUILD[..], &["classify"], &["trace"]].map(|p| median_of(times, |t| ms(t, p)));
                 table.row(vec![
@@ -246,7 +246,7 @@ fn bandwidth(device: &HeadlessDevice, options: &Options) -> Table {
     let scene = scene("bunny", 0.4);
     for &n in options.sides {
         let mut ready = Ready::new(device, &scene, &format!("map={n}"));
-        let bytes = 16 * Levels { map: n, kind: Kind::NBuffer }.values() as usize;
+        let bytes = 16 * Levels { map: n, kind: Kind::NBuffer }.texels() as usize;
         let source = vec![1u8; bytes];
         let mut target = vec![0u8; bytes];
         let (mut builds, mut copies) = (Vec::new(), Vec::new());

@@ -2,7 +2,7 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 5, std430) readonly buffer Pixels {
+layout(set = 0, binding = 4, std430) readonly buffer Pixels {
     uint count;
     uint none[3];
     mat4 ndc_from_light;
@@ -16,12 +16,12 @@ bool seen(vec2 t, float w);
 #include "ray_march/sampling.glsl"
 #include "ray_march/filter.glsl"
 
-#define NOISY_BINDING 6
-#define SURFACE_BINDING 7
+#define NOISY_BINDING 5
+#define SURFACE_BINDING 6
 #include "ray_march/noisy.glsl"
 
 #ifdef TEXTURED
-layout(set = 0, binding = 8) uniform texture2D light_texture;
+layout(set = 0, binding = 7) uniform texture2D light_texture;
 
 // What the light sends out at a point of [0, 1]^2. Light space has y against the light's second half-axis,
 // so that the texture's first row is where that points.
@@ -92,7 +92,7 @@ void main()
         bool hit = false;
         if (ray.start <= ray.end) {
             float height;
-            hit = is_linear() ? search_linear(place, ray, push.map, height)
+            hit = is_linear() ? search_linear(place, ray, levels(), height)
                               : search_hierarchical(place, ray, levels(), looks_from_eye(), height);
             hidden += int(hit);
             heights += hit ? height : 0.0;
