@@ -234,7 +234,10 @@ impl ShadowNode {
             .filter(|&id| graph.resource(id).owner == Owner::Transient)
             .filter_map(|id| {
                 let resource = graph.resource(id);
-                let Shape::Image { format, width, height } = resource.shape else { return None };
+                // A read-back has room for one layer.
+                let Shape::Image { format, width, height, layers: None } = resource.shape else {
+                    return None;
+                };
                 let layout = last_layout(id)?;
                 let (image, _) = self.objects.image(id);
                 Some(Inspected {

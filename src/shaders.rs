@@ -78,10 +78,10 @@ pub const PATCH_VERT: Module = module!("soft_shadow_map/patch.vert");
 pub const PATCH_FRAG: Module = module!("soft_shadow_map/patch.frag");
 /// Depth layers to columns of what is solid.
 pub const COLUMNS: Module = module!("ray_march/columns.comp");
-/// The bounds of the smallest windows of columns.
-pub const FIRST_LEVEL: Module = module!("ray_march/first_level.comp");
 /// The bounds of a level's windows.
-pub const BOUNDS_LEVEL: Module = module!("ray_march/next_level.comp");
+pub const LEVEL: Module = module!("ray_march/level.comp");
+/// The same for any kind of windows.
+pub const LEVEL_ANY: Module = module!("ray_march/level_any.comp");
 /// An empty list of pixels.
 pub const START: Module = module!("ray_march/start.comp");
 /// Which pixels need rays.
@@ -149,8 +149,8 @@ pub const ALL: &[Module] = &[
     PATCH_VERT,
     PATCH_FRAG,
     COLUMNS,
-    FIRST_LEVEL,
-    BOUNDS_LEVEL,
+    LEVEL,
+    LEVEL_ANY,
     START,
     CLASSIFY,
     CLASSIFY_ANY,

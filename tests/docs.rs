@@ -69,7 +69,8 @@ fn the_table_of_memory_is_the_graphs() {
             found += 1;
             let bytes = match resource.shape {
                 Shape::Buffer { bytes } => bytes,
-                Shape::Image { format, width, height } => {
+                Shape::Image { format, width, height, layers } => {
+                    assert_eq!(layers, None);
                     assert!(matches!(format, vk::Format::R32_SFLOAT | vk::Format::D32_SFLOAT));
                     u64::from(width) * u64::from(height) * 4
                 }

@@ -59,9 +59,7 @@ impl<'a> Machine<'a> {
     fn new(device: &HeadlessDevice, way: &'a Way, channels: usize) -> Self {
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
         let kinds = [Kind::NBuffer, Kind::Thirds, Kind::Mip];
-        let most = kinds.iter().map(|&kind| {
-            (1..=MOST).map(|map| Levels { map, kind }.values()).max().unwrap() as usize
-        });
+        let most = kinds.iter().map(|&kind| Levels { map: MOST, kind }.texels() as usize);
         let buffer = |name, words: usize| {
             HostBuffer::with_data(device, name, &vec![0u32; words], storage).unwrap()
         };
@@ -75,9 +73,12 @@ impl<'a> Machine<'a> {
              #define VALUE {value}\n{}\
              layout(set = 0, binding = 0, std430) readonly buffer Map {{ VALUE map_values[]; }};\n\
              layout(set = 0, binding = 1, std430) buffer Made {{ VALUE made[]; }};\n\
+             #include \"nbuffer/levels.glsl\"\n\
              VALUE combine(VALUE a, VALUE b) {{ {} }}\n\
-             VALUE value_at(int level, int index)\n\
-             {{ return level == 0 ? map_values[index] : made[index]; }}\n\
+             int index_of(Levels l, int level, ivec2 node)\n\
+             {{ ivec3 p = place_of(l, level, node); return (p.z * l.map + p.y) * l.map + p.x; }}\n\
+             VALUE value_at(Levels l, int level, ivec2 node)\n\
+             {{ return level == 0 ? map_values[node.y * l.map + node.x] : made[index_of(l, level, node)]; }}\n\
              #include \"nbuffer/values.glsl\"\n",
             if way.mean { "#define MEAN\n" } else { "" },
             way.combine
@@ -141,13 +142,11 @@ impl<'a> Machine<'a> {
                 Values::new(levels, own, self.way.of)
             };
             for level in 1..=levels.top() {
-                let (start, row) = (levels.start(level), levels.row(level));
-                for (y, x) in (0..levels.side(level))
-                    .flat_map(|y| (0..levels.side(level)).map(move |x| (y, x)))
-                {
-                    let at = (y * row + x) as usize;
-                    let device = made[(start as usize + at) * self.channels + channel];
-                    let expected = twin.of_level[level as usize][at];
+                let side = levels.side(level);
+                for (y, x) in (0..side).flat_map(|y| (0..side).map(move |x| (y, x))) {
+                    let at = levels.index(level, [x, y]);
+                    let device = made[at * self.channels + channel];
+                    let expected = twin.of_level[level as usize][(y * side + x) as usize];
                     // Up to nine numbers below 1,040 in another order.
                     let off = (device - expected).abs();
                     assert!(
@@ -276,18 +275,33 @@ fn levels_and_windows_are_what_a_scan_finds() {
     }
 }
 
-/// Where levels lie: the shader's formulas against sums.
+/// Where nodes are kept: the shader's formula against sums, in the array and each in a place of its own.
 #[test]
-fn levels_lie_one_behind_the_other() {
-    let glue = "ivec4 layout_of(int map, int kind, int level) { Levels l = Levels(map, kind); \
-                return ivec4(top_of(l), side_of(l, level), row_of(l, level), start_of(l, level)); }";
-    let mut function =
-        Function::new("nbuffer/levels.glsl", "ivec4 layout_of(int map, int kind, int level)")
-            .glue(glue);
+fn every_node_has_a_place_of_its_own() {
     let kinds = [Kind::NBuffer, Kind::Thirds, Kind::Mip];
+    for map in (1..=300).chain([511, 512, 513]) {
+        for kind in kinds {
+            let levels = Levels { map, kind };
+            let mut taken = vec![false; levels.texels() as usize];
+            for level in 0..=levels.top() {
+                let side = levels.side(level);
+                for (y, x) in (0..side).flat_map(|y| (0..side).map(move |x| (y, x))) {
+                    let [px, py, layer] = levels.place(level, [x, y]);
+                    assert!(px < map && py < map && layer < levels.layers(), "{levels:?}, {level}");
+                    let at = levels.index(level, [x, y]);
+                    assert!(!std::mem::replace(&mut taken[at], true), "{levels:?}, {level}");
+                }
+            }
+        }
+    }
+    let glue = "ivec4 described(int map, int kind, int level) { Levels l = Levels(map, kind); \
+                return ivec4(side_of(l, level), place_of(l, level, ivec2(level))) + top_of(l); }";
+    let mut function =
+        Function::new("nbuffer/levels.glsl", "ivec4 described(int map, int kind, int level)")
+            .glue(glue);
     for map in (1..=300).chain([511, 512, 513, 1000, 1024, 2047, 2048, 2187, 4095, 4096]) {
         for kind in kinds {
-            for level in 1..=(Levels { map, kind }).top() {
+            for level in 0..=(Levels { map, kind }).top() {
                 function = function.case((map, kind.code(), level));
             }
         }
@@ -296,7 +310,8 @@ fn levels_lie_one_behind_the_other() {
         .bits(move |x| {
             let kind = kinds[x[1] as usize];
             let levels = Levels { map: x[0], kind };
-            vec![levels.top(), levels.side(x[2]), levels.row(x[2]), levels.start(x[2])]
+            let [px, py, layer] = levels.place(x[2], [x[2]; 2]);
+            [levels.side(x[2]), px, py, layer].map(|i| i + levels.top()).to_vec()
         })
         .check(&device());
 }

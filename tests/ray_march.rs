@@ -30,36 +30,44 @@ fn apart(a: &[f32], b: &[f32]) -> f64 {
 }
 
 /// Windows that show a pixel to be lit or in umbra, and heights that a ray need not look at, are ones that
-/// the search would not have found anything else in.
+/// the search would not have found anything else in: which texels a ray is over, and at what heights, does
+/// not depend on where its search begins. Not a pixel differs.
 #[test]
 fn classification_changes_nothing() {
     let device = device();
     let bunny = model("bunny");
     let spheres = generate::spheres(light(0.4));
     let tall_box = generate::tall_box(light(1.0));
+    let foliage = generate::foliage(light(0.4), 300, 7);
     let setups = [
         ("bunny", seen(&bunny)),
         ("spheres", Setup::ground(&spheres, 2.2, 96)),
         ("box", Setup::ground(&tall_box, 3.5, 96)),
+        ("foliage", Setup::ground(&foliage, 2.2, 160)),
     ];
     for (name, setup) in &setups {
-        for more in
-            ["", "layers=2", "layers=3", "levels=mip", "levels=thirds", "projection=orthographic"]
-        {
+        for more in [
+            "",
+            "rays=64",
+            "layers=2",
+            "layers=3",
+            "levels=mip",
+            "levels=thirds",
+            "projection=orthographic",
+        ] {
             let words = format!("technique=ray-march map=128 filter=off {more}");
             let with = image(&device, setup, &words);
             let without = image(&device, setup, &format!("{words} classify=off"));
             let worst = with.iter().zip(&without).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-            let differ =
-                with.iter().zip(&without).filter(|(a, b)| (**a - **b).abs() > 1e-6).count();
+            let differ = with.iter().zip(&without).filter(|(a, b)| a != b).count();
             println!("{name}, {more}: {differ} of {} differ, by up to {worst:.1e}", with.len());
-            assert!(worst <= 1e-6, "{name}, {more}: {differ} pixels, {worst}");
+            assert!(differ == 0, "{name}, {more}: {differ} pixels, {worst}");
         }
     }
 }
 
-/// Whatever the windows, the same rays meet the same columns, but for those that pass within rounding of
-/// one: a pixel differs by a ray then.
+/// Whatever the windows, the same rays meet the same columns; a linear search halves to an eighth of a texel,
+/// and some rays that pass as near to a column's rim are otherwise.
 #[test]
 fn every_search_finds_the_same() {
     let device = device();
@@ -74,8 +82,7 @@ fn every_search_finds_the_same() {
     for (name, setup) in &setups {
         let words = "technique=ray-march map=128 filter=off";
         let first = image(&device, setup, words);
-        for (more, bound) in
-            [("levels=mip", 1e-4), ("levels=thirds", 1e-4), ("search=linear", 0.02)]
+        for (more, bound) in [("levels=mip", 0.0), ("levels=thirds", 0.0), ("search=linear", 0.02)]
         {
             let other = image(&device, setup, &format!("{words} {more}"));
             let mean = apart(&first, &other);
@@ -169,8 +176,8 @@ fn noise_falls_as_it_should() {
 /// Settings and the mean error in percent; in the order of [`scenes`].
 type Row = (&'static str, [f64; 9]);
 
-/// Measured on lavapipe, 256² maps; the truth's own noise is 0.3 of it or less where 0.4 is measured. What
-/// explains them:
+/// Measured on lavapipe, 256² maps; the truth's own noise is 0.3 of it or less where 0.4 is measured. (The
+/// slats' takes 4096 rays a pixel: with 512 it was half of what is measured.) What explains them:
 /// * 16 rays leave their noise, which the filter takes away where penumbrae are wide: less on the box, which
 ///   touches the ground, and on slats, whose penumbrae are narrow and many;
 /// * 256 rays leave what the maps do not tell: on slats that strips are a whole number of texels wide;
@@ -179,10 +186,10 @@ type Row = (&'static str, [f64; 9]);
 /// * the bunny and Suzanne as their own occluders have pixels on creases too, whose plane the G-buffer's
 ///   depth does not tell.
 const TABLE: &[Row] = &[
-    ("rays=16", [0.49, 2.08, 1.31, 0.87, 0.81, 0.79, 1.63, 2.08, 1.47]),
-    ("rays=16 sampling=jittered", [0.71, 2.69, 1.81, 0.94, 0.80, 0.78, 1.61, 2.15, 1.57]),
-    ("rays=256", [0.28, 1.50, 0.37, 0.45, 0.42, 0.43, 0.97, 1.67, 1.05]),
-    ("rays=16 layers=2", [0.49, 2.08, 1.31, 0.90, 0.82, 0.79, 2.31, 2.49, 1.60]),
+    ("rays=16", [0.49, 1.90, 1.31, 0.87, 0.81, 0.79, 1.63, 2.08, 1.47]),
+    ("rays=16 sampling=jittered", [0.71, 2.61, 1.81, 0.94, 0.80, 0.78, 1.61, 2.15, 1.57]),
+    ("rays=256", [0.28, 0.99, 0.37, 0.45, 0.42, 0.43, 0.97, 1.67, 1.05]),
+    ("rays=16 layers=2", [0.49, 1.90, 1.31, 0.90, 0.82, 0.79, 2.31, 2.49, 1.60]),
     ("rays=16 layers=3", [0.00, 0.00, 0.00, 0.00, 0.00, 0.00, 0.00, 2.06, 1.47]),
 ];
 
@@ -222,7 +229,9 @@ fn errors_are_what_they_were_measured_to_be() {
             }
             let mut stage = setup.stage(&device, &format!("technique=ray-march {words}"));
             let image = setup.visibility(&mut stage);
-            let (truth, noise) = truth.get_or_insert_with(|| setup.traced(&stage, 512));
+            let (truth, noise) = truth.get_or_insert_with(|| {
+                setup.traced(&stage, if *name == "slats" { 4096 } else { 512 })
+            });
             let s = summary(truth, &image);
             let line = format!(
                 "{name}, {words}: mean {:.2} %, bias {:.2}, p99 {:.3}, on lit pixels {:.3} % (truth's noise {:.2} points)",

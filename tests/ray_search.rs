@@ -93,8 +93,7 @@ fn cases(side: u32) -> impl Strategy<Value = Case> {
 }
 
 struct Machine {
-    columns: HostBuffer,
-    bounds: HostBuffer,
+    windows: HostBuffer,
     rays: HostBuffer,
     hits: HostBuffer,
     program: ComputeProgram,
@@ -108,20 +107,23 @@ impl Machine {
         let buffer = |name, words: usize| {
             HostBuffer::with_data(device, name, &vec![0u32; words], storage).unwrap()
         };
-        let values = [Kind::NBuffer, Kind::Thirds, Kind::Mip]
-            .map(|kind| (1..=MOST).map(|map| Levels { map, kind }.values()).max().unwrap());
-        let columns = buffer("columns", 4 * (MOST * MOST) as usize);
-        let bounds = buffer("bounds", 4 * values.into_iter().max().unwrap() as usize);
+        let most = [Kind::NBuffer, Kind::Thirds, Kind::Mip]
+            .map(|kind| Levels { map: MOST, kind }.texels() as usize);
+        let windows = buffer("windows", 4 * most.into_iter().max().unwrap());
         let rays = buffer("rays", 12 * RAYS);
         let hits = buffer("hits", RAYS);
         let source = "#version 450\n#extension GL_GOOGLE_include_directive : require\n\
             layout(local_size_x = 64) in;\n\
-            layout(set = 0, binding = 0, std430) readonly buffer Columns { vec4 columns[]; };\n\
-            layout(set = 0, binding = 1, std430) readonly buffer Bounds { vec4 bounds[]; };\n\
-            layout(set = 0, binding = 2, std430) readonly buffer Rays { vec4 rays[]; };\n\
-            layout(set = 0, binding = 3, std430) buffer Hits { uint hits[]; };\n\
+            #include \"nbuffer/levels.glsl\"\n\
+            layout(set = 0, binding = 0, std430) readonly buffer Windows { vec4 windows[]; };\n\
+            layout(set = 0, binding = 1, std430) readonly buffer Rays { vec4 rays[]; };\n\
+            layout(set = 0, binding = 2, std430) buffer Hits { uint hits[]; };\n\
             layout(push_constant) uniform Push { int map; int kind; int linear; } push;\n\
             bool seen(vec2 t, float w) { return false; }\n\
+            vec4 held_at(Levels l, int level, ivec2 node) {\n\
+                ivec3 p = place_of(l, level, node);\n\
+                return windows[(p.z * l.map + p.y) * l.map + p.x];\n\
+            }\n\
             #include \"ray_march/search.glsl\"\n\
             void main() {\n\
                 uint i = gl_GlobalInvocationID.x;\n\
@@ -132,14 +134,14 @@ impl Machine {
                 Ray ray = over_map(p, Ray(c.xy, c.z, c.w), push.map);\n\
                 float s;\n\
                 bool hit = ray.start <= ray.end && (push.linear != 0\n\
-                    ? search_linear(p, ray, push.map, s)\n\
+                    ? search_linear(p, ray, Levels(push.map, push.kind), s)\n\
                     : search_hierarchical(p, ray, Levels(push.map, push.kind), false, s));\n\
                 hits[i] = uint(hit);\n\
             }\n";
         let spirv = try_compile("search.comp", source).unwrap_or_else(|log| panic!("{log}"));
-        let buffers = [&columns, &bounds, &rays, &hits];
+        let buffers = [&windows, &rays, &hits];
         let program = ComputeProgram::new(device, &spirv, 12, &buffers).unwrap();
-        Self { columns, bounds, rays, hits, program }
+        Self { windows, rays, hits, program }
     }
 
     fn hits(
@@ -153,12 +155,9 @@ impl Machine {
         let largest = |parts: &[[f32; 4]]| {
             std::array::from_fn(|i| parts.iter().map(|p| p[i]).fold(f32::NEG_INFINITY, f32::max))
         };
-        let made = Values::new(levels, map, largest);
-        let bounds: Vec<[f32; 4]> = made.of_level[1..].concat();
-        self.columns.write(columns).unwrap();
-        if !bounds.is_empty() {
-            self.bounds.write(&bounds).unwrap();
-        }
+        let mut made = Values::new(levels, map, largest);
+        made.of_level[0] = columns.to_vec();
+        self.windows.write(&made.as_array([0.0; 4])).unwrap();
         self.rays.write(&rays.iter().flat_map(|r| r.words).collect::<Vec<f32>>()).unwrap();
         let push = [levels.map as i32, levels.kind.code(), i32::from(linear)];
         self.program.run(bytemuck::cast_slice(&push), [(RAYS / 64) as u32, 1, 1]).unwrap();

@@ -4,7 +4,7 @@ use antumbra::nbuffer::twin::Values;
 use antumbra::nbuffer::{Kind, Levels};
 
 /// Rows that make the levels.
-pub const BUILD: [&str; 2] = ["first_level", "next_level"];
+pub const BUILD: [&str; 1] = ["level"];
 
 /// Milliseconds of passes by their names' ends.
 pub fn ms<'a>(passes: impl IntoIterator<Item = (&'a str, f64)>, names: &[&str]) -> f64 {
@@ -12,9 +12,9 @@ pub fn ms<'a>(passes: impl IntoIterator<Item = (&'a str, f64)>, names: &[&str]) 
     passes.into_iter().filter(|(name, _)| of(name)).map(|(_, ms)| ms).sum()
 }
 
-/// Memory of the levels above the columns, four floats a value.
-pub fn megabytes(levels: Levels) -> f64 {
-    16.0 * f64::from(levels.values()) / 1e6
+/// Bytes of the levels, the columns among them, four floats a texel.
+pub fn bytes(levels: Levels) -> u64 {
+    16 * levels.texels()
 }
 
 /// How many texels the windows hold that answer for a square window, for each texel that was asked for:

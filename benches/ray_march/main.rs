@@ -17,7 +17,7 @@ use antumbra::scene::{Role, Scene, from_gltf, generate};
 use antumbra::truth::{ErrorSummary, Receiver, Sampling, Tracer};
 use antumbra::{FramePlan, RectangleLight, Settings, Technique};
 use glam::DVec3;
-use levels::{BUILD, megabytes, tightness};
+use levels::{BUILD, bytes, tightness};
 use std::path::Path;
 use std::time::Instant;
 use table::{Table, median};
@@ -164,7 +164,7 @@ fn kinds(device: &HeadlessDevice, options: &Options) -> Table {
                     name.into(),
                     n.to_string(),
                     (*kind_name).into(),
-                    format!("{:.1}", megabytes(Levels { map: n, kind: *kind })),
+                    format!("{:.1}", bytes(Levels { map: n, kind: *kind }) as f64 / 1e6),
                     format!("{build:.1}"),
                     format!("{classify:.1}"),
                     format!("{trace:.1}"),
@@ -245,7 +245,7 @@ fn bandwidth(device: &HeadlessDevice, options: &Options) -> Table {
     let scene = scene("bunny", 0.4);
     for &n in options.sides {
         let mut ready = Ready::new(device, &scene, &format!("map={n}"));
-        let bytes = 16 * Levels { map: n, kind: Kind::NBuffer }.values() as usize;
+        let bytes = bytes(Levels { map: n, kind: Kind::NBuffer }) as usize;
         let source = vec![1u8; bytes];
         let mut target = vec![0u8; bytes];
         let (mut builds, mut copies) = (Vec::new(), Vec::new());

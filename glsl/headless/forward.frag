@@ -1,5 +1,6 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
 
 // Ray marching without a G-buffer: every fragment that passes the depth test when it is drawn sends its
 // rays, whatever is drawn over it later (Curtis 2009 section 4.2, "deferred shading: no"). The functions are

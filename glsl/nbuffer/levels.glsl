@@ -6,6 +6,15 @@
 //     MIP       2^k x 2^k              2^k-th texel
 //
 // Level 0 is the map itself. Windows lie within the map; only MIP's last ones may stick out behind its end.
+//
+// In memory a level is a layer of an image array as large as the map, but MIP's from level 1 on share one:
+//
+//     layer 0         layer 1
+//     ┌───────────┐   ┌─────┬──┬──┐
+//     │           │   │     │2 │  │
+//     │  the map  │   │  1  ├─┬┘  │
+//     │           │   │     │3│   │
+//     └───────────┘   └─────┴─┴───┘
 
 #ifndef NBUFFER_LEVELS_GLSL
 #define NBUFFER_LEVELS_GLSL
@@ -56,39 +65,22 @@ int top_of(Levels l)
     return l.kind == THIRDS ? log_three(l.map) : l.kind == MIP ? log_above(l.map) : findMSB(l.map);
 }
 
-// Windows a row in memory: MIP's rows are as long as for the next power of two, whose sum is a formula.
-int row_of(Levels l, int level)
-{
-    return l.kind == MIP && level > 0 ? (1 << log_above(l.map)) >> level : side_of(l, level);
-}
-
-// Where a level begins in memory, from level 1 on: the squares of the rows of those before it.
-int start_of(Levels l, int level)
-{
-    int m = l.map + 1;
-    if (l.kind == MIP) {
-        int whole = 1 << log_above(l.map);
-        int last = whole >> (level - 1);
-        return (whole * whole - last * last) / 3;
-    }
-    if (l.kind == THIRDS) {
-        int p = power_of_three(level);
-        return (level - 1) * m * m - m * (p - 3) + (p * p - 9) / 8;
-    }
-    int p = 1 << level;
-    return (level - 1) * m * m - 2 * m * (p - 2) + (p * p - 4) / 3;
-}
-
 // The node of a level whose window begins at a texel, or holds it, as near to it as there is one.
 ivec2 node_at(Levels l, int level, ivec2 texel)
 {
     return clamp(l.kind == MIP ? texel >> level : texel, ivec2(0), ivec2(side_of(l, level) - 1));
 }
 
-// A node's place in memory.
-int index_of(Levels l, int level, ivec2 node)
+// Where a node is kept: texel and layer.
+ivec3 place_of(Levels l, int level, ivec2 node)
 {
-    return (level == 0 ? 0 : start_of(l, level)) + node.y * row_of(l, level) + node.x;
+    if (l.kind != MIP || level == 0) {
+        return ivec3(node, level);
+    }
+    // Below each other from level 2 on, with the room that the next power of two would need: it is no
+    // more than the map has, as that is less than twice as large as the map.
+    int next = 1 << log_above(l.map);
+    return ivec3(node + (level == 1 ? ivec2(0) : ivec2(side_of(l, 1), next / 2 - (next >> level - 1))), 1);
 }
 
 #endif

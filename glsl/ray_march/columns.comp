@@ -12,7 +12,7 @@ layout(set = 0, binding = 0) uniform texture2D front_depth;
 layout(set = 0, binding = 1) uniform texture2D back_depth;
 layout(set = 0, binding = 2) uniform texture2D near_back_depth;
 layout(set = 0, binding = 3) uniform texture2D far_front_depth;
-layout(set = 0, binding = 4, std430) buffer Columns { vec4 columns[]; };
+layout(set = 0, binding = 4, rgba32f) writeonly uniform image2DArray windows;
 
 layout(push_constant) uniform Push {
     int map;      // the map's side in texels
@@ -71,5 +71,5 @@ void main()
             column.w = min(column.w, column.z - drop_of(1, p, column.z));
         }
     }
-    columns[p.y * push.map + p.x] = column;
+    imageStore(windows, ivec3(p, 0), column);
 }

@@ -12,16 +12,21 @@
 layout(set = 0, binding = 0) uniform texture2D gbuffer_depth;
 layout(set = 0, binding = 1) uniform texture2D gbuffer_mask;
 #endif
-layout(set = 0, binding = 2, std430) readonly buffer Columns { vec4 columns[]; };
-layout(set = 0, binding = 3, std430) readonly buffer Bounds { vec4 bounds[]; };
+layout(set = 0, binding = 2) uniform texture2DArray windows;
 #ifdef FORWARD
 #include "common/receiver.glsl"
 #else
-layout(set = 0, binding = 4, FRACTION_FORMAT) writeonly uniform image2D visibility;
+layout(set = 0, binding = 3, FRACTION_FORMAT) writeonly uniform image2D visibility;
 
 #include "common/gbuffer.glsl"
 #endif
 #include "common/light.glsl"
+#include "nbuffer/levels.glsl"
+
+vec4 held_at(Levels l, int level, ivec2 node)
+{
+    return texelFetch(windows, place_of(l, level, node), 0);
+}
 
 // Nothing is known to be empty but where the shader says so.
 #ifndef SEEN

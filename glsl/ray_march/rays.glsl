@@ -6,7 +6,7 @@
 #include "ray_march/sampling.glsl"
 
 #ifdef TEXTURED
-layout(set = 0, binding = 8) uniform texture2D light_texture;
+layout(set = 0, binding = 7) uniform texture2D light_texture;
 
 // What the light sends out at a point of [0, 1]^2. Light space has y against the light's second half-axis,
 // so that the texture's first row is where that points.
@@ -55,7 +55,7 @@ Found found_by_rays(ivec2 p, Receiver r, float start, float end)
         bool hit = false;
         if (ray.start <= ray.end) {
             float height;
-            hit = is_linear() ? search_linear(place, ray, push.map, height)
+            hit = is_linear() ? search_linear(place, ray, levels(), height)
                               : search_hierarchical(place, ray, levels(), looks_from_eye(), height);
             found.hidden += int(hit);
             found.heights += hit ? height : 0.0;

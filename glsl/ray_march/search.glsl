@@ -4,7 +4,8 @@
 // s = 0, over `t + s g` of the map at height `w + s`. It enters and leaves texels in that order, so that
 // the heights over one texel are an interval.
 //
-// The including shader declares `vec4 columns[]` and `vec4 bounds[]`, and what the eye sees, if anything:
+// The including shader says what the map's windows hold, and what the eye sees, if anything:
+//     vec4 held_at(Levels l, int level, ivec2 node)   bounds; at level 0 the texel's column
 //     bool seen(vec2 t, float w)   whether a point of (texels, height) is known to be empty
 
 #ifndef RAY_MARCH_SEARCH_GLSL
@@ -20,9 +21,10 @@ vec4 combine(vec4 a, vec4 b)
     return max(a, b);
 }
 
-vec4 value_at(int level, int index)
+vec4 value_at(Levels l, int level, ivec2 node)
 {
-    return level == 0 ? bounds_of(columns[index]) : bounds[index];
+    vec4 held = held_at(l, level, node);
+    return level == 0 ? bounds_of(held) : held;
 }
 
 #include "nbuffer/values.glsl"
@@ -56,6 +58,9 @@ const int STEPS = 200;
 
 // Heights are compared with what they were made of by one addition; this is more than its rounding.
 const float SLACK = 1.0e-6;
+
+// What rays are cut to reaches further than what is compared, so that no cut changes what a ray meets.
+const float CUT_SLACK = 4.0 * SLACK;
 
 bool is_clear(Place p, vec2 centre, float top)
 {
@@ -95,7 +100,7 @@ bool meets(Place p, Ray ray, ivec2 texel, vec4 column, float s0, float s1)
 // The heights above a receiver between which bounds have matter.
 vec2 matter_above(Place p, vec4 b)
 {
-    return vec2(-b.y * (1.0 - SLACK), b.x * (1.0 + SLACK)) - p.w;
+    return vec2(-b.y * (1.0 - CUT_SLACK), b.x * (1.0 + CUT_SLACK)) - p.w;
 }
 
 vec2 inverse_of(vec2 g)
@@ -115,31 +120,59 @@ Ray over_map(Place p, Ray ray, int map)
     return Ray(ray.g, max(ray.start, max(from.x, from.y)), min(ray.end, min(to.x, to.y)));
 }
 
+// Where rays cross the lines between texels: at (line - t) * inverse, for every x and y.
+struct Lines {
+    vec2 t;
+    vec2 g;
+    vec2 inverse;
+    bvec2 up; // whether x and y grow along the ray
+};
+
+Lines lines_of(Place p, Ray ray)
+{
+    return Lines(p.t, ray.g, inverse_of(ray.g), greaterThanEqual(ray.g, vec2(0.0)));
+}
+
+// Where a ray crosses the lines at which it leaves a square window.
+vec2 leaves_at(Lines l, vec2 lo, float window)
+{
+    return (mix(lo, lo + window, l.up) - l.t) * l.inverse;
+}
+
+// The texel that a ray is over at s: beyond each line that it has crossed by then, and no other. Rounding
+// alone might say otherwise, and which texels a ray visits would depend on the windows that it came through.
+ivec2 texel_under(Lines l, float s)
+{
+    vec2 at = floor(l.t + s * l.g);
+    vec2 ahead = mix(vec2(-1.0), vec2(1.0), l.up);
+    vec2 enters = (mix(at + 1.0, at, l.up) - l.t) * l.inverse;
+    vec2 leaves = leaves_at(l, at, 1.0);
+    at += mix(vec2(0.0), ahead, greaterThanEqual(vec2(s), leaves));
+    at -= mix(vec2(0.0), ahead, lessThan(vec2(s), enters));
+    return ivec2(at);
+}
+
 // Algorithm 2 of Curtis 2009: windows that cannot stop the ray are passed at once, and larger ones tried;
 // in others smaller ones. Two departures: the window lies ahead of the ray instead of around it, and one
 // whose columns have a height in common that the ray passes stops it, whatever is in its texels.
 // `s` is where the ray is stopped.
 bool search_hierarchical(Place p, Ray ray, Levels l, bool eye, out float s)
 {
-    vec2 inverse = inverse_of(ray.g);
-    bvec2 up = greaterThanEqual(ray.g, vec2(0.0));
-    // Texels are entered by this much, which is more than the rounding of where a ray is.
-    vec2 nudge = mix(vec2(-1.0), vec2(1.0), up) * (float(l.map) / 1048576.0);
+    Lines lines = lines_of(p, ray);
     s = ray.start;
     vec2 extent = abs((ray.end - ray.start) * ray.g);
     int top = top_of(l);
     int level = clamp(l.kind == THIRDS ? log_three(int(max(extent.x, extent.y)) + 1)
                                        : log_above(int(max(extent.x, extent.y)) + 1), 0, top);
     for (int turn = 0; turn < TURNS; ++turn) {
-        ivec2 texel = clamp(ivec2(floor(p.t + s * ray.g + nudge)), ivec2(0), ivec2(l.map - 1));
+        ivec2 texel = clamp(texel_under(lines, s), ivec2(0), ivec2(l.map - 1));
         int window = window_of(l, level);
-        ivec2 node = node_at(l, level, l.kind == MIP ? texel : mix(texel - window + 1, texel, up));
+        ivec2 node = node_at(l, level, l.kind == MIP ? texel : mix(texel - window + 1, texel, lines.up));
         vec2 lo = vec2(l.kind == MIP ? node << level : node);
-        vec2 leaves = (mix(lo, lo + float(window), up) - p.t) * inverse;
-        float next = min(max(min(leaves.x, leaves.y), s * (1.0 + 1.0e-6)), ray.end);
-        int index = index_of(l, level, node);
-        vec4 column = level == 0 ? columns[index] : vec4(0.0);
-        vec4 b = level == 0 ? bounds_of(column) : bounds[index];
+        vec2 leaves = leaves_at(lines, lo, float(window));
+        float next = min(min(leaves.x, leaves.y), ray.end);
+        vec4 held = held_at(l, level, node);
+        vec4 b = level == 0 ? bounds_of(held) : held;
         vec2 matter = matter_above(p, b);
         bool passes = next < matter.x || s > matter.y;
         if (!passes && level > 0) {
@@ -150,7 +183,7 @@ bool search_hierarchical(Place p, Ray ray, Levels l, bool eye, out float s)
             s = max(s, matter.x);
             --level;
         } else {
-            if (!passes && meets(p, ray, node, column, s, next)) {
+            if (!passes && meets(p, ray, node, held, s, next)) {
                 return true;
             }
             if (next >= ray.end) {
@@ -164,20 +197,20 @@ bool search_hierarchical(Place p, Ray ray, Levels l, bool eye, out float s)
 }
 
 // The column over which a ray is.
-vec4 column_under(Place p, Ray ray, float s, int map, out ivec2 texel)
+vec4 column_under(Place p, Ray ray, float s, Levels l, out ivec2 texel)
 {
-    texel = clamp(ivec2(floor(p.t + s * ray.g)), ivec2(0), ivec2(map - 1));
-    return columns[texel.y * map + texel.x];
+    texel = clamp(ivec2(floor(p.t + s * ray.g)), ivec2(0), ivec2(l.map - 1));
+    return held_at(l, 0, texel);
 }
 
-bool meets_either(Place p, Ray ray, float s0, float s1, int map)
+bool meets_either(Place p, Ray ray, float s0, float s1, Levels l)
 {
     ivec2 texel;
-    vec4 column = column_under(p, ray, s0, map, texel);
+    vec4 column = column_under(p, ray, s0, l, texel);
     if (meets(p, ray, texel, column, s0, s1)) {
         return true;
     }
-    column = column_under(p, ray, s1, map, texel);
+    column = column_under(p, ray, s1, l, texel);
     return meets(p, ray, texel, column, s0, s1);
 }
 
@@ -185,7 +218,7 @@ bool meets_either(Place p, Ray ray, float s0, float s1, int map)
 // longer than STEPS texels, and is looked at from both its ends over all the heights between them, so that
 // nothing between two steps is lost, however thin; halving the step then says whether what was found is
 // really where the ray is.
-bool search_linear(Place p, Ray ray, int map, out float s)
+bool search_linear(Place p, Ray ray, Levels l, out float s)
 {
     s = ray.start;
     vec2 extent = abs((ray.end - ray.start) * ray.g);
@@ -194,14 +227,14 @@ bool search_linear(Place p, Ray ray, int map, out float s)
     for (int i = 0; i < steps; ++i) {
         float s0 = ray.start + float(i) * width;
         float s1 = i + 1 < steps ? s0 + width : ray.end;
-        bool met = meets_either(p, ray, s0, s1, map);
+        bool met = meets_either(p, ray, s0, s1, l);
         // Three halvings are an eighth of a texel.
         for (int halving = 0; met && halving < 3; ++halving) {
             float middle = 0.5 * (s0 + s1);
-            if (meets_either(p, ray, s0, middle, map)) {
+            if (meets_either(p, ray, s0, middle, l)) {
                 s1 = middle;
             } else {
-                met = meets_either(p, ray, middle, s1, map);
+                met = meets_either(p, ray, middle, s1, l);
                 s0 = middle;
             }
         }

@@ -2,7 +2,7 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 5, std430) readonly buffer Pixels {
+layout(set = 0, binding = 4, std430) readonly buffer Pixels {
     uint count;
     uint none[3];
     mat4 ndc_from_light;
@@ -16,8 +16,8 @@ bool seen(vec2 t, float w);
 #include "ray_march/rays.glsl"
 #include "ray_march/filter.glsl"
 
-#define NOISY_BINDING 6
-#define SURFACE_BINDING 7
+#define NOISY_BINDING 5
+#define SURFACE_BINDING 6
 #include "ray_march/noisy.glsl"
 
 // The eye layer (Curtis 2009 section 3.4): what the eye sees through is empty.

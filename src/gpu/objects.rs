@@ -143,7 +143,7 @@ impl Owned {
         inspect: bool,
     ) -> Result<(), Error> {
         let resource = graph.resource(id);
-        let Shape::Image { format, width, height } = resource.shape else { return Ok(()) };
+        let Shape::Image { format, width, height, layers } = resource.shape else { return Ok(()) };
         let mut usage = graph
             .uses_of(id)
             .fold(vk::ImageUsageFlags::empty(), |usage, access| usage | access.image_usage());
@@ -159,7 +159,7 @@ impl Owned {
             .format(format)
             .extent(vk::Extent3D { width, height, depth: 1 })
             .mip_levels(1)
-            .array_layers(1)
+            .array_layers(layers.unwrap_or(1))
             .samples(vk::SampleCountFlags::TYPE_1)
             .tiling(vk::ImageTiling::OPTIMAL)
             .usage(usage);
@@ -184,10 +184,13 @@ impl Owned {
         };
         let create = vk::ImageViewCreateInfo::default()
             .image(image)
-            .view_type(vk::ImageViewType::TYPE_2D)
+            .view_type(match layers {
+                Some(_) => vk::ImageViewType::TYPE_2D_ARRAY,
+                None => vk::ImageViewType::TYPE_2D,
+            })
             .format(format)
             .subresource_range(whole(aspect));
-        // SAFETY: the image is bound, and the view covers the one level and layer it has.
+        // SAFETY: the image is bound, and the view covers all that it has.
         let view = unsafe { host.device.create_image_view(&create, None) }
             .map_err(Error::vulkan(doing()))?;
         self.object = Object::Image { image, view };
@@ -245,9 +248,12 @@ impl Owned {
     }
 }
 
-/// The one level and layer that every image here has.
+/// The one level that every image here has, and all of its layers.
 pub(crate) fn whole(aspect: vk::ImageAspectFlags) -> vk::ImageSubresourceRange {
-    vk::ImageSubresourceRange::default().aspect_mask(aspect).level_count(1).layer_count(1)
+    vk::ImageSubresourceRange::default()
+        .aspect_mask(aspect)
+        .level_count(1)
+        .layer_count(vk::REMAINING_ARRAY_LAYERS)
 }
 
 /// Names an object `antumbra.<name>` for debuggers and the validation layer.

@@ -54,7 +54,21 @@ impl Graph {
         [width, height]: [u32; 2],
         owner: Owner,
     ) -> ResourceId {
-        self.add(Resource { name, shape: Shape::Image { format, width, height }, owner })
+        let shape = Shape::Image { format, width, height, layers: None };
+        self.add(Resource { name, shape, owner })
+    }
+
+    /// Declares a transient array of images of one size; shaders see all of its layers, and barriers
+    /// are for all of them at once.
+    pub fn image_array(
+        &mut self,
+        name: &'static str,
+        format: vk::Format,
+        [width, height]: [u32; 2],
+        layers: u32,
+    ) -> ResourceId {
+        let shape = Shape::Image { format, width, height, layers: Some(layers) };
+        self.add(Resource { name, shape, owner: Owner::Transient })
     }
 
     /// Declares a transient buffer.

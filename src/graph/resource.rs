@@ -36,7 +36,7 @@ impl Owner {
 /// The shape of a resource's memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
-    /// A 2D image with one mip level and one layer.
+    /// A 2D image with one mip level.
     Image {
         /// The texel format.
         format: vk::Format,
@@ -44,6 +44,8 @@ pub enum Shape {
         width: u32,
         /// Height in texels.
         height: u32,
+        /// How many layers shaders see as an array of images; none where they see one image.
+        layers: Option<u32>,
     },
     /// A buffer.
     Buffer {

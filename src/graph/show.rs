@@ -76,7 +76,10 @@ impl Plan {
         for (r, resource) in self.graph.resources().iter().enumerate().filter(|(r, _)| touched[*r])
         {
             let size = match resource.shape {
-                Shape::Image { format, width, height } => format!("{width}×{height} {format:?}"),
+                Shape::Image { format, width, height, layers } => {
+                    let layers = layers.map_or(String::new(), |n| format!("×{n}"));
+                    format!("{width}×{height}{layers} {format:?}")
+                }
                 Shape::Buffer { bytes } => format!("{bytes} B"),
             };
             let style = if resource.owner == Owner::Transient { "solid" } else { "bold" };

@@ -18,7 +18,11 @@
 //! section 3.5 centres them so that they hold more near the borders. Here a window lies in the map whole:
 //! level k has n + 1 − 2^k of them a side, for a map of any n, and one that is asked for across the border
 //! is moved inside. It holds then all of the map that it would have held, at no level less than a centred
-//! one, and the levels are smaller: 0.6 of what full ones need at 256 texels a side.
+//! one, and takes less time to make: 0.6 of what full levels have at 256 texels a side.
+//!
+//! **Memory.** The map and its levels are the layers of one image array, all of them as large as the map;
+//! mip levels lie side by side in a second one. In storage buffers levels could be as small as they are, but
+//! a processor that stands in for a GPU reads four channels from an image five times faster.
 //!
 //! `glsl/nbuffer/values.glsl` leaves open what a value is. The least of a channel is the largest of its
 //! negative, so that one `max` of a `vec4` makes all four of a technique's bounds.
@@ -87,23 +91,36 @@ impl Levels {
         }
     }
 
-    /// Windows a row in memory.
-    pub fn row(&self, level: u32) -> u32 {
+    /// Layers of an image array as large as the map that hold it and all its levels.
+    pub fn layers(&self) -> u32 {
         match self.kind {
-            Kind::Mip if level > 0 => self.map.next_power_of_two() >> level,
-            _ => self.side(level),
+            Kind::NBuffer | Kind::Thirds => self.top() + 1,
+            Kind::Mip => self.top().min(1) + 1,
         }
     }
 
-    /// Where a level begins, in values, from level 1 on; that of the level behind the last is how many
-    /// values there are.
-    pub fn start(&self, level: u32) -> u32 {
-        (1..level).map(|k| self.row(k).pow(2)).sum()
+    /// Where in such an array a node is kept: texel and layer.
+    pub fn place(&self, level: u32, [x, y]: [u32; 2]) -> [u32; 3] {
+        match self.kind {
+            Kind::NBuffer | Kind::Thirds => [x, y, level],
+            Kind::Mip if level < 2 => [x, y, level],
+            Kind::Mip => {
+                let above = (2..level).map(|k| self.map.next_power_of_two() >> k).sum::<u32>();
+                [x + self.side(1), y + above, 1]
+            }
+        }
     }
 
-    /// Values of all levels from 1 on.
-    pub fn values(&self) -> u32 {
-        self.start(self.top() + 1)
+    /// The same as an index of a list of the array's texels, layer by layer, each row by row.
+    pub fn index(&self, level: u32, node: [u32; 2]) -> usize {
+        let [x, y, layer] = self.place(level, node).map(|i| i as usize);
+        let side = self.map as usize;
+        (layer * side + y) * side + x
+    }
+
+    /// Texels of that array, the map's own among them.
+    pub fn texels(&self) -> u64 {
+        u64::from(self.map).pow(2) * u64::from(self.layers())
     }
 
     /// The level of the windows that cover a window of `side` texels.

@@ -7,11 +7,11 @@ use super::{Kind, Levels};
 pub struct Values<V> {
     /// How they lie.
     pub levels: Levels,
-    /// Level 0, row by row, and then each level's, with rows as long as in memory.
+    /// Level 0, row by row, and then each level's.
     pub of_level: Vec<Vec<V>>,
 }
 
-impl<V: Copy + Default> Values<V> {
+impl<V: Copy> Values<V> {
     /// Builds every level of a square map, row by row: `combine` makes one value of those of a window's
     /// parts (fewer than all where the window sticks out of the map).
     pub fn new(levels: Levels, map: Vec<V>, combine: impl Fn(&[V]) -> V) -> Self {
@@ -22,23 +22,35 @@ impl<V: Copy + Default> Values<V> {
                 Kind::Mip => (1, 2),
                 Kind::NBuffer | Kind::Thirds => (levels.window(level - 1), 1),
             };
-            let (end, finer_row) = (levels.side(level - 1), levels.row(level - 1));
+            let end = levels.side(level - 1);
             let finer = &of_level[level as usize - 1];
-            let row = levels.row(level);
-            let mut values = vec![V::default(); (row * row) as usize];
-            for y in 0..levels.side(level) {
-                for x in 0..levels.side(level) {
+            let side = levels.side(level);
+            let mut values = Vec::with_capacity((side * side) as usize);
+            for y in 0..side {
+                for x in 0..side {
                     let parts: Vec<V> = (0..fan * fan)
                         .map(|i| [times * x + apart * (i % fan), times * y + apart * (i / fan)])
                         .filter(|at| at.iter().all(|i| *i < end))
-                        .map(|[x, y]| finer[(y * finer_row + x) as usize])
+                        .map(|[x, y]| finer[(y * end + x) as usize])
                         .collect();
-                    values[(y * row + x) as usize] = combine(&parts);
+                    values.push(combine(&parts));
                 }
             }
             of_level.push(values);
         }
         Self { levels, of_level }
+    }
+
+    /// The texels of the image array that holds them, layer by layer; `none` where there is no node.
+    pub fn as_array(&self, none: V) -> Vec<V> {
+        let mut texels = vec![none; self.levels.texels() as usize];
+        for (level, values) in (0u32..).zip(&self.of_level) {
+            let side = self.levels.side(level);
+            for (i, value) in (0u32..).zip(values) {
+                texels[self.levels.index(level, [i % side, i / side])] = *value;
+            }
+        }
+        texels
     }
 
     /// The values of the nodes that cover a square window, which is moved into the map first.
@@ -57,7 +69,7 @@ impl<V: Copy + Default> Values<V> {
                 }
             }
         };
-        let (columns, row) = (along(first[0]), self.levels.row(level));
+        let (columns, row) = (along(first[0]), self.levels.side(level));
         let nodes = along(first[1]).into_iter().flat_map(|y| columns.iter().map(move |x| (*x, y)));
         nodes.map(|(x, y)| self.of_level[level as usize][(y * row + x) as usize]).collect()
     }

@@ -28,7 +28,9 @@
 //! columns; a ray that stays above or below passes at once, otherwise it looks at smaller windows. We
 //! also keep the lowest first top and the highest first bottom: between them all columns are solid, and a
 //! ray that passes through there is stopped without a look at any. The same stops all rays of a pixel, which
-//! is how umbra is known. `search=linear` visits the ray a texel at a time and halves where it met something
+//! is how umbra is known. Which texel a ray is over follows from the lines that it has crossed, whatever
+//! windows it came through, so that every kind of windows, with classification or without, gives the same
+//! bits. `search=linear` visits the ray a texel at a time and halves where it met something
 //! (section 3.3). Both ask one hit test, [`twin::meets`] being the same by a walk over every texel.
 //! A search takes no more than 250 turns (the linear one 200 steps, longer than a texel on longer rays); a
 //! ray that is not done by then passes.

@@ -107,7 +107,7 @@ pub fn declare(
     settings: &Settings,
     inputs: &Inputs,
 ) {
-    let (columns, bounds) = declare_levels(graph, layers, settings, inputs);
+    let windows = declare_levels(graph, layers, settings, inputs);
     let gbuffer = inputs.gbuffer;
     let arguments = graph.buffer("ray_march.arguments", 16);
     let pixels = graph.buffer("ray_march.pixels", list_bytes(gbuffer.extent));
@@ -134,30 +134,29 @@ pub fn declare(
     let common = [
         Use::bound(0, gbuffer.depth, Access::SampledCompute),
         Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
-        Use::bound(2, columns, Access::BufferReadCompute),
-        Use::bound(3, bounds, Access::BufferReadCompute),
+        Use::bound(2, windows, Access::SampledCompute),
     ];
     let mut uses = common.to_vec();
     uses.extend([
-        Use::bound(4, visibility, Access::ImageWrite),
-        Use::bound(5, arguments, Access::BufferUpdate),
-        Use::bound(6, pixels, Access::BufferUpdate),
-        Use::bound(7, halfway, Access::ImageWrite),
-        Use::bound(8, noisy, Access::ImageWrite),
+        Use::bound(3, visibility, Access::ImageWrite),
+        Use::bound(4, arguments, Access::BufferUpdate),
+        Use::bound(5, pixels, Access::BufferUpdate),
+        Use::bound(6, halfway, Access::ImageWrite),
+        Use::bound(7, noisy, Access::ImageWrite),
     ]);
-    uses.extend(surfaces.map(|s| Use::bound(9, s, Access::ImageWrite)));
+    uses.extend(surfaces.map(|s| Use::bound(8, s, Access::ImageWrite)));
     let name = "ray_march.classify";
     let groups = grid(gbuffer.extent);
     graph.push(Pass::compute(name, shaders.classify, groups, pushed, uses, inputs.need));
 
     let mut uses = common.to_vec();
     uses.extend([
-        Use::bound(4, visibility, Access::ImageUpdate),
-        Use::bound(5, pixels, Access::BufferReadCompute),
-        Use::bound(6, noisy, Access::ImageUpdate),
+        Use::bound(3, visibility, Access::ImageUpdate),
+        Use::bound(4, pixels, Access::BufferReadCompute),
+        Use::bound(5, noisy, Access::ImageUpdate),
     ]);
-    uses.extend(surfaces.map(|s| Use::bound(7, s, Access::ImageUpdate)));
-    uses.extend(inputs.light_texture.map(|t| Use::bound(8, t, Access::SampledCompute)));
+    uses.extend(surfaces.map(|s| Use::bound(6, s, Access::ImageUpdate)));
+    uses.extend(inputs.light_texture.map(|t| Use::bound(7, t, Access::SampledCompute)));
     listed(graph, "ray_march.trace", shaders.trace, arguments, pushed, uses, inputs.need);
 
     if settings.filter {
@@ -204,12 +203,10 @@ fn declare_levels(
     layers: &DepthLayers,
     settings: &Settings,
     inputs: &Inputs,
-) -> (ResourceId, ResourceId) {
+) -> ResourceId {
     let map = inputs.view.side;
     let levels = Levels { map, kind: settings.levels };
-    let value = size_of::<[f32; 4]>() as u64;
-    let columns = graph.buffer("ray_march.columns", u64::from(map) * u64::from(map) * value);
-    let bounds = graph.buffer("ray_march.bounds", u64::from(levels.values()) * value);
+    let windows = graph.image_array("ray_march.windows", COLOR_FORMAT, [map; 2], levels.layers());
     let back = layers.back.unwrap_or(layers.front);
     let [near_back, far_front] = layers.inner.unwrap_or([layers.front; 2]);
     let four = layers.inner.is_some();
@@ -227,33 +224,26 @@ fn declare_levels(
             Use::bound(1, back, Access::SampledCompute),
             Use::bound(2, near_back, Access::SampledCompute),
             Use::bound(3, far_front, Access::SampledCompute),
-            Use::bound(4, columns, Access::BufferWriteCompute),
+            Use::bound(4, windows, Access::ImageWrite),
         ],
         inputs.need,
     ));
     let kind = settings.levels.code();
-    graph.push(Pass::compute(
-        "ray_march.first_level",
-        shaders::FIRST_LEVEL,
-        grid([levels.side(1); 2]),
-        Push::new(&push::FirstLevel { map: map as i32, kind }),
-        vec![
-            Use::bound(0, columns, Access::BufferReadCompute),
-            Use::bound(1, bounds, Access::BufferWriteCompute),
-        ],
-        inputs.need,
-    ));
-    for level in 2..=levels.top() {
+    let shader = match settings.levels {
+        nbuffer::Kind::NBuffer => shaders::LEVEL,
+        _ => shaders::LEVEL_ANY,
+    };
+    for level in 1..=levels.top() {
         graph.push(Pass::compute(
-            "ray_march.next_level",
-            shaders::BOUNDS_LEVEL,
+            "ray_march.level",
+            shader,
             grid([levels.side(level); 2]),
-            Push::new(&push::NextLevel { map: map as i32, kind, level: level as i32 }),
-            vec![Use::bound(0, bounds, Access::BufferUpdate)],
+            Push::new(&push::Level { map: map as i32, kind, level: level as i32 }),
+            vec![Use::bound(0, windows, Access::ImageUpdate)],
             inputs.need,
         ));
     }
-    (columns, bounds)
+    windows
 }
 
 fn pixel_push(settings: &Settings, inputs: &Inputs) -> push::Pixels {

@@ -14,20 +14,10 @@ pub struct Columns {
     pub height: f32,
 }
 
-/// `first_level.comp`
+/// `level.comp`
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub struct FirstLevel {
-    /// The map's side in texels.
-    pub map: i32,
-    /// Of levels.
-    pub kind: i32,
-}
-
-/// `next_level.comp`
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub struct NextLevel {
+pub struct Level {
     /// The map's side in texels.
     pub map: i32,
     /// Of levels.

@@ -1,7 +1,6 @@
 //! The knobs of ray marching.
 
 use crate::Error;
-use crate::graph::STORAGE_BYTES;
 use crate::nbuffer::{self, Levels};
 
 /// The depth layers that say what is solid.
@@ -134,6 +133,13 @@ impl Default for Settings {
     }
 }
 
+/// Of a window's bounds, or a column.
+const TEXEL_BYTES: u64 = 16;
+
+/// Windows at every texel take a layer as large as the map for each of their sizes: more than this for them
+/// is more than a shadow should have.
+const MOST_BYTES: u64 = 1 << 28;
+
 impl Settings {
     /// Whether the knob with this key is within its range; keys of other techniques pass.
     pub(crate) fn in_range(&self, key: &str) -> bool {
@@ -143,14 +149,17 @@ impl Settings {
     /// Checks the knobs that must agree with each other and with the maps' side.
     pub(crate) fn check_agreement(&self, map: u32) -> Result<(), Error> {
         let levels = Levels { map, kind: self.levels };
-        if u64::from(levels.values()) * 16 <= STORAGE_BYTES {
+        // Levels side by side are two layers, whatever the map.
+        if levels.kind == nbuffer::Kind::Mip || levels.texels() * TEXEL_BYTES <= MOST_BYTES {
             return Ok(());
         }
         Err(Error::Setting {
             key: "levels".into(),
             problem: format!(
-                "the windows of a map of {map} texels a side need more than the 128 MiB that every device \
-                 binds; set levels=mip or map=1024"
+                "the windows of a map of {map} texels a side need {} MiB, more than the {} that they may \
+                 have; set levels=mip or map=1024",
+                levels.texels() * TEXEL_BYTES >> 20,
+                MOST_BYTES >> 20
             ),
         })
     }

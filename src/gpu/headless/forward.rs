@@ -11,18 +11,15 @@
 use super::painter::{DEPTH, Painter, SceneDraw, draws};
 use super::{FrameTimes, GBufferPainter, HeadlessDevice, HostBuffer, OwnedImage, Stage};
 use crate::gpu::objects::Object;
-use crate::graph::Work;
+use crate::graph::{Access, Work};
 use crate::scene::{Instance, Scene};
 use crate::{Error, FramePlan, shaders, visibility};
 use ash::vk;
 use std::time::Duration;
 
-/// The bindings of `forward.frag`: the node's push constants, columns, bounds.
-const BINDINGS: [(u32, vk::DescriptorType); 3] = [
-    (0, vk::DescriptorType::UNIFORM_BUFFER),
-    (2, vk::DescriptorType::STORAGE_BUFFER),
-    (3, vk::DescriptorType::STORAGE_BUFFER),
-];
+/// The bindings of `forward.frag`: the node's push constants, and its windows.
+const BINDINGS: [(u32, vk::DescriptorType); 2] =
+    [(0, vk::DescriptorType::UNIFORM_BUFFER), (2, vk::DescriptorType::SAMPLED_IMAGE)];
 
 /// Forward evaluation of a stage's frames.
 pub struct Forward {
@@ -94,12 +91,9 @@ impl Forward {
     }
 
     fn make_set(&mut self, stage: &mut Stage, plan: &FramePlan) -> Result<(), Error> {
-        let buffer = |stage: &mut Stage, name| match stage.node()?.object(plan, name) {
-            Object::Buffer(buffer) => Ok(buffer),
-            _ => Err(Error::Frame(format!("the plan has no buffer {name}"))),
+        let Object::Image { view, .. } = stage.node()?.object(plan, "ray_march.windows") else {
+            return Err(Error::Frame("the plan has no windows".into()));
         };
-        let columns = buffer(stage, "ray_march.columns")?;
-        let bounds = buffer(stage, "ray_march.bounds")?;
         let raw = self.device.device();
         let bindings = BINDINGS.map(|(binding, kind)| {
             vk::DescriptorSetLayoutBinding::default()
@@ -124,20 +118,19 @@ impl Forward {
         // SAFETY: the pool was made for this one set.
         self.set = unsafe { raw.allocate_descriptor_sets(&allocate) }
             .map_err(Error::vulkan("allocating a descriptor set"))?[0];
-        let infos = [self.push.raw(), columns, bounds]
-            .map(|b| [vk::DescriptorBufferInfo::default().buffer(b).range(vk::WHOLE_SIZE)]);
-        let writes: Vec<_> = BINDINGS
-            .iter()
-            .zip(&infos)
-            .map(|(&(binding, kind), info)| {
-                vk::WriteDescriptorSet::default()
-                    .dst_set(self.set)
-                    .dst_binding(binding)
-                    .descriptor_type(kind)
-                    .buffer_info(info)
-            })
-            .collect();
-        // SAFETY: the set is new; the buffers outlive every submit, which are each waited for: the
+        let push =
+            [vk::DescriptorBufferInfo::default().buffer(self.push.raw()).range(vk::WHOLE_SIZE)];
+        // As the node's rays leave it.
+        let layout = Access::SampledCompute.scope().layout;
+        let windows = [vk::DescriptorImageInfo::default().image_view(view).image_layout(layout)];
+        let [write_push, write_windows] = BINDINGS.map(|(binding, kind)| {
+            vk::WriteDescriptorSet::default()
+                .dst_set(self.set)
+                .dst_binding(binding)
+                .descriptor_type(kind)
+        });
+        let writes = [write_push.buffer_info(&push), write_windows.image_info(&windows)];
+        // SAFETY: the set is new; buffer and view outlive every submit, which are each waited for: the
         // caller runs this on the stage that it was made for.
         unsafe { raw.update_descriptor_sets(&writes, &[]) };
         Ok(())

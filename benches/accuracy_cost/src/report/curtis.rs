@@ -3,7 +3,7 @@
 use super::tables::row_of;
 use super::{Report, ms, once};
 use crate::curtis::{self, MAPS, RAYS, SCREENS, VERSIONS, Version};
-use crate::levels::{BUILD, megabytes, ms as sum_of, tightness};
+use crate::levels::{BUILD, bytes, ms as sum_of, tightness};
 use crate::picture::{self, Pictures};
 use crate::plot::escape;
 use crate::store::{Outcome, Row};
@@ -177,7 +177,7 @@ pub fn levels(report: &Report) -> String {
                 escape(&row.scene),
                 levels.map.to_string(),
                 row.curve.clone(),
-                format!("{:.1}", megabytes(levels)),
+                format!("{:.1}", bytes(levels) as f64 / 1e6),
                 ms(build),
                 ms(classify),
                 ms(trace),
@@ -219,7 +219,7 @@ mod tests {
         one.study = sweeps::LEVELS.into();
         let Outcome::Measured { times, .. } = &mut one.outcome else { unreachable!() };
         let pass = |name: &str, ms| (format!("ray_march.{name}"), ms);
-        times.passes = vec![pass("first_level", 1.0), pass("next_level", 2.0), pass("trace", 4.0)];
+        times.passes = vec![pass("level", 3.0), pass("trace", 4.0)];
         let page = with(&[one], levels);
         assert!(page.contains("<td>3.00</td><td>0.00</td><td>4.00</td><td>7.00</td>"), "{page}");
         // A mip's windows hold more than was asked for; 1.00 are the others'.
