@@ -5,6 +5,7 @@ use crate::Problem;
 use crate::groups::{Against, Entry, Group, Scale, Stage};
 use crate::ply::ply;
 use crate::scenes::{SceneSpec, Source};
+use crate::techniques::FORWARD;
 use antumbra::RectangleLight;
 use antumbra::scene::generate::{self, cuboid};
 use antumbra::scene::{Role, Scene};
@@ -37,13 +38,18 @@ pub struct Version {
     words: &'static str,
 }
 
-/// The paper's, with its jittered cells and its hash, then the node's defaults. The hierarchical search
-/// has two layers there and the linear one three (its chapter 4).
-pub const VERSIONS: [Version; 3] = [
+/// The paper's, with its jittered cells and its hash, in its order, then the node's defaults. The hierarchical
+/// search has two layers there and the linear one three (its chapter 4). At fragments there is no filter.
+pub const VERSIONS: [Version; 4] = [
     Version {
         name: "hierarchical",
         technique: "ray-march",
         words: "search=hierarchical layers=2 sampling=jittered hash=md5",
+    },
+    Version {
+        name: "hierarchical, at fragments",
+        technique: FORWARD,
+        words: "search=hierarchical layers=2 sampling=jittered hash=md5 filter=off",
     },
     Version {
         name: "linear/binary",

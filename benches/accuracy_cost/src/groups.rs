@@ -5,7 +5,7 @@ use crate::scenes::{self, SceneSpec, Source};
 use crate::sweeps;
 use crate::techniques::{CURVES, value_of};
 use antumbra::gpu::headless::View;
-use antumbra::scene::{Camera, Role, Scene, generate};
+use antumbra::scene::{Camera, Instance, Role, Scene, generate};
 use glam::{DMat4, DVec3};
 
 /// The study of error against time.
@@ -92,6 +92,13 @@ pub struct Ready {
     pub window: Option<[[f64; 2]; 2]>,
     /// Whether pixels see what only occludes.
     pub occluders_seen: bool,
+}
+
+impl Ready {
+    /// Whether pixels see an instance.
+    pub fn keeps(&self, instance: &Instance) -> bool {
+        self.occluders_seen || instance.role != Role::Occluder
+    }
 }
 
 impl Group {

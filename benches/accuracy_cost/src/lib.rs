@@ -27,6 +27,7 @@ mod ply;
 pub mod progress;
 pub mod report;
 pub mod run;
+pub mod runner;
 pub mod scenes;
 #[path = "../../../examples/render/shade.rs"]
 #[allow(dead_code, clippy::expect_used)]

@@ -3,24 +3,22 @@
 use crate::Problem;
 use crate::groups::{Entry, Group, Ready, Scale};
 use crate::picture::{self, Pictures};
+use crate::runner::Runner;
 use crate::scenes::scaled;
 use crate::shade;
 use crate::stats::{median, quartiles};
 use crate::store::{Errors, Outcome, Row, Times};
-use crate::techniques::{Method, method};
+use crate::techniques::method;
 use crate::truth::{self, Truth, mask};
-use antumbra::gpu::headless::{FrameTimes, HeadlessDevice, ReadbackScheme, Stage};
-use antumbra::scene::{AreaLight, Instance, Role};
-use antumbra::truth::{ErrorSummary, Receiver, Sampling, Tracer};
-use antumbra::{FramePlan, RectangleLight, Settings};
+use antumbra::gpu::headless::{FrameTimes, HeadlessDevice, Stage};
+use antumbra::scene::{AreaLight, Instance};
+use antumbra::truth::{ErrorSummary, Receiver, Tracer};
+use antumbra::{RectangleLight, Settings};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
-use std::time::{Duration, Instant};
-
-/// The random numbers of the ray tracer that is measured, which are not the truth's.
-const TRACER_SEED: u64 = 2;
+use std::time::Duration;
 
 /// Fewest frames that quartiles are told of.
 const FEWEST_FRAMES: usize = 3;
@@ -36,25 +34,6 @@ pub struct Bench<'a> {
     pub scale: Scale,
     /// The folder of kept truths and pictures.
     pub cache: &'a Path,
-}
-
-/// What computes one row's image.
-enum Runner {
-    Node {
-        stage: Box<Stage>,
-        plan: Box<FramePlan>,
-    },
-    Rays {
-        sampling: Sampling,
-    },
-    /// The paper's scheme ends with its map. Its image is that of blending, whose sums are the same
-    /// (a test of the crate's holds that), and its frame takes that one's last pass on top.
-    Readback {
-        scheme: Box<ReadbackScheme>,
-        window: Option<[[f64; 2]; 2]>,
-        stage: Box<Stage>,
-        plan: Box<FramePlan>,
-    },
 }
 
 /// One row in the making.
@@ -92,7 +71,7 @@ impl Bench<'_> {
         let tracer = Tracer::new(&ready.scene).map_err(|e| e.to_string())?;
         let mut candidates: Vec<Candidate> = Vec::new();
         for (entry, method) in group.entries.iter().zip(methods) {
-            let state = self.runner(&ready, group, entry, method, &light.light, &receivers);
+            let state = Runner::new(self, &ready, group, entry, method, &light.light, &receivers);
             candidates.push(Candidate { entry, state, frames: Vec::new(), image: Vec::new() });
         }
         let lit = |c: &Candidate| scaled(&light.light, c.entry.light_scale);
@@ -129,51 +108,16 @@ impl Bench<'_> {
         Ok(compared.collect())
     }
 
-    fn stage(&self, ready: &Ready, extent: [u32; 2], settings: Settings) -> Result<Stage, Problem> {
-        let keep = |i: &Instance| ready.occluders_seen || i.role != Role::Occluder;
-        Stage::new(self.device, &ready.scene, &ready.view, extent, settings, keep)
-            .map_err(|e| e.to_string())
-    }
-
-    fn runner(
+    /// A stage of these settings at the group's pixels.
+    pub(crate) fn stage(
         &self,
         ready: &Ready,
-        group: &Group,
-        entry: &Entry,
-        method: Result<Option<Method>, Problem>,
-        light: &RectangleLight,
-        receivers: &[Receiver],
-    ) -> Result<Option<Runner>, Problem> {
-        Ok(match method? {
-            None => None,
-            Some(Method::Rays(rays)) => {
-                let sampling =
-                    truth::sampling(Sampling::one_grid(rays.isqrt(), TRACER_SEED), receivers)?;
-                Some(Runner::Rays { sampling })
-            }
-            Some(Method::Readback(side)) => {
-                let words = format!(
-                    "receivers=map accumulate=blend sides=one map={side} receiver_map={side}"
-                );
-                let Some(Method::Node(settings)) =
-                    crate::techniques::method("soft-shadow-map", &words)?
-                else {
-                    return Ok(None);
-                };
-                let mut stage = Box::new(self.stage(ready, group.extent, *settings)?);
-                let plan = stage.plan(light, ready.window).map_err(|e| e.to_string())?;
-                let scheme = ReadbackScheme::new(self.device, &ready.scene, side, side);
-                let scheme = Box::new(scheme.map_err(|e| e.to_string())?);
-                stage.run(&plan).map_err(|e| e.to_string())?;
-                Some(Runner::Readback { scheme, window: ready.window, stage, plan: Box::new(plan) })
-            }
-            Some(Method::Node(settings)) => {
-                let mut stage = Box::new(self.stage(ready, group.extent, *settings)?);
-                let light = scaled(light, entry.light_scale)?;
-                let plan = stage.plan(&light, ready.window).map_err(|e| e.to_string())?;
-                Some(Runner::Node { stage, plan: Box::new(plan) })
-            }
-        })
+        extent: [u32; 2],
+        settings: Settings,
+    ) -> Result<Stage, Problem> {
+        let keep = |i: &Instance| ready.keeps(i);
+        Stage::new(self.device, &ready.scene, &ready.view, extent, settings, keep)
+            .map_err(|e| e.to_string())
     }
 
     /// Every candidate once a round. Those that have cost more than their share stop once they have
@@ -224,8 +168,10 @@ impl Candidate<'_> {
     /// The first frame compiles what the driver compiles, and is not counted; its image is kept.
     fn warm_up(&mut self, tracer: &Tracer, light: &RectangleLight, receivers: &[Receiver]) {
         let done = self.run(tracer, light, receivers).and_then(|()| match &mut self.state {
-            Ok(Some(Runner::Node { stage, .. } | Runner::Readback { stage, .. })) => {
-                self.image = stage.visibility().map_err(|e| e.to_string())?;
+            Ok(Some(runner)) => {
+                if let Some(image) = runner.image()? {
+                    self.image = image;
+                }
                 Ok(())
             }
             _ => Ok(()),
@@ -240,34 +186,9 @@ impl Candidate<'_> {
         light: &RectangleLight,
         r: &[Receiver],
     ) -> Result<(), Problem> {
-        let times = match &mut self.state {
-            Ok(Some(Runner::Node { stage, plan })) => stage.run(plan).map_err(|e| e.to_string())?,
-            Ok(Some(Runner::Readback { scheme, window, stage, plan })) => {
-                let times = scheme.run(light, *window).map_err(|e| e.to_string())?;
-                let resolve = stage.run(plan).map_err(|e| e.to_string())?.passes;
-                let (name, ms) = resolve.last().copied().ok_or("the device has no timestamps")?;
-                let told = |name, time: Duration| (name, time.as_secs_f64() * 1e3);
-                FrameTimes {
-                    frame: times.frame + Duration::from_secs_f64(ms / 1e3),
-                    record: Duration::ZERO,
-                    passes: vec![
-                        told("readback.depth", times.depth),
-                        told("readback.rectangles", times.rectangles),
-                        told("readback.blend", times.blend),
-                        (name, ms),
-                    ],
-                }
-            }
-            Ok(Some(Runner::Rays { sampling })) => {
-                let started = Instant::now();
-                let traced =
-                    tracer.visible_fractions(light, r, sampling).map_err(|e| e.to_string())?;
-                let frame = started.elapsed();
-                self.image = traced.visible;
-                FrameTimes { frame, record: Duration::ZERO, passes: Vec::new() }
-            }
-            _ => return Ok(()),
-        };
+        let Ok(Some(runner)) = &mut self.state else { return Ok(()) };
+        let (times, image) = runner.run(tracer, light, r)?;
+        self.image = image.unwrap_or_else(|| std::mem::take(&mut self.image));
         self.frames.push(times);
         Ok(())
     }
@@ -278,13 +199,10 @@ impl Candidate<'_> {
         let gpu_bytes = match &mut self.state {
             Err(problem) => return (self.entry, Err(problem.clone())),
             Ok(None) => return (self.entry, Ok(None)),
-            Ok(Some(Runner::Rays { .. })) => 0,
-            Ok(Some(Runner::Node { stage, .. } | Runner::Readback { stage, .. })) => {
-                match stage.node() {
-                    Ok(node) => node.memory().iter().map(|(_, bytes)| bytes).sum(),
-                    Err(e) => return (self.entry, Err(e.to_string())),
-                }
-            }
+            Ok(Some(runner)) => match runner.bytes() {
+                Ok(bytes) => bytes,
+                Err(problem) => return (self.entry, Err(problem)),
+            },
         };
         let ms = |of: fn(&FrameTimes) -> Duration| -> Vec<f64> {
             self.frames.iter().map(|f| of(f).as_secs_f64() * 1e3).collect()

@@ -13,6 +13,9 @@ pub const RAY_TRACER: &str = "cpu-rays";
 /// blended (Atty 2006 section 4.1).
 pub const READBACK: &str = "cpu-quads";
 
+/// The name of ray marching at fragments as they are drawn, by the node's maps.
+pub const FORWARD: &str = "ray-march-forward";
+
 /// The settings, and whether the quick run measures them.
 type Step = (&'static str, bool);
 
@@ -201,6 +204,8 @@ pub const CURVES: &[Curve] = &[
 pub enum Method {
     /// By the node.
     Node(Box<Settings>),
+    /// By the node's maps, at fragments as they are drawn.
+    Forward(Box<Settings>),
     /// By so many rays a pixel on the processor.
     Rays(u32),
     /// By the paper's own scheme, with maps of this side.
@@ -224,14 +229,17 @@ pub fn method(technique: &str, words: &str) -> Result<Option<Method>, Problem> {
         let side = words.strip_prefix("map=").and_then(|side| side.parse().ok());
         return side.map(|side| Some(Method::Readback(side))).ok_or(format!("{words}: no map"));
     }
-    let Ok(technique) = technique.parse::<Technique>() else { return Ok(None) };
+    let is_forward = technique == FORWARD;
+    let technique = if is_forward { Ok(Technique::RayMarch) } else { technique.parse() };
+    let Ok(technique) = technique else { return Ok(None) };
     let mut settings = Settings { technique, ..Settings::default() };
     for pair in pairs {
         let (key, value) = pair?;
         settings.set(key, value).map_err(|e| e.to_string())?;
     }
     settings.check().map_err(|e| e.to_string())?;
-    Ok(Some(Method::Node(Box::new(settings))))
+    let settings = Box::new(settings);
+    Ok(Some(if is_forward { Method::Forward(settings) } else { Method::Node(settings) }))
 }
 
 /// The value of a setting among the words, as a number; its place among the steps where it is none.

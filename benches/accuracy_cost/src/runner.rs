@@ -1,0 +1,184 @@
+//! What computes one row's image, whatever the technique.
+
+use crate::Problem;
+use crate::groups::{Entry, Group, Ready};
+use crate::measure::Bench;
+use crate::scenes::scaled;
+use crate::techniques::Method;
+use crate::truth;
+use antumbra::gpu::headless::{Forward, FrameTimes, ReadbackScheme, Stage};
+use antumbra::scene::Instance;
+use antumbra::truth::{Receiver, Sampling, Tracer};
+use antumbra::{FramePlan, RectangleLight};
+use std::time::{Duration, Instant};
+
+/// The random numbers of the ray tracer that is measured, which are not the truth's.
+const TRACER_SEED: u64 = 2;
+
+/// What computes one row's image.
+pub enum Runner {
+    /// The node.
+    Node {
+        /// Its pixels.
+        stage: Box<Stage>,
+        /// Its frame.
+        plan: Box<FramePlan>,
+    },
+    /// Rays by the processor.
+    Rays {
+        /// How many and where.
+        sampling: Sampling,
+    },
+    /// Rays of the fragments as they are drawn, by the node's maps.
+    Forward {
+        /// What draws; dropped before the stage whose buffers it draws.
+        forward: Box<Forward>,
+        /// Whose maps.
+        stage: Box<Stage>,
+        /// Their frame.
+        plan: Box<FramePlan>,
+    },
+    /// The paper's scheme ends with its map. Its image is that of blending, whose sums are the same
+    /// (a test of the crate's holds that), and its frame takes that one's last pass on top.
+    Readback {
+        /// The scheme.
+        scheme: Box<ReadbackScheme>,
+        /// The occluder map's tangents.
+        window: Option<[[f64; 2]; 2]>,
+        /// Whose image.
+        stage: Box<Stage>,
+        /// Its frame.
+        plan: Box<FramePlan>,
+    },
+}
+
+fn told(e: antumbra::Error) -> Problem {
+    e.to_string()
+}
+
+impl Runner {
+    /// What a method takes to run; nothing where the crate does not have it.
+    ///
+    /// # Errors
+    /// A sentence for what was refused.
+    pub fn new(
+        bench: &Bench,
+        ready: &Ready,
+        group: &Group,
+        entry: &Entry,
+        method: Result<Option<Method>, Problem>,
+        light: &RectangleLight,
+        receivers: &[Receiver],
+    ) -> Result<Option<Self>, Problem> {
+        let stage = |settings| bench.stage(ready, group.extent, settings).map(Box::new);
+        Ok(match method? {
+            None => None,
+            Some(Method::Rays(rays)) => {
+                let sampling =
+                    truth::sampling(Sampling::one_grid(rays.isqrt(), TRACER_SEED), receivers)?;
+                Some(Self::Rays { sampling })
+            }
+            Some(Method::Readback(side)) => {
+                let words = format!(
+                    "receivers=map accumulate=blend sides=one map={side} receiver_map={side}"
+                );
+                let Some(Method::Node(settings)) =
+                    crate::techniques::method("soft-shadow-map", &words)?
+                else {
+                    return Ok(None);
+                };
+                let mut stage = stage(*settings)?;
+                let plan = stage.plan(light, ready.window).map_err(told)?;
+                let scheme = ReadbackScheme::new(bench.device, &ready.scene, side, side);
+                let scheme = Box::new(scheme.map_err(told)?);
+                stage.run(&plan).map_err(told)?;
+                Some(Self::Readback { scheme, window: ready.window, stage, plan: Box::new(plan) })
+            }
+            Some(Method::Node(settings)) => {
+                let mut stage = stage(*settings)?;
+                let light = scaled(light, entry.light_scale)?;
+                let plan = stage.plan(&light, ready.window).map_err(told)?;
+                Some(Self::Node { stage, plan: Box::new(plan) })
+            }
+            Some(Method::Forward(settings)) => {
+                let mut stage = stage(*settings)?;
+                let plan = Box::new(stage.plan(light, ready.window).map_err(told)?);
+                let keep = |i: &Instance| ready.keeps(i);
+                let forward = Forward::new(bench.device, &mut stage, &plan, &ready.scene, keep);
+                Some(Self::Forward { forward: Box::new(forward.map_err(told)?), stage, plan })
+            }
+        })
+    }
+
+    /// One frame; its image where that comes with it.
+    ///
+    /// # Errors
+    /// A sentence for what failed.
+    pub fn run(
+        &mut self,
+        tracer: &Tracer,
+        light: &RectangleLight,
+        receivers: &[Receiver],
+    ) -> Result<(FrameTimes, Option<Vec<f32>>), Problem> {
+        match self {
+            Self::Node { stage, plan } => Ok((stage.run(plan).map_err(told)?, None)),
+            Self::Forward { forward, stage, plan } => {
+                Ok((forward.run(stage, plan).map_err(told)?, None))
+            }
+            Self::Readback { scheme, window, stage, plan } => {
+                let times = scheme.run(light, *window).map_err(told)?;
+                let resolve = stage.run(plan).map_err(told)?.passes;
+                let (name, ms) = resolve.last().copied().ok_or("the device has no timestamps")?;
+                let pass = |name, time: Duration| (name, time.as_secs_f64() * 1e3);
+                let times = FrameTimes {
+                    frame: times.frame + Duration::from_secs_f64(ms / 1e3),
+                    record: Duration::ZERO,
+                    passes: vec![
+                        pass("readback.depth", times.depth),
+                        pass("readback.rectangles", times.rectangles),
+                        pass("readback.blend", times.blend),
+                        (name, ms),
+                    ],
+                };
+                Ok((times, None))
+            }
+            Self::Rays { sampling } => {
+                let started = Instant::now();
+                let traced = tracer.visible_fractions(light, receivers, sampling).map_err(told)?;
+                let frame = started.elapsed();
+                let times = FrameTimes { frame, record: Duration::ZERO, passes: Vec::new() };
+                Ok((times, Some(traced.visible)))
+            }
+        }
+    }
+
+    /// The last frame's image, where the device has it.
+    ///
+    /// # Errors
+    /// A sentence where it cannot be read.
+    pub fn image(&mut self) -> Result<Option<Vec<f32>>, Problem> {
+        match self {
+            Self::Node { stage, .. } | Self::Readback { stage, .. } => {
+                stage.visibility().map(Some).map_err(told)
+            }
+            Self::Forward { forward, .. } => forward.visibility().map(Some).map_err(told),
+            Self::Rays { .. } => Ok(None),
+        }
+    }
+
+    /// Bytes of the node's memory.
+    ///
+    /// # Errors
+    /// A sentence where there is no node.
+    pub fn bytes(&mut self) -> Result<u64, Problem> {
+        match self {
+            Self::Rays { .. } => Ok(0),
+            Self::Node { stage, .. }
+            | Self::Forward { stage, .. }
+            | Self::Readback { stage, .. } => {
+                let node = stage.node().map_err(told)?;
+                Ok(node.memory().iter().map(|(_, bytes)| bytes).sum())
+            }
+        }
+    }
+}
