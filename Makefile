@@ -27,9 +27,11 @@ demo:
 # Stopped and started again, the report goes on where it was.
 bench:
 	@tests/drivers.sh bench
-	$(CARGO) bench --bench accuracy_cost -- $(if $(QUICK),--quick)
 ifndef QUICK
 	@benches/fetch_dragon.sh || echo "without the dragon: it could not be fetched"
+endif
+	$(CARGO) bench --bench accuracy_cost -- $(if $(QUICK),--quick)
+ifndef QUICK
 	$(CARGO) bench --bench soft_shadow_map -- --out out/bench
 	$(CARGO) bench --bench ray_march
 endif

@@ -6,6 +6,7 @@
 // A bench tells what goes wrong by panicking.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod forward;
 mod levels;
 #[path = "../soft_shadow_map/table.rs"]
 #[allow(dead_code, reason = "another bench uses the rest")]
@@ -29,10 +30,11 @@ struct Options {
 
 type Study = (&'static str, fn(&HeadlessDevice, &Options) -> Table);
 
-const STUDIES: [Study; 4] = [
+const STUDIES: [Study; 5] = [
     ("levels", kinds),
     ("search", search),
     ("classification", classification),
+    ("forward", forward::forward),
     ("bandwidth", bandwidth),
 ];
 
@@ -73,6 +75,15 @@ fn scene(name: &str, side: f64) -> Scene {
     }
 }
 
+/// Ray marching's settings from the words of a command line.
+fn settings(words: &str) -> Settings {
+    let mut settings = Settings { technique: Technique::RayMarch, ..Settings::default() };
+    for (key, value) in words.split_whitespace().filter_map(|w| w.split_once('=')) {
+        settings.set(key, value).unwrap_or_else(|e| panic!("{e}"));
+    }
+    settings
+}
+
 /// A stage with its plan: 480² pixels of the ground.
 struct Ready {
     stage: Stage,
@@ -82,13 +93,9 @@ struct Ready {
 
 impl Ready {
     fn new(device: &HeadlessDevice, scene: &Scene, words: &str) -> Self {
-        let mut settings = Settings { technique: Technique::RayMarch, ..Settings::default() };
-        for (key, value) in words.split_whitespace().filter_map(|w| w.split_once('=')) {
-            settings.set(key, value).unwrap_or_else(|e| panic!("{e}"));
-        }
         let keep = |i: &antumbra::scene::Instance| i.role != Role::Occluder;
         let view = View::map_of_ground(2.2, 8.0);
-        let mut stage = Stage::new(device, scene, &view, [480; 2], settings, keep).unwrap();
+        let mut stage = Stage::new(device, scene, &view, [480; 2], settings(words), keep).unwrap();
         let light = scene.light(None).unwrap().light;
         let plan = stage.plan(&light, None).unwrap();
         stage.run(&plan).unwrap();

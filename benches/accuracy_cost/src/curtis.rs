@@ -38,9 +38,10 @@ pub struct Version {
     words: &'static str,
 }
 
-/// The paper's, with its jittered cells and its hash, in its order, then the node's defaults. The hierarchical
+/// The paper's, with its jittered cells and its hash, in its order; then what compares with the second,
+/// and the node's defaults. The hierarchical
 /// search has two layers there and the linear one three (its chapter 4). At fragments there is no filter.
-pub const VERSIONS: [Version; 4] = [
+pub const VERSIONS: [Version; 5] = [
     Version {
         name: "hierarchical",
         technique: "ray-march",
@@ -55,6 +56,11 @@ pub const VERSIONS: [Version; 4] = [
         name: "linear/binary",
         technique: "ray-march",
         words: "search=linear layers=3 sampling=jittered hash=md5",
+    },
+    Version {
+        name: "hierarchical, unfiltered",
+        technique: "ray-march",
+        words: "search=hierarchical layers=2 sampling=jittered hash=md5 filter=off",
     },
     Version { name: "the node's defaults", technique: "ray-march", words: "" },
 ];

@@ -164,7 +164,7 @@ fn figures(report: &Report) -> String {
 pub fn tables(report: &Report) -> String {
     let intro = "<p>Time of a frame and mean error here; in brackets the paper's frames a second, on a \
                  GPU of 2009. Its versions have two layers (hierarchical) and three (linear), jittered \
-                 rays and a hash of MD5; the last two rows are what the node does unasked. Where deferred \
+                 rays and a hash of MD5; the last two rows are what the node does unasked, and those above them what compares with \u{201c}no\u{201d}. Where deferred \
                  is \u{201c}no\u{201d}, every fragment that passes the depth test when it is drawn sends rays, \
                  whatever is drawn over it later; there is no filter then, and drawing the scene is in the \
                  time, where the others' G-buffer is not. Models and lights are as near as the text \
