@@ -158,7 +158,7 @@ impl Settings {
             problem: format!(
                 "the windows of a map of {map} texels a side need {} MiB, more than the {} that they may \
                  have; set levels=mip or map=1024",
-                levels.texels() * TEXEL_BYTES >> 20,
+                (levels.texels() * TEXEL_BYTES) >> 20,
                 MOST_BYTES >> 20
             ),
         })

@@ -52,8 +52,9 @@ pub enum Runner {
     },
 }
 
-fn told(e: antumbra::Error) -> Problem {
-    e.to_string()
+/// A result with its error as a sentence.
+fn told<T>(result: Result<T, antumbra::Error>) -> Result<T, Problem> {
+    result.map_err(|e| e.to_string())
 }
 
 impl Runner {
@@ -88,24 +89,24 @@ impl Runner {
                     return Ok(None);
                 };
                 let mut stage = stage(*settings)?;
-                let plan = stage.plan(light, ready.window).map_err(told)?;
+                let plan = told(stage.plan(light, ready.window))?;
                 let scheme = ReadbackScheme::new(bench.device, &ready.scene, side, side);
-                let scheme = Box::new(scheme.map_err(told)?);
-                stage.run(&plan).map_err(told)?;
+                let scheme = Box::new(told(scheme)?);
+                told(stage.run(&plan))?;
                 Some(Self::Readback { scheme, window: ready.window, stage, plan: Box::new(plan) })
             }
             Some(Method::Node(settings)) => {
                 let mut stage = stage(*settings)?;
                 let light = scaled(light, entry.light_scale)?;
-                let plan = stage.plan(&light, ready.window).map_err(told)?;
+                let plan = told(stage.plan(&light, ready.window))?;
                 Some(Self::Node { stage, plan: Box::new(plan) })
             }
             Some(Method::Forward(settings)) => {
                 let mut stage = stage(*settings)?;
-                let plan = Box::new(stage.plan(light, ready.window).map_err(told)?);
+                let plan = Box::new(told(stage.plan(light, ready.window))?);
                 let keep = |i: &Instance| ready.keeps(i);
                 let forward = Forward::new(bench.device, &mut stage, &plan, &ready.scene, keep);
-                Some(Self::Forward { forward: Box::new(forward.map_err(told)?), stage, plan })
+                Some(Self::Forward { forward: Box::new(told(forward)?), stage, plan })
             }
         })
     }
@@ -121,13 +122,11 @@ impl Runner {
         receivers: &[Receiver],
     ) -> Result<(FrameTimes, Option<Vec<f32>>), Problem> {
         match self {
-            Self::Node { stage, plan } => Ok((stage.run(plan).map_err(told)?, None)),
-            Self::Forward { forward, stage, plan } => {
-                Ok((forward.run(stage, plan).map_err(told)?, None))
-            }
+            Self::Node { stage, plan } => Ok((told(stage.run(plan))?, None)),
+            Self::Forward { forward, stage, plan } => Ok((told(forward.run(stage, plan))?, None)),
             Self::Readback { scheme, window, stage, plan } => {
-                let times = scheme.run(light, *window).map_err(told)?;
-                let resolve = stage.run(plan).map_err(told)?.passes;
+                let times = told(scheme.run(light, *window))?;
+                let resolve = told(stage.run(plan))?.passes;
                 let (name, ms) = resolve.last().copied().ok_or("the device has no timestamps")?;
                 let pass = |name, time: Duration| (name, time.as_secs_f64() * 1e3);
                 let times = FrameTimes {
@@ -144,7 +143,7 @@ impl Runner {
             }
             Self::Rays { sampling } => {
                 let started = Instant::now();
-                let traced = tracer.visible_fractions(light, receivers, sampling).map_err(told)?;
+                let traced = told(tracer.visible_fractions(light, receivers, sampling))?;
                 let frame = started.elapsed();
                 let times = FrameTimes { frame, record: Duration::ZERO, passes: Vec::new() };
                 Ok((times, Some(traced.visible)))
@@ -159,9 +158,9 @@ impl Runner {
     pub fn image(&mut self) -> Result<Option<Vec<f32>>, Problem> {
         match self {
             Self::Node { stage, .. } | Self::Readback { stage, .. } => {
-                stage.visibility().map(Some).map_err(told)
+                told(stage.visibility()).map(Some)
             }
-            Self::Forward { forward, .. } => forward.visibility().map(Some).map_err(told),
+            Self::Forward { forward, .. } => told(forward.visibility()).map(Some),
             Self::Rays { .. } => Ok(None),
         }
     }
@@ -176,7 +175,7 @@ impl Runner {
             Self::Node { stage, .. }
             | Self::Forward { stage, .. }
             | Self::Readback { stage, .. } => {
-                let node = stage.node().map_err(told)?;
+                let node = told(stage.node())?;
                 Ok(node.memory().iter().map(|(_, bytes)| bytes).sum())
             }
         }

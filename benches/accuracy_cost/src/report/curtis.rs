@@ -87,8 +87,8 @@ impl Table {
         };
         if first.scene == curtis::STAND_IN {
             out += "<p class=\"part\">The dragon was not fetched \
-                    (<code>benches/fetch_dragon.sh</code> does it): the bunny of 7 thousand \
-                    triangles stands in for it, under another light.</p>\n";
+                    (<code>benches/fetch_dragon.sh</code> does it): the bunny stands in \
+                    for it, under another light.</p>\n";
         }
         let triangles = first.triangles;
         out += &format!("<p><small>{}, {triangles} triangles.</small></p>\n", escape(&first.scene));
