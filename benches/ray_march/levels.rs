@@ -9,7 +9,7 @@ pub const BUILD: [&str; 1] = ["level"];
 /// Milliseconds of passes by their names' ends.
 pub fn ms<'a>(passes: impl IntoIterator<Item = (&'a str, f64)>, names: &[&str]) -> f64 {
     let of = |name: &str| names.iter().any(|n| name == format!("ray_march.{n}"));
-    passes.into_iter().filter(|(name, _)| of(name)).map(|(_, ms)| ms).sum()
+    passes.into_iter().filter(|(name, _)| of(name)).fold(0.0, |sum, (_, ms)| sum + ms)
 }
 
 /// Bytes of the levels, the columns among them, four floats a texel.
