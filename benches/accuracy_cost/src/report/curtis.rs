@@ -1,6 +1,6 @@
 //! Tables 4.1 to 4.4 of Curtis 2009 as they are there, and the kinds of levels of its section 5.1.
 
-use super::tables::row_of;
+use super::tables::{found, row_of};
 use super::{Report, ms, once};
 use crate::curtis::{self, MAPS, RAYS, SCREENS, VERSIONS, Version};
 use crate::levels::{BUILD, bytes, ms as sum_of, tightness};
@@ -169,7 +169,8 @@ pub fn tables(report: &Report) -> String {
                  whatever is drawn over it later; there is no filter then, and drawing the scene is in the \
                  time, where the others' G-buffer is not. Models and lights are as near as the text \
                  tells.</p>\n";
-    let start = intro.to_string() + &figures(report);
+    let found: String = curtis::findings(report.rows).iter().map(found).collect();
+    let start = intro.to_string() + &found + &figures(report);
     TABLES.iter().fold(start, |out, table| out + &table.html(report))
 }
 

@@ -2,7 +2,7 @@
 
 use super::headline::{self, GOALS};
 use super::{Report, ms};
-use crate::findings::{Verdict, findings};
+use crate::findings::{Finding, Verdict, findings};
 use crate::groups::MATRIX;
 use crate::plot::escape;
 use crate::store::{Outcome, Row};
@@ -70,24 +70,25 @@ pub fn in_short(report: &Report) -> String {
     out + "</ul>\n"
 }
 
-/// What the paper says, whether it holds, and what was measured.
+/// What the paper says of a figure, whether it holds, and what was measured.
 pub fn findings_of(report: &Report, figure: &str) -> String {
     let all = findings(report.rows);
-    let mut out = String::new();
-    for finding in all.iter().filter(|f| f.figure == figure) {
-        let (class, verdict) = match finding.verdict {
-            Verdict::Holds => ("yes", "holds"),
-            Verdict::InPart => ("part", "holds in part"),
-            Verdict::Refuted => ("no", "does not hold"),
-            Verdict::Unmeasured => ("open", "not measured"),
-        };
-        out += &format!(
-            "<p><b>{}</b> <span class=\"{class}\">{verdict}</span>: {}.</p>\n",
-            escape(finding.claim),
-            escape(&finding.sentence)
-        );
-    }
-    out
+    all.iter().filter(|f| f.figure == figure).map(found).collect()
+}
+
+/// One finding.
+pub(super) fn found(finding: &Finding) -> String {
+    let (class, verdict) = match finding.verdict {
+        Verdict::Holds => ("yes", "holds"),
+        Verdict::InPart => ("part", "holds in part"),
+        Verdict::Refuted => ("no", "does not hold"),
+        Verdict::Unmeasured => ("open", "not measured"),
+    };
+    format!(
+        "<p><b>{}</b> <span class=\"{class}\">{verdict}</span>: {}.</p>\n",
+        escape(finding.claim),
+        escape(&finding.sentence)
+    )
 }
 
 /// The technique that is wrong on purpose, in a sentence.
