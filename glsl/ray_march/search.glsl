@@ -84,9 +84,11 @@ bool meets_interval(Place p, Ray ray, vec2 centre, vec2 interval, float s0, floa
     if (interval.x <= 0.0 || lo > hi || !is_clear(p, centre, interval.x)) {
         return false;
     }
-    // In what the layers take for solid it may still be where the eye looks through.
+    // The nearest and the furthest faces are there, whoever looks; in between, what the layers take for
+    // solid may be what the eye looks through.
+    bool crosses = p.w + s0 < interval.y || p.w + s1 > interval.x;
     float s = 0.5 * (lo + hi) - p.w;
-    return !seen(p.t + s * ray.g, p.w + s);
+    return crosses || !seen(p.t + s * ray.g, p.w + s);
 }
 
 // The hit test: whether a ray that is over a texel from s0 to s1 meets its column.

@@ -45,11 +45,17 @@ pub fn wanted(settings: &Settings, map: u32) -> Wanted {
     Wanted { map, back: true, inner: settings.layers == Layers::Four, receiver_map: None }
 }
 
+/// How far behind the light the projection point lies at most, over the distance of the furthest occluder.
+/// From there on rays of the map are parallel to within 1/64, and heights lose what distances gain: rounding
+/// is 1.2e-7 · 65² of it, or 5e-4 of a map's texel where there are 256 over that distance.
+const MOST_BEHIND: f64 = 64.0;
+
 /// How the layers look at the occluders; none where there are none in front of the light.
 ///
 /// The projection point lies so far behind the light that the light fills the angle under which its centre
 /// sees the occluders (Curtis 2009 eq. 3.1). Rays need no more than that: they are cut to what lies over
-/// the map, and beyond the map there are no occluders.
+/// the map, and beyond the map there are no occluders. A light so large that this would be further away than
+/// [`MOST_BEHIND`] is seen from there: rays to its rim leave the map through its sides.
 pub fn view(
     light: &RectangleLight,
     occluders: &[(MeshBounds, DMat4)],
@@ -63,7 +69,8 @@ pub fn view(
             let from_centre = fit_occluders(light, occluders, None, side)?;
             let tangent = |i: usize| from_centre.max[i].abs().max(from_centre.min[i].abs());
             let half = light.half_extents();
-            Eye::Behind([0, 1].map(|i| half[i] / tangent(i)).into_iter().fold(0.0, f64::max))
+            let behind = [0, 1].map(|i| half[i] / tangent(i)).into_iter().fold(0.0, f64::max);
+            Eye::Behind(behind.min(MOST_BEHIND * from_centre.far))
         }
     };
     fit_from(eye, light, occluders, side)

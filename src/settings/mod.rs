@@ -280,6 +280,13 @@ mod tests {
         assert!(refuse(Technique::Pcss, "taps", "65").contains("1 to 64"));
         assert!(refuse(Technique::ManyLights, "samples", "0").contains("1 to 4096"));
         assert!(refuse(Technique::ManyLights, "seed", "-1").contains("4294967295"));
+        assert!(refuse(Technique::RayMarch, "rays", "0").contains("1 to 256"));
+        assert!(refuse(Technique::RayMarch, "rays", "257").contains("1 to 256"));
+        assert!(refuse(Technique::RayMarch, "map", "0").contains("16 to 4096"));
+        assert!(refuse(Technique::RayMarch, "layers", "1").contains("2, 3, 4"));
+        let mut large = Settings { technique: Technique::RayMarch, ..Settings::default() };
+        large.set("map", "2048").unwrap();
+        assert!(large.check().unwrap_err().to_string().contains("levels=mip"));
         let mut both = Settings::default();
         both.set("accumulate", "blend").unwrap();
         assert!(both.check().unwrap_err().to_string().contains("receivers=map"));
