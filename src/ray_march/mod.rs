@@ -49,6 +49,12 @@
 //! and the visible fraction is that of the emission: of its luminance, or of red, green and blue each
 //! (`Description::light_texture`). The part of the light under the pixel's own plane is then up to the rays.
 //!
+//! **Deferred** (algorithm 1): the rays are those of the G-buffer's pixels. What a forward renderer would pay,
+//! rays of every fragment as it is drawn, is in the benchmark: `gpu::headless::Forward` asks the same functions
+//! from a fragment shader. A cube takes it as long or less, a scan of 48 thousand triangles 1.6 to 1.9 times as
+//! long (without filters, 4 and 9 rays, lavapipe). A fragment knows its plane, though, which the depths of
+//! facets as small as pixels do not tell: 1.3 instead of 2.0 % mean error on the bunny (tests/forward.rs).
+//!
 //! **Limits.** Three pieces of matter over one texel lose the middle one, unless they overlap. Meshes are
 //! expected closed or thin: an open sheet above a solid counts as solid down to the solid's back.
 //! Lent occluder maps have the light's centre as their projection point and two layers.
