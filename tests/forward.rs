@@ -19,9 +19,9 @@ fn images(device: &HeadlessDevice, setup: &Setup, words: &str) -> [Vec<f32>; 2] 
     let mut stage = setup.stage(device, words);
     let plan = stage.plan(&setup.light(), setup.window).unwrap();
     let keep = |i: &Instance| setup.occluders_seen || i.role != Role::Occluder;
-    let forward = Forward::new(device, &mut stage, &plan, setup.scene, keep).unwrap();
-    forward.run(&mut stage, &plan).unwrap();
-    [stage.visibility().unwrap(), forward.visibility().unwrap()]
+    let mut forward = Forward::new(device, stage, plan, setup.scene, keep).unwrap();
+    forward.run().unwrap();
+    [forward.deferred_visibility().unwrap(), forward.visibility().unwrap()]
 }
 
 /// By how much pixels differ that are in shadow in either image: the worst, the mean, and how many by more
@@ -125,8 +125,12 @@ fn what_forward_evaluation_cannot_do_is_refused() {
     {
         let mut stage = setup.stage(&device, words);
         let plan = stage.plan(&setup.light(), None).unwrap();
-        let made = Forward::new(&device, &mut stage, &plan, &spheres, |_| true);
+        let made = Forward::new(&device, stage, plan, &spheres, |_| true);
         let problem = made.err().unwrap().to_string();
         assert!(problem.contains("search=hierarchical"), "{words}: {problem}");
     }
+    let words = "technique=ray-march";
+    let plan = setup.stage(&device, words).plan(&setup.light(), None).unwrap();
+    let made = Forward::new(&device, setup.stage(&device, words), plan, &spheres, |_| true);
+    assert!(made.is_err(), "another node's plan");
 }

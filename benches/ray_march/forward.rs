@@ -36,13 +36,13 @@ pub fn forward(device: &HeadlessDevice, options: &Options) -> Table {
             let keep = |_: &Instance| true;
             let mut stage = Stage::new(device, &scene, &view, EXTENT, settings, keep).unwrap();
             let plan = stage.plan(&light, None).unwrap();
-            let forward = Forward::new(device, &mut stage, &plan, &scene, keep).unwrap();
+            let mut forward = Forward::new(device, stage, plan, &scene, keep).unwrap();
             let mut drawn = Vec::new();
             let (mut gbuffer, mut pixels, mut at_fragments) = (Vec::new(), Vec::new(), Vec::new());
             for round in 0..=options.rounds {
-                let painted = forward.paint_gbuffer(&stage).unwrap();
-                let deferred = stage.run(&plan).unwrap();
-                let times = forward.run(&mut stage, &plan).unwrap();
+                let painted = forward.paint_gbuffer().unwrap();
+                let deferred = forward.run_deferred().unwrap();
+                let times = forward.run().unwrap();
                 if round == 0 {
                     // What the driver compiles, it compiles now.
                     continue;
@@ -57,7 +57,7 @@ pub fn forward(device: &HeadlessDevice, options: &Options) -> Table {
             let common = |t: &antumbra::gpu::headless::FrameTimes| {
                 t.passes.iter().map(|(_, ms)| ms).sum::<f64>() - t.passes.last().unwrap().1
             };
-            let images = (stage.visibility().unwrap(), forward.visibility().unwrap());
+            let images = (forward.deferred_visibility().unwrap(), forward.visibility().unwrap());
             let pairs = || images.0.iter().zip(&images.1).filter(|(a, b)| **a < 1.0 || **b < 1.0);
             let count = pairs().count() as f64;
             let differ = pairs().filter(|(a, b)| (*a - *b).abs() > 1e-3).count() as f64;

@@ -31,12 +31,8 @@ pub enum Runner {
     },
     /// Rays of the fragments as they are drawn, by the node's maps.
     Forward {
-        /// What draws; dropped before the stage whose buffers it draws.
+        /// What draws, and the stage whose maps they are.
         forward: Box<Forward>,
-        /// Whose maps.
-        stage: Box<Stage>,
-        /// Their frame.
-        plan: Box<FramePlan>,
     },
     /// The paper's scheme ends with its map. Its image is that of blending, whose sums are the same
     /// (a test of the crate's holds that), and its frame takes that one's last pass on top.
@@ -103,10 +99,10 @@ impl Runner {
             }
             Some(Method::Forward(settings)) => {
                 let mut stage = stage(*settings)?;
-                let plan = Box::new(told(stage.plan(light, ready.window))?);
+                let plan = told(stage.plan(light, ready.window))?;
                 let keep = |i: &Instance| ready.keeps(i);
-                let forward = Forward::new(bench.device, &mut stage, &plan, &ready.scene, keep);
-                Some(Self::Forward { forward: Box::new(told(forward)?), stage, plan })
+                let forward = Forward::new(bench.device, *stage, plan, &ready.scene, keep);
+                Some(Self::Forward { forward: Box::new(told(forward)?) })
             }
         })
     }
@@ -123,7 +119,7 @@ impl Runner {
     ) -> Result<(FrameTimes, Option<Vec<f32>>), Problem> {
         match self {
             Self::Node { stage, plan } => Ok((told(stage.run(plan))?, None)),
-            Self::Forward { forward, stage, plan } => Ok((told(forward.run(stage, plan))?, None)),
+            Self::Forward { forward } => Ok((told(forward.run())?, None)),
             Self::Readback { scheme, window, stage, plan } => {
                 let times = told(scheme.run(light, *window))?;
                 let resolve = told(stage.run(plan))?.passes;
@@ -160,7 +156,7 @@ impl Runner {
             Self::Node { stage, .. } | Self::Readback { stage, .. } => {
                 told(stage.visibility()).map(Some)
             }
-            Self::Forward { forward, .. } => told(forward.visibility()).map(Some),
+            Self::Forward { forward } => told(forward.visibility()).map(Some),
             Self::Rays { .. } => Ok(None),
         }
     }
@@ -172,9 +168,10 @@ impl Runner {
     pub fn bytes(&mut self) -> Result<u64, Problem> {
         match self {
             Self::Rays { .. } => Ok(0),
-            Self::Node { stage, .. }
-            | Self::Forward { stage, .. }
-            | Self::Readback { stage, .. } => {
+            Self::Forward { forward } => {
+                Ok(told(forward.memory())?.iter().map(|(_, bytes)| bytes).sum())
+            }
+            Self::Node { stage, .. } | Self::Readback { stage, .. } => {
                 let node = told(stage.node())?;
                 Ok(node.memory().iter().map(|(_, bytes)| bytes).sum())
             }

@@ -21,9 +21,12 @@ use std::time::Duration;
 const BINDINGS: [(u32, vk::DescriptorType); 2] =
     [(0, vk::DescriptorType::UNIFORM_BUFFER), (2, vk::DescriptorType::SAMPLED_IMAGE)];
 
-/// Forward evaluation of a stage's frames.
+/// Forward evaluation of a frame of a stage, which it keeps: it draws the stage's buffers by an image of the
+/// stage's node.
 pub struct Forward {
     device: HeadlessDevice,
+    stage: Stage,
+    plan: FramePlan,
     /// `None` only while it is made.
     painter: Option<Painter>,
     gbuffer_painter: GBufferPainter,
@@ -37,15 +40,15 @@ pub struct Forward {
 }
 
 impl Forward {
-    /// For frames of `plan` on `stage`, whose scene this is; `keep` as the stage's.
+    /// For frames of `plan` on `stage`, whose scene this is; `keep` as the stage's. Runs one.
     ///
     /// # Errors
-    /// [`Error::Frame`] where the plan has no rays of the usual settings: hierarchical search of an
+    /// [`Error::Frame`] where the plan is not the stage's, or has no rays of the usual settings: hierarchical search of an
     /// N-buffer, no eye layer, no texture. Otherwise as [`Stage::new`].
     pub fn new(
         device: &HeadlessDevice,
-        stage: &mut Stage,
-        plan: &FramePlan,
+        mut stage: Stage,
+        plan: FramePlan,
         scene: &Scene,
         keep: impl Fn(&Instance) -> bool,
     ) -> Result<Self, Error> {
@@ -59,6 +62,8 @@ impl Forward {
                     .into(),
             )
         })?;
+        // Refuses another node's plan.
+        stage.run(&plan)?;
         let push = HostBuffer::with_data(
             device,
             "forward.push",
@@ -67,14 +72,17 @@ impl Forward {
         )?;
         let extent = stage.gbuffer().depth.extent();
         let image = |name, format, usage| OwnedImage::new(device, name, format, extent, usage);
+        let draws = draws(scene, stage.buffers(), stage.view(), keep);
         let mut new = Self {
             device: device.clone(),
+            stage,
+            plan,
             painter: None,
             gbuffer_painter: GBufferPainter::new(device)?,
             set_layout: vk::DescriptorSetLayout::null(),
             pool: vk::DescriptorPool::null(),
             set: vk::DescriptorSet::null(),
-            draws: draws(scene, stage.buffers(), stage.view(), keep),
+            draws,
             visible: image(
                 "forward.visible",
                 visibility::FORMAT,
@@ -83,15 +91,16 @@ impl Forward {
             depth: image("forward.depth", DEPTH, Usage::DEPTH_STENCIL_ATTACHMENT)?,
             push,
         };
-        new.make_set(stage, plan)?;
+        new.make_set()?;
         let (formats, layout) = ([visibility::FORMAT], Some(new.set_layout));
         new.painter =
             Some(Painter::new(device, &formats, 1.0, shaders::FORWARD_FRAG, false, layout)?);
         Ok(new)
     }
 
-    fn make_set(&mut self, stage: &mut Stage, plan: &FramePlan) -> Result<(), Error> {
-        let Object::Image { view, .. } = stage.node()?.object(plan, "ray_march.windows") else {
+    fn make_set(&mut self) -> Result<(), Error> {
+        let windows = self.stage.node()?.object(&self.plan, "ray_march.windows");
+        let Object::Image { view, .. } = windows else {
             return Err(Error::Frame("the plan has no windows".into()));
         };
         let raw = self.device.device();
@@ -130,8 +139,8 @@ impl Forward {
                 .descriptor_type(kind)
         });
         let writes = [write_push.buffer_info(&push), write_windows.image_info(&windows)];
-        // SAFETY: the set is new; buffer and view outlive every submit, which are each waited for: the
-        // caller runs this on the stage that it was made for.
+        // SAFETY: the set is new; buffer and view are this object's own, the node's images being changed
+        // by nobody while it keeps the stage.
         unsafe { raw.update_descriptor_sets(&writes, &[]) };
         Ok(())
     }
@@ -142,8 +151,8 @@ impl Forward {
     ///
     /// # Errors
     /// [`Error::Frame`] where the device has no timestamps; otherwise as [`Stage::run`].
-    pub fn run(&self, stage: &mut Stage, plan: &FramePlan) -> Result<FrameTimes, Error> {
-        let mut times = stage.run(plan)?;
+    pub fn run(&mut self) -> Result<FrameTimes, Error> {
+        let mut times = self.run_deferred()?;
         let start = times.passes.iter().position(|(name, _)| *name == "ray_march.start");
         let start = start.ok_or_else(|| Error::Frame("the device has no timestamps".into()))?;
         times.passes.truncate(start);
@@ -152,6 +161,14 @@ impl Forward {
         let ms: f64 = times.passes.iter().map(|(_, ms)| ms).sum();
         times.frame = Duration::from_secs_f64(ms * 1e-3);
         Ok(times)
+    }
+
+    /// A frame of the node alone.
+    ///
+    /// # Errors
+    /// As [`Stage::run`].
+    pub fn run_deferred(&mut self) -> Result<FrameTimes, Error> {
+        self.stage.run(&self.plan)
     }
 
     /// Draws the scene with its rays by the map and levels that are there.
@@ -165,8 +182,24 @@ impl Forward {
     ///
     /// # Errors
     /// [`Error::Vulkan`] where the driver refuses.
-    pub fn paint_gbuffer(&self, stage: &Stage) -> Result<Duration, Error> {
-        self.gbuffer_painter.paint_draws(stage.gbuffer(), &self.draws)
+    pub fn paint_gbuffer(&self) -> Result<Duration, Error> {
+        self.gbuffer_painter.paint_draws(self.stage.gbuffer(), &self.draws)
+    }
+
+    /// Reads what the node's last frame computed.
+    ///
+    /// # Errors
+    /// As [`Stage::visibility`].
+    pub fn deferred_visibility(&mut self) -> Result<Vec<f32>, Error> {
+        self.stage.visibility()
+    }
+
+    /// Name and bytes of everything the node holds.
+    ///
+    /// # Errors
+    /// As [`Stage::node`].
+    pub fn memory(&mut self) -> Result<Vec<(&'static str, u64)>, Error> {
+        Ok(self.stage.node()?.memory())
     }
 
     /// Reads the visible fraction of every pixel's last fragment, row by row; 1 on background.
