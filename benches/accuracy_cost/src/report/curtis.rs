@@ -179,8 +179,9 @@ pub fn levels(report: &Report) -> String {
     let mut out = String::from(
         "<p>The windows of the hierarchical search: memory, ms to make them, ms of classification and \
          rays, and how many texels they hold for each that is asked for (windows of 1 to 24 texels). The \
-         error is of the same rays: it differs by rounding. N-buffers have shaders of their own, \
-         without the branches of the others.</p>\n<table class=\"n\">",
+         rays are the same, and stopped alike; how high, from which the filter's width follows, is told \
+         by the window that stopped them, so that errors differ a little. N-buffers have shaders of \
+         their own, without the branches of the others: what compares without that is classification.</p>\n<table class=\"n\">",
     );
     let head =
         ["scene", "N", "levels", "MB", "build", "classify", "trace", "sum", "held", "mean %"];
