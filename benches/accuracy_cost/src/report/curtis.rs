@@ -181,7 +181,8 @@ pub fn levels(report: &Report) -> String {
          rays, and how many texels they hold for each that is asked for (windows of 1 to 24 texels). The \
          rays are the same, and stopped alike; how high, from which the filter's width follows, is told \
          by the window that stopped them, so that errors differ a little. N-buffers have shaders of \
-         their own, without the branches of the others: what compares without that is classification.</p>\n<table class=\"n\">",
+         their own, without the branches of the others: what compares without that is \
+         classification.</p>\n<table class=\"n\">",
     );
     let head =
         ["scene", "N", "levels", "MB", "build", "classify", "trace", "sum", "held", "mean %"];
