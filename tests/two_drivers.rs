@@ -74,10 +74,9 @@ fn computed(device: &HeadlessDevice, setup: &Setup, drawn: &Drawn, words: &str) 
     stage.visibility().unwrap()
 }
 
-/// What technique and settings may differ by. Rays are stopped or not by comparisons, and not one is
-/// otherwise. The filter weighs pixels by `exp`, whose
-/// last digits are each driver's own; divisions may be 2.5 units of the
-/// last place off, which shows in the last digit of few sums of micro-patches and in no ray.
+/// What technique and settings may differ by. Rays are stopped or not by comparisons, and not one is otherwise.
+/// The filter weighs pixels by `exp`, whose last digits are each driver's own; divisions may be 2.5 units of
+/// the last place off, which shows in the last digit of few sums of micro-patches and in no ray.
 const CASES: [(&str, f32); 5] = [
     ("technique=ray-march filter=off", 0.0),
     ("technique=ray-march filter=off sampling=jittered hash=md5", 0.0),

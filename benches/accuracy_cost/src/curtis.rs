@@ -40,9 +40,9 @@ pub struct Version {
     words: &'static str,
 }
 
-/// The paper's, with its jittered cells and its hash, in its order; then what compares with the second,
-/// and the node's defaults. The hierarchical
-/// search has two layers there and the linear one three (its chapter 4). At fragments there is no filter.
+/// The paper's, with its jittered cells and its hash, in its order; then what compares with the second, and
+/// the node's defaults. The hierarchical search has two layers there and the linear one three (its chapter
+/// 4). At fragments there is no filter.
 pub const VERSIONS: [Version; 5] = [
     Version {
         name: "hierarchical",
