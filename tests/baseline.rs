@@ -66,6 +66,9 @@ const TABLE: &[Row] = &[
     // Beside them, the node's own.
     ("technique=soft-shadow-map map=128", [0.20, 1.00, 2.79]),
     ("technique=soft-shadow-map", [0.20, 0.69, 2.56]),
+    ("technique=ray-march", [0.49, 1.44, 2.03]),
+    ("technique=ray-march rays=64", [0.30, 0.88, 1.62]),
+    ("technique=ray-march rays=256", [0.23, 0.60, 1.48]),
 ];
 
 /// Room for drivers that place edges differently, in percentage points.

@@ -4,8 +4,8 @@
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use antumbra::ray_march::twin::{
-    bounds_of, cell_of, filter_weight, filter_width, md5, one_interval, pcg, sobol, step_down,
-    two_intervals,
+    beveled, bounds_of, cell_of, filter_weight, filter_width, md5, one_interval, pcg, sobol,
+    step_down, two_intervals,
 };
 use antumbra_tests::compare::Tolerance;
 use antumbra_tests::{Function, device};
@@ -37,6 +37,14 @@ fn columns_of_layers() {
     .random(4_000, all)
     .f32(Tolerance::exact(), |x| two_intervals(x[0], x[1], x[2], x[3]).to_vec())
     .check(&device());
+    let all = (height(), height(), height(), height());
+    Function::new("ray_march/column.glsl", "vec2 beveled(vec2 piece, float above, float below)")
+        // A sheet stays what it is, and a thin plate keeps its middle.
+        .case(([0.5, 0.5], 0.1, 0.1))
+        .case(([0.5, 0.4], 1.0, 1.0))
+        .random(2_000, all.prop_map(|(a, b, c, d)| ([a, b], c, d)))
+        .f32(Tolerance::exact(), |x| beveled([x[0], x[1]], x[2], x[3]).to_vec())
+        .check(&device());
     let all = (height(), height(), height(), height());
     Function::new(
         "ray_march/column.glsl",

@@ -32,6 +32,16 @@ float step_down(float h, float neighbour, float behind_it, float opposite)
     return neighbour > 0.0 && drop <= 2.0 * slope ? max(drop, 0.0) : 0.0;
 }
 
+// What is left of a piece of matter over a texel, with surfaces that go so far up or down within half a
+// texel at its top and its bottom. A column is as high all over its texel as at its centre; rays that graze a
+// solid meet the corners that stick out of it, and no more than these are cut off: half the piece at most
+// from either side, and nothing of a sheet.
+vec2 beveled(vec2 piece, float above, float below)
+{
+    float most = 0.5 * max(piece.x - piece.y, 0.0);
+    return vec2(piece.x - min(above, most), piece.y + min(below, most));
+}
+
 // The column of a solid between its nearest faces (top) and its furthest back faces, 0 where it has none.
 vec4 one_interval(float top, float far_back)
 {

@@ -4,7 +4,8 @@
 #include "ray_march/column.glsl"
 
 // Depth layers to columns. A surface that is steeper than its matter is thick would let rays through
-// between texels; each interval reaches down to where its top goes on in the neighbours.
+// between texels; each interval reaches down to where its top goes on in the neighbours. Corners of solids
+// that slope are cut off.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -20,19 +21,43 @@ layout(push_constant) uniform Push {
     float height; // of what is stored as 1
 } push;
 
+const int FRONT = 0;
+const int FAR_FRONT = 1;
+const int NEAR_BACK = 2;
+const int BACK = 3;
+
 float stored(int layer, ivec2 p)
 {
     if (any(lessThan(p, ivec2(0))) || any(greaterThanEqual(p, ivec2(push.map)))) {
         return 0.0;
     }
-    return layer == 0 ? texelFetch(front_depth, p, 0).x : texelFetch(far_front_depth, p, 0).x;
+    return layer == FRONT       ? texelFetch(front_depth, p, 0).x
+           : layer == FAR_FRONT ? texelFetch(far_front_depth, p, 0).x
+           : layer == NEAR_BACK ? texelFetch(near_back_depth, p, 0).x
+                                : texelFetch(back_depth, p, 0).x;
 }
 
-// Nearest faces (0) or furthest front faces (1), 0 where there are none.
+// The height of a layer's faces, 0 where there are none.
 float height_at(int layer, ivec2 p)
 {
     float depth = stored(layer, p);
-    return depth < 1.0 || layer == 0 ? depth * push.height : 0.0;
+    bool nearest = layer == FRONT || layer == NEAR_BACK;
+    return depth < 1.0 || nearest ? depth * push.height : 0.0;
+}
+
+// How far a layer's surface at height h goes up or down within half a texel: along each axis by the
+// neighbour that it goes on to more likely.
+float half_slope(int layer, ivec2 p, float h)
+{
+    float most = 0.0;
+    for (int i = 0; i < 2; ++i) {
+        ivec2 axis = i == 0 ? ivec2(1, 0) : ivec2(0, 1);
+        float before = height_at(layer, p - axis);
+        float after = height_at(layer, p + axis);
+        float least = min(before > 0.0 ? abs(h - before) : FAR_OFF, after > 0.0 ? abs(h - after) : FAR_OFF);
+        most = max(most, least < FAR_OFF ? 0.5 * least : 0.0);
+    }
+    return most;
 }
 
 // How far the surface of a layer goes down from a texel within its neighbours.
@@ -58,17 +83,20 @@ void main()
     vec4 column = vec4(0.0);
     float top = height_at(0, p);
     if (top > 0.0) {
-        float far_back = texelFetch(back_depth, p, 0).x;
-        far_back = far_back < 1.0 ? far_back * push.height : 0.0;
-        if (push.layers == 4) {
-            float near_back = texelFetch(near_back_depth, p, 0).x * push.height;
-            column = two_intervals(top, near_back, height_at(1, p), far_back);
-        } else {
-            column = one_interval(top, far_back);
-        }
-        column.y = min(column.y, top - drop_of(0, p, top));
-        if (column.z > 0.0) {
-            column.w = min(column.w, column.z - drop_of(1, p, column.z));
+        float far_back = height_at(BACK, p);
+        column = push.layers == 4
+                     ? two_intervals(top, height_at(NEAR_BACK, p), height_at(FAR_FRONT, p), far_back)
+                     : one_interval(top, far_back);
+        bool two = column.z > 0.0;
+        float drop = drop_of(FRONT, p, top);
+        float below = half_slope(two ? NEAR_BACK : BACK, p, column.y);
+        column.xy = beveled(column.xy, half_slope(FRONT, p, top), below);
+        column.y = min(column.y, column.x - drop);
+        if (two) {
+            drop = drop_of(FAR_FRONT, p, column.z);
+            float above = half_slope(FAR_FRONT, p, column.z);
+            column.zw = beveled(column.zw, above, half_slope(BACK, p, column.w));
+            column.w = min(column.w, column.z - drop);
         }
     }
     imageStore(windows, ivec3(p, 0), column);

@@ -22,7 +22,10 @@
 //! Whatever has no more than two pieces over a texel, an ear over a back, a leaf over a leaf, is as it is,
 //! and light falls between. A face without its other side is a sheet. Between texels a sheet or a thin
 //! plate that is steep would let rays through: each piece reaches down to where its top goes on in the
-//! neighbouring texels (`step_down`).
+//! neighbouring texels (`step_down`). And a column is as high all over its texel as at its centre, so that rays
+//! that graze a solid meet corners that stick out of it: they are cut off by what the surface's slope makes of
+//! half a texel (`beveled`), which takes away most of the darkness that solids had too much (the bunny's own
+//! shadows, 256 rays: bias −0.44 → 0.09 points, mean error 1.65 → 1.48 %).
 //!
 //! **Search** (section 3.5): windows of an N-buffer hold the highest top and the lowest bottom of their
 //! columns; a ray that stays above or below passes at once, otherwise it looks at smaller windows. We

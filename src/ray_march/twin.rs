@@ -34,6 +34,12 @@ pub fn step_down<T: Float>(h: T, neighbour: T, behind_it: T, opposite: T) -> T {
     if goes_on { drop.max(T::zero()) } else { T::zero() }
 }
 
+/// What is left of a piece, (top, bottom), with surfaces that go so far up or down within half a texel.
+pub fn beveled<T: Float>([top, bottom]: [T; 2], above: T, below: T) -> [T; 2] {
+    let most = ((top - bottom) / (T::one() + T::one())).max(T::zero());
+    [top - above.min(most), bottom + below.min(most)]
+}
+
 /// The column of a solid between its nearest and its furthest back faces, 0 where it has none.
 pub fn one_interval<T: Float>(top: T, far_back: T) -> Column<T> {
     let bottom = if far_back > T::zero() { far_back.min(top) } else { top };
