@@ -1,0 +1,295 @@
+//! The rows: slices → mask → tables; pixels → visible fractions.
+
+use super::push;
+use super::settings::{Combine, Settings};
+use crate::RectangleLight;
+use crate::depth_layers::{Eye, MapView};
+use crate::graph::{
+    Access, COLOR_ATTACHMENTS, Draw, Graph, Layer, Need, Owner, Pass, Push, ResourceId, Target,
+    Use, Work,
+};
+use crate::shaders::{self, Module};
+use crate::visibility::{GBuffer, grid};
+use ash::vk;
+
+/// The width of the image of filtered tiles: the largest that every device has (maxImageDimension2D).
+pub(super) const IMAGE_WIDTH: u32 = 4096;
+
+/// Bins of distances and places for planes, as in `placement.glsl`.
+const PLACEMENT: [u32; 2] = [1024, 1];
+
+/// Slices that one draw counts.
+const SLICES_A_DRAW: u32 = 4 * COLOR_ATTACHMENTS as u32;
+
+/// What a frame gives the technique.
+#[derive(Clone, Copy, Debug)]
+pub struct Inputs<'a> {
+    /// The light.
+    pub light: &'a RectangleLight,
+    /// How the slices look at the scene.
+    pub view: &'a MapView,
+    /// The host's pixels.
+    pub gbuffer: &'a GBuffer,
+    /// Whether anything can be shadowed.
+    pub need: &'a Need,
+}
+
+impl Inputs<'_> {
+    /// How far behind the light the projection point is, m.
+    fn eye(&self) -> f64 {
+        match self.view.eye {
+            Eye::Behind(behind) => behind,
+            Eye::Infinity => 0.0,
+        }
+    }
+}
+
+/// Adds the rows that turn meshes into `visibility`.
+pub fn declare(
+    graph: &mut Graph,
+    visibility: ResourceId,
+    settings: &Settings,
+    inputs: &Inputs,
+) {
+    let placement = declare_placement(graph, settings, inputs);
+    let mask = declare_mask(graph, placement, settings, inputs);
+    let filtered = declare_sums(graph, mask, settings, inputs);
+    let shader = if settings.is_correlated() {
+        shaders::VISIBILITY_SAT_CORRELATED
+    } else {
+        shaders::VISIBILITY_SAT
+    };
+    let gbuffer = inputs.gbuffer;
+    graph.push(Pass::compute(
+        "occlusion_textures.visibility",
+        shader,
+        grid(gbuffer.extent),
+        Push::new(&pixel_push(settings, inputs)),
+        vec![
+            Use::bound(0, gbuffer.depth, Access::SampledCompute),
+            Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
+            Use::bound(2, placement, Access::SampledCompute),
+            Use::bound(3, filtered, Access::SampledCompute),
+            Use::bound(4, visibility, Access::ImageWrite),
+        ],
+        inputs.need,
+    ));
+}
+
+fn declare_placement(graph: &mut Graph, settings: &Settings, inputs: &Inputs) -> ResourceId {
+    let format = vk::Format::R32G32B32A32_SFLOAT;
+    let name = "occlusion_textures.placement";
+    let placement = graph.image(name, format, PLACEMENT, Owner::Transient);
+    let eye = inputs.eye();
+    graph.push(Pass::compute(
+        "occlusion_textures.place",
+        shaders::PLACE,
+        [PLACEMENT[0].div_ceil(64), 1, 1],
+        Push::new(&push::Place {
+            near: (inputs.view.near - eye) as f32,
+            far: (inputs.view.far - eye) as f32,
+            eye: eye as f32,
+            slices: settings.slices as i32,
+        }),
+        vec![Use::bound(0, placement, Access::ImageWrite)],
+        inputs.need,
+    ));
+    placement
+}
+
+/// The names of what is drawn with some faces: rows, images.
+struct Drawn {
+    layer: Layer,
+    rows: [&'static str; 2],
+    images: [&'static str; 8],
+}
+
+const ALL_FACES: Drawn = Drawn {
+    layer: Layer::Slices,
+    rows: ["occlusion_textures.slices", "occlusion_textures.lower_slices"],
+    images: [
+        "occlusion_textures.faces_0",
+        "occlusion_textures.faces_1",
+        "occlusion_textures.faces_2",
+        "occlusion_textures.faces_3",
+        "occlusion_textures.faces_4",
+        "occlusion_textures.faces_5",
+        "occlusion_textures.faces_6",
+        "occlusion_textures.faces_7",
+    ],
+};
+
+const FRONTS: Drawn = Drawn {
+    layer: Layer::FrontSlices,
+    rows: ["occlusion_textures.front_slices", "occlusion_textures.lower_front_slices"],
+    images: [
+        "occlusion_textures.fronts_0",
+        "occlusion_textures.fronts_1",
+        "occlusion_textures.fronts_2",
+        "occlusion_textures.fronts_3",
+        "occlusion_textures.fronts_4",
+        "occlusion_textures.fronts_5",
+        "occlusion_textures.fronts_6",
+        "occlusion_textures.fronts_7",
+    ],
+};
+
+const BACKS: Drawn = Drawn {
+    layer: Layer::BackSlices,
+    rows: ["occlusion_textures.back_slices", "occlusion_textures.lower_back_slices"],
+    images: [
+        "occlusion_textures.backs_0",
+        "occlusion_textures.backs_1",
+        "occlusion_textures.backs_2",
+        "occlusion_textures.backs_3",
+        "occlusion_textures.backs_4",
+        "occlusion_textures.backs_5",
+        "occlusion_textures.backs_6",
+        "occlusion_textures.backs_7",
+    ],
+};
+
+/// Adds the rows that count faces; four slices an image.
+fn draw(
+    graph: &mut Graph,
+    drawn: &Drawn,
+    placement: ResourceId,
+    settings: &Settings,
+    inputs: &Inputs,
+) -> Vec<ResourceId> {
+    let count = SLICES_A_DRAW.min(settings.slices).div_ceil(4) as usize;
+    let draws = settings.slices.div_ceil(SLICES_A_DRAW) as usize;
+    let raster = crate::depth_layers::raster_of(drawn.layer);
+    let mut images = Vec::new();
+    for row in 0..draws {
+        let targets: Vec<_> = drawn.images[COLOR_ATTACHMENTS * row..][..COLOR_ATTACHMENTS]
+            .iter()
+            .map(|name| {
+                let format = vk::Format::R8G8B8A8_UNORM;
+                graph.image(name, format, [inputs.view.side; 2], Owner::Transient)
+            })
+            .collect();
+        let mut uses = vec![Use::bound(0, placement, Access::SampledFragment)];
+        uses.extend(targets.iter().map(|&t| Use::fixed(t, Access::ColorTarget)));
+        graph.push(Pass {
+            name: drawn.rows[row],
+            uses,
+            push: Push::NONE,
+            work: Work::Raster {
+                vertex: shaders::DEPTH_VERT,
+                fragment: Some([shaders::SLICE, shaders::SLICE_LOWER][row]),
+                cull: raster.cull,
+                target: Target::Add,
+                draw: Draw::Layer { layer: drawn.layer, view: 0 },
+            },
+            need: inputs.need.clone(),
+        });
+        images.extend(targets);
+    }
+    let _ = count;
+    images
+}
+
+/// Adds the rows that make one number a texel, a bit a slice.
+fn declare_mask(
+    graph: &mut Graph,
+    placement: ResourceId,
+    settings: &Settings,
+    inputs: &Inputs,
+) -> ResourceId {
+    let (fronts, backs) = if settings.is_correlated() {
+        let fronts = draw(graph, &FRONTS, placement, settings, inputs);
+        (fronts, draw(graph, &BACKS, placement, settings, inputs))
+    } else {
+        let faces = draw(graph, &ALL_FACES, placement, settings, inputs);
+        (faces.clone(), faces)
+    };
+    let side = inputs.view.side;
+    let format = vk::Format::R32_UINT;
+    let mask = graph.image("occlusion_textures.mask", format, [side; 2], Owner::Transient);
+    let mut uses = vec![Use::bound(0, mask, Access::ImageWrite)];
+    for (images, first) in [(&fronts, 1), (&backs, 9)] {
+        // What there is no slice for is not looked at.
+        let bound = |i| images.get(i).or(images.first()).copied();
+        uses.extend((0..8).filter_map(|i| {
+            Some(Use::bound(first + i as u32, bound(i)?, Access::SampledCompute))
+        }));
+    }
+    graph.push(Pass::compute(
+        "occlusion_textures.mask",
+        shaders::MASK,
+        grid([side; 2]),
+        Push::new(&push::Mask {
+            map: side as i32,
+            slices: settings.slices as i32,
+            solid: i32::from(settings.is_correlated()),
+            fill: i32::from(settings.fill),
+        }),
+        uses,
+        inputs.need,
+    ));
+    mask
+}
+
+/// The image that holds all tiles of `values` numbers each.
+fn tiles_image(graph: &mut Graph, format: vk::Format, values: u32) -> ResourceId {
+    let extent = [IMAGE_WIDTH.min(values), values.div_ceil(IMAGE_WIDTH)];
+    graph.image("occlusion_textures.filtered", format, extent, Owner::Transient)
+}
+
+fn declare_sums(
+    graph: &mut Graph,
+    mask: ResourceId,
+    settings: &Settings,
+    inputs: &Inputs,
+) -> ResourceId {
+    let side = inputs.view.side;
+    let tiles = settings.tiles();
+    let sums = tiles_image(graph, vk::Format::R32G32B32A32_UINT, tiles * side * side);
+    let groups = [side.div_ceil(64), tiles, 1];
+    let mut row = |name, shader: Module, push, uses| {
+        graph.push(Pass::compute(name, shader, groups, push, uses, inputs.need));
+    };
+    row(
+        "occlusion_textures.sum_rows",
+        shaders::SUM_ROWS,
+        Push::new(&push::SumRows {
+            map: side as i32,
+            correlated: i32::from(settings.is_correlated()),
+        }),
+        vec![
+            Use::bound(0, mask, Access::SampledCompute),
+            Use::bound(1, sums, Access::ImageWrite),
+        ],
+    );
+    row(
+        "occlusion_textures.sum_columns",
+        shaders::SUM_COLUMNS,
+        Push::new(&push::SumColumns { map: side as i32 }),
+        vec![Use::bound(0, sums, Access::ImageUpdate)],
+    );
+    sums
+}
+
+fn pixel_push(settings: &Settings, inputs: &Inputs) -> push::Visibility {
+    let Inputs { view, gbuffer, light, .. } = inputs;
+    let combine = match settings.combine {
+        Combine::Product | Combine::Correlated => 0,
+        Combine::Sum => 1,
+        Combine::Max => 2,
+    };
+    push::Visibility {
+        light_from_ndc: gbuffer.light_from_ndc,
+        texels_per_uv: view.texels_per_uv().map(|x| x as f32),
+        first: view.first().map(|x| x as f32),
+        half_light: light.half_extents().map(|x| x as f32),
+        extent: gbuffer.extent.map(|e| e as i32),
+        background: gbuffer.background,
+        eye: inputs.eye() as f32,
+        plane: std::env::var("OT_PLANE").map_or(1.0, |p| p.parse().unwrap_or(1.0)),
+        map: view.side as i32,
+        flags: settings.slices as i32
+            | i32::from(gbuffer.mask.is_some()) << 8
+            | combine << 9,
+    }
+}

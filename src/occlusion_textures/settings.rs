@@ -1,0 +1,106 @@
+//! The knobs of occlusion textures.
+
+use crate::Error;
+
+/// How means of rectangles are made ready.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Prefilter {
+    /// Means of 2^k × 2^k texels side by side (Williams 1983).
+    Mip,
+    /// Means of 2^k × 2^k texels beginning at every texel (Décoret 2005).
+    NBuffer,
+    /// Summed-area tables (Crow 1984) in whole numbers.
+    #[default]
+    Sat,
+}
+
+impl Prefilter {
+    /// Every choice and its name.
+    pub const ALL: &[(&str, Self)] =
+        &[("mip", Self::Mip), ("n-buffer", Self::NBuffer), ("sat", Self::Sat)];
+}
+
+/// What slices hide together.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Combine {
+    /// As if they knew nothing of each other (eq. 5).
+    Product,
+    /// As if none lay behind another.
+    Sum,
+    /// As if all did.
+    Max,
+    /// By what they have in common in the kernel's window.
+    #[default]
+    Correlated,
+}
+
+impl Combine {
+    /// Every choice and its name.
+    pub const ALL: &[(&str, Self)] = &[
+        ("product", Self::Product),
+        ("sum", Self::Sum),
+        ("max", Self::Max),
+        ("correlated", Self::Correlated),
+    ];
+}
+
+/// Every knob of occlusion textures but the maps' side, which all techniques share.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// How many slices, 4 to 32; 16 by default.
+    pub slices: u32,
+    /// How they are filtered.
+    pub prefilter: Prefilter,
+    /// How they are combined.
+    pub combine: Combine,
+    /// Whether a slice blocks in the next one too (section 3.4).
+    pub fill: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            slices: 16,
+            prefilter: Prefilter::default(),
+            combine: Combine::default(),
+            fill: false,
+        }
+    }
+}
+
+impl Settings {
+    /// Whether the knob with this key is within its range; keys of other techniques pass.
+    pub(crate) fn in_range(&self, key: &str) -> bool {
+        key != "slices" || (4..=32).contains(&self.slices)
+    }
+
+    /// The switches' names.
+    pub(crate) const SWITCH: &[(&str, bool)] = &[("on", true), ("off", false)];
+
+    /// Whether slices are combined by what they have in common.
+    pub fn is_correlated(&self) -> bool {
+        self.combine == Combine::Correlated
+    }
+
+    /// What is filtered side by side: a slice each, or four.
+    pub fn tiles(&self) -> u32 {
+        if self.is_correlated() { self.slices } else { self.slices.div_ceil(4) }
+    }
+
+    /// Checks the knobs that must agree with the maps' side.
+    pub(crate) fn check_agreement(&self, map: u32) -> Result<(), Error> {
+        let most = super::passes::IMAGE_WIDTH * super::passes::IMAGE_WIDTH;
+        let side = f64::from(most / self.tiles()).sqrt() as u32;
+        if map <= side {
+            return Ok(());
+        }
+        Err(Error::Setting {
+            key: "map".into(),
+            problem: format!(
+                "{} slices of {map} texels a side, filtered, are larger than the image of 4096×4096 that \
+                 every device has; set map={side} or fewer slices",
+                self.slices
+            ),
+        })
+    }
+}
