@@ -123,6 +123,15 @@ pub const VISIBILITY_SAT: Module = module!("occlusion_textures/visibility_sat.co
 /// The same by what slices have in common.
 pub const VISIBILITY_SAT_CORRELATED: Module =
     module!("occlusion_textures/visibility_sat_correlated.comp");
+/// Means of the smallest windows of slices.
+pub const MEANS_FIRST_LEVEL: Module = module!("occlusion_textures/first_level.comp");
+/// Means of a level's windows.
+pub const MEANS_NEXT_LEVEL: Module = module!("occlusion_textures/next_level.comp");
+/// What slices hide of each pixel, from levels of means.
+pub const VISIBILITY_LEVELS: Module = module!("occlusion_textures/visibility_levels.comp");
+/// The same by what slices have in common.
+pub const VISIBILITY_LEVELS_CORRELATED: Module =
+    module!("occlusion_textures/visibility_levels_correlated.comp");
 /// The soft shadow map projected onto the G-buffer.
 pub const RESOLVE: Module = module!("visibility/resolve.comp");
 /// Everything lit.
@@ -184,6 +193,10 @@ pub const ALL: &[Module] = &[
     SUM_COLUMNS,
     VISIBILITY_SAT,
     VISIBILITY_SAT_CORRELATED,
+    MEANS_FIRST_LEVEL,
+    MEANS_NEXT_LEVEL,
+    VISIBILITY_LEVELS,
+    VISIBILITY_LEVELS_CORRELATED,
     RESOLVE,
     LIT,
     LIT_COLOR,

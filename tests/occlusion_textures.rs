@@ -56,10 +56,33 @@ fn explore() {
         for words in all.split(';') {
             let mut stage = setup.stage(&device, &format!("technique=occlusion-textures {words}"));
             let image = setup.visibility(&mut stage);
-            let (truth, _) = truth.get_or_insert_with(|| setup.traced(&stage, 256));
+            let (truth, _) = truth.get_or_insert_with(|| setup.traced(&stage, std::env::var("OT_RAYS").map_or(256, |r| r.parse().unwrap())));
             let s = summary(truth, &image);
             line += &format!(" | {:5.2} {:+5.1} {:.2}", percent(truth, &image), 100.0 * s.bias, 100.0*s.lit_error);
         }
-        println!("{line}");
+        println!("{line} | noise {:.2}", 100.0 * truth.unwrap().1);
+    }
+}
+
+#[test]
+#[ignore]
+fn timing() {
+    let device = device();
+    let all = std::env::var("OT_WORDS").unwrap();
+    let scene = generate::normalized(&model("bunny"), light(1.0)).unwrap();
+    let setup = Setup::ground(&scene, 2.2, 480);
+    for words in all.split(';') {
+        let mut stage = setup.stage(&device, &format!("technique=occlusion-textures {words}"));
+        let plan = stage.plan(&setup.light(), None).unwrap();
+        let mut best: Option<antumbra::gpu::headless::FrameTimes> = None;
+        for _ in 0..7 {
+            let t = stage.run(&plan).unwrap();
+            if best.as_ref().is_none_or(|b| t.frame < b.frame) {
+                best = Some(t);
+            }
+        }
+        let t = best.unwrap();
+        let passes: Vec<_> = t.passes.iter().map(|(n, ms)| format!("{} {ms:.1}", n.replace("occlusion_textures.", ""))).collect();
+        println!("{words}: {:.1} ms: {}", t.frame.as_secs_f64() * 1e3, passes.join(", "));
     }
 }

@@ -12,6 +12,7 @@ layout(push_constant) uniform Push {
     float near; // of the occluders from the light's plane, m
     float far;
     float eye;  // how far behind the light the projection point is, m
+    float plane; // where in a slice its texture lies: 0 above, 1 below
     int slices;
 } push;
 
@@ -32,8 +33,8 @@ void main()
                    vec4(float(slice), push.near + push.eye, push.far - push.near, 0.0));
     } else if (i < BINS + push.slices) {
         int slice = i - BINS;
-        imageStore(placement, ivec2(i, 0),
-                   vec4(distance_of_bin(equal_bin(slice, push.slices)),
-                        distance_of_bin(equal_bin(slice + 1, push.slices)), 0.0, 0.0));
+        float upper = distance_of_bin(equal_bin(slice, push.slices));
+        float lower = distance_of_bin(equal_bin(slice + 1, push.slices));
+        imageStore(placement, ivec2(i, 0), vec4(upper, lower, mix(upper, lower, push.plane), 0.0));
     }
 }

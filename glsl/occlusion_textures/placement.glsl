@@ -2,7 +2,7 @@
 //
 // The distances that the occluders reach are cut into BINS equal parts; a slice is a run of these. The
 // placement is an image of one row: of every bin the slice that it belongs to, then of every slice the
-// distances of its upper and its lower plane, in metres from the light.
+// distances of its upper plane, its lower plane and its texture, in metres from the light.
 
 #ifndef OCCLUSION_TEXTURES_PLACEMENT_GLSL
 #define OCCLUSION_TEXTURES_PLACEMENT_GLSL

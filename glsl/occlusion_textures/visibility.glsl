@@ -1,34 +1,4 @@
-// See visibility_sat.comp. The including shader declares `filtered` and `mean_of`.
-
-layout(local_size_x = 8, local_size_y = 8) in;
-
-layout(set = 0, binding = 0) uniform texture2D gbuffer_depth;
-layout(set = 0, binding = 1) uniform texture2D gbuffer_mask;
-layout(set = 0, binding = 2) uniform texture2D placement;
-layout(set = 0, binding = 4, r32f) writeonly uniform image2D visibility;
-
-#include "common/gbuffer.glsl"
-#include "common/light.glsl"
-#include "occlusion_textures/placement.glsl"
-#include "occlusion_textures/kernel.glsl"
-#include "occlusion_textures/combine.glsl"
-
-layout(push_constant) uniform Push {
-    mat4 light_from_ndc;
-    vec2 texels_per_uv; // map texels a unit of u and v
-    vec2 first;         // texel coordinates of u = v = 0
-    vec2 half_light;    // half the light's width and height, m
-    ivec2 extent;       // of the G-buffer
-    float background;
-    float eye;          // how far behind the light the projection point is, m
-    float plane;        // where in a slice its texture lies: 0 above, 1 below
-    int map;            // the map's side in texels
-    int flags;          // slices; bit 8: masked; from bit 9 on how slices are combined; from bit 12 on levels
-} push;
-
-int slices() { return push.flags & 255; }
-bool is_masked() { return (push.flags & 256) != 0; }
-int combination() { return push.flags >> 9 & 7; }
+// The including shader declares `filtered` and `mean_of`.
 
 // What a tile's slices hide of the light's rays through a kernel: outside the map nothing.
 vec4 window_of(int tile, vec4 kernel)
@@ -48,11 +18,11 @@ float hidden_at(Receiver r)
     float hidden = 0.0;
     for (int slice = 0; slice < slices(); ++slice) {
         vec4 planes = texelFetch(placement, ivec2(BINS + slice, 0), 0);
-        float weight = slice_weight(r.position.z, planes.x, planes.y, r.blocks);
+        float weight = slice_weight(r.position.z, planes.x, planes.y, r.blocks || !IS_CORRELATED);
         if (weight == 0.0) {
             break;
         }
-        vec4 kernel = kernel_of(m, r.position, mix(planes.x, planes.y, push.plane), push.half_light);
+        vec4 kernel = kernel_of(m, r.position, planes.z, push.half_light);
 #ifdef CORRELATED
         vec4 window = window_of(slice, kernel);
         float with = hidden_with_correlated(hidden, window);

@@ -5,9 +5,9 @@
 // The same, with slices combined by what they have in common.
 
 #define CORRELATED
+#include "occlusion_textures/pixels.glsl"
 
 layout(set = 0, binding = 3) uniform utexture2D filtered;
 
-#include "occlusion_textures/tile.glsl"
 #include "occlusion_textures/sat.glsl"
 #include "occlusion_textures/visibility.glsl"

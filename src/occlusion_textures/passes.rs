@@ -1,13 +1,14 @@
 //! The rows: slices → mask → tables; pixels → visible fractions.
 
 use super::push;
-use super::settings::{Combine, Settings};
+use super::settings::{Combine, Prefilter, Settings};
 use crate::RectangleLight;
 use crate::depth_layers::{Eye, MapView};
 use crate::graph::{
     Access, COLOR_ATTACHMENTS, Draw, Graph, Layer, Need, Owner, Pass, Push, ResourceId, Target,
     Use, Work,
 };
+use crate::nbuffer::Levels;
 use crate::shaders::{self, Module};
 use crate::visibility::{GBuffer, grid};
 use ash::vk;
@@ -53,25 +54,35 @@ pub fn declare(
 ) {
     let placement = declare_placement(graph, settings, inputs);
     let mask = declare_mask(graph, placement, settings, inputs);
-    let filtered = declare_sums(graph, mask, settings, inputs);
-    let shader = if settings.is_correlated() {
-        shaders::VISIBILITY_SAT_CORRELATED
+    let sums = settings.prefilter == Prefilter::Sat;
+    let filtered = if sums {
+        declare_sums(graph, mask, settings, inputs)
     } else {
-        shaders::VISIBILITY_SAT
+        declare_levels(graph, mask, settings, inputs)
+    };
+    let shader = match (sums, settings.is_correlated()) {
+        (true, false) => shaders::VISIBILITY_SAT,
+        (true, true) => shaders::VISIBILITY_SAT_CORRELATED,
+        (false, false) => shaders::VISIBILITY_LEVELS,
+        (false, true) => shaders::VISIBILITY_LEVELS_CORRELATED,
     };
     let gbuffer = inputs.gbuffer;
+    let mut uses = vec![
+        Use::bound(0, gbuffer.depth, Access::SampledCompute),
+        Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
+        Use::bound(2, placement, Access::SampledCompute),
+        Use::bound(3, filtered, Access::SampledCompute),
+        Use::bound(4, visibility, Access::ImageWrite),
+    ];
+    if !sums {
+        uses.push(Use::bound(5, mask, Access::SampledCompute));
+    }
     graph.push(Pass::compute(
         "occlusion_textures.visibility",
         shader,
         grid(gbuffer.extent),
         Push::new(&pixel_push(settings, inputs)),
-        vec![
-            Use::bound(0, gbuffer.depth, Access::SampledCompute),
-            Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
-            Use::bound(2, placement, Access::SampledCompute),
-            Use::bound(3, filtered, Access::SampledCompute),
-            Use::bound(4, visibility, Access::ImageWrite),
-        ],
+        uses,
         inputs.need,
     ));
 }
@@ -89,6 +100,8 @@ fn declare_placement(graph: &mut Graph, settings: &Settings, inputs: &Inputs) ->
             near: (inputs.view.near - eye) as f32,
             far: (inputs.view.far - eye) as f32,
             eye: eye as f32,
+            // Published at the bottom; in the middle the error is half as large.
+            plane: if settings.is_correlated() { 0.5 } else { 1.0 },
             slices: settings.slices as i32,
         }),
         vec![Use::bound(0, placement, Access::ImageWrite)],
@@ -157,7 +170,6 @@ fn draw(
     settings: &Settings,
     inputs: &Inputs,
 ) -> Vec<ResourceId> {
-    let count = SLICES_A_DRAW.min(settings.slices).div_ceil(4) as usize;
     let draws = settings.slices.div_ceil(SLICES_A_DRAW) as usize;
     let raster = crate::depth_layers::raster_of(drawn.layer);
     let mut images = Vec::new();
@@ -186,7 +198,6 @@ fn draw(
         });
         images.extend(targets);
     }
-    let _ = count;
     images
 }
 
@@ -271,6 +282,50 @@ fn declare_sums(
     sums
 }
 
+fn declare_levels(
+    graph: &mut Graph,
+    mask: ResourceId,
+    settings: &Settings,
+    inputs: &Inputs,
+) -> ResourceId {
+    let side = inputs.view.side;
+    let tiles = settings.tiles();
+    let levels = Levels { map: side, kind: settings.level_kind() };
+    let format = vk::Format::R16G16B16A16_SFLOAT;
+    let image = tiles_image(graph, format, tiles * levels.values());
+    let kind = levels.kind.code();
+    let groups = |level| {
+        let [x, y, _] = grid([levels.side(level); 2]);
+        [x, y, tiles]
+    };
+    graph.push(Pass::compute(
+        "occlusion_textures.first_level",
+        shaders::MEANS_FIRST_LEVEL,
+        groups(1),
+        Push::new(&push::FirstLevel {
+            map: side as i32,
+            kind,
+            correlated: i32::from(settings.is_correlated()),
+        }),
+        vec![
+            Use::bound(0, mask, Access::SampledCompute),
+            Use::bound(1, image, Access::ImageWrite),
+        ],
+        inputs.need,
+    ));
+    for level in 2..=levels.top() {
+        graph.push(Pass::compute(
+            "occlusion_textures.next_level",
+            shaders::MEANS_NEXT_LEVEL,
+            groups(level),
+            Push::new(&push::NextLevel { map: side as i32, kind, level: level as i32 }),
+            vec![Use::bound(0, image, Access::ImageUpdate)],
+            inputs.need,
+        ));
+    }
+    image
+}
+
 fn pixel_push(settings: &Settings, inputs: &Inputs) -> push::Visibility {
     let Inputs { view, gbuffer, light, .. } = inputs;
     let combine = match settings.combine {
@@ -286,10 +341,10 @@ fn pixel_push(settings: &Settings, inputs: &Inputs) -> push::Visibility {
         extent: gbuffer.extent.map(|e| e as i32),
         background: gbuffer.background,
         eye: inputs.eye() as f32,
-        plane: std::env::var("OT_PLANE").map_or(1.0, |p| p.parse().unwrap_or(1.0)),
         map: view.side as i32,
         flags: settings.slices as i32
             | i32::from(gbuffer.mask.is_some()) << 8
-            | combine << 9,
+            | combine << 9
+            | i32::from(settings.prefilter == Prefilter::Mip) << 12,
     }
 }

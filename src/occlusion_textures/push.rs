@@ -12,6 +12,8 @@ pub struct Place {
     pub far: f32,
     /// How far behind the light the projection point is, m.
     pub eye: f32,
+    /// Where in a slice its texture lies: 0 above, 1 below.
+    pub plane: f32,
     /// How many.
     pub slices: i32,
 }
@@ -48,6 +50,30 @@ pub struct SumColumns {
     pub map: i32,
 }
 
+/// `first_level.comp`
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct FirstLevel {
+    /// The map's side in texels.
+    pub map: i32,
+    /// Of levels.
+    pub kind: i32,
+    /// 1: a tile a slice; 0: a tile four slices.
+    pub correlated: i32,
+}
+
+/// `next_level.comp`
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct NextLevel {
+    /// The map's side in texels.
+    pub map: i32,
+    /// Of levels.
+    pub kind: i32,
+    /// The one to make.
+    pub level: i32,
+}
+
 /// `visibility_*.comp`
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -66,8 +92,6 @@ pub struct Visibility {
     pub background: f32,
     /// How far behind the light the projection point is, m.
     pub eye: f32,
-    /// Where in a slice its texture lies: 0 above, 1 below.
-    pub plane: f32,
     /// The map's side in texels.
     pub map: i32,
     /// Slices and what is switched on, see `visibility.glsl`.

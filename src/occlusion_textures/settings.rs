@@ -1,6 +1,7 @@
 //! The knobs of occlusion textures.
 
 use crate::Error;
+use crate::nbuffer::{self, Levels};
 
 /// How means of rectangles are made ready.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -87,18 +88,32 @@ impl Settings {
         if self.is_correlated() { self.slices } else { self.slices.div_ceil(4) }
     }
 
+    /// The windows of [`Prefilter::Mip`] and [`Prefilter::NBuffer`].
+    pub(super) fn level_kind(&self) -> nbuffer::Kind {
+        if self.prefilter == Prefilter::Mip { nbuffer::Kind::Mip } else { nbuffer::Kind::NBuffer }
+    }
+
+    /// Values that are filtered of a map of `map` texels a side.
+    fn values(&self, map: u32) -> u64 {
+        let of_a_tile = match self.prefilter {
+            Prefilter::Sat => u64::from(map) * u64::from(map),
+            _ => Levels { map, kind: self.level_kind() }.values().into(),
+        };
+        of_a_tile * u64::from(self.tiles())
+    }
+
     /// Checks the knobs that must agree with the maps' side.
     pub(crate) fn check_agreement(&self, map: u32) -> Result<(), Error> {
-        let most = super::passes::IMAGE_WIDTH * super::passes::IMAGE_WIDTH;
-        let side = f64::from(most / self.tiles()).sqrt() as u32;
-        if map <= side {
+        let fits = |map: u32| self.values(map) <= u64::from(super::passes::IMAGE_WIDTH).pow(2);
+        if fits(map) {
             return Ok(());
         }
+        let most = (16..map).rev().find(|&m| fits(m)).unwrap_or(16);
         Err(Error::Setting {
             key: "map".into(),
             problem: format!(
-                "{} slices of {map} texels a side, filtered, are larger than the image of 4096×4096 that \
-                 every device has; set map={side} or fewer slices",
+                "{} slices of {map} texels a side, filtered, take more than the image of 4096×4096 that \
+                 every device has; set map={most}, prefilter=mip or fewer slices",
                 self.slices
             ),
         })
