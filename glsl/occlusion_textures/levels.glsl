@@ -34,7 +34,7 @@ vec4 window_mean(Levels l, int tile, int level, vec2 centre)
 
 // The mean over a part of the map, `lo` to `hi` in texels: windows as wide as its shorter side, side by
 // side along the longer one.
-vec4 mean_of(int tile, int map, vec2 lo, vec2 hi)
+vec4 mean_of(int tile, int channel, int map, vec2 lo, vec2 hi)
 {
     Levels l = Levels(map, level_kind());
     vec2 size = hi - lo;

@@ -12,56 +12,59 @@ uvec4 sum_at(int tile, int map, ivec2 p)
     return none ? uvec4(0u) : sum;
 }
 
-// Sums over the texels of a row and of all rows before it: from the first whole texel to the last, and of
-// the texels at both ends, of which the rectangle has a part.
-struct Row {
-    uvec4 whole;
-    uvec4 first;
-    uvec4 last;
-};
-
-Row row_at(int tile, int map, int y, int a, int b)
+// Part of a rectangle of texels, from the sums at its corners.
+uvec4 inside(uvec4 upper_left, uvec4 upper_right, uvec4 lower_left, uvec4 lower_right)
 {
-    uvec4 from = sum_at(tile, map, ivec2(a, y));
-    uvec4 to = sum_at(tile, map, ivec2(b, y));
-    return Row(to - from, sum_at(tile, map, ivec2(a + 1, y)) - from,
-               sum_at(tile, map, ivec2(b + 1, y)) - to);
+    return lower_right - lower_left - upper_right + upper_left;
 }
 
+// The mean over a part of the map, `lo` to `hi` in texels; all of a tile's channels, where that of the slice
+// is not nothing or everything. Of the texels at its rim it has a part, so the
+// columns a, a + 1, b, b + 1 and as many rows cut it into nine pieces, of which each counts in proportion.
 // Sums are taken apart before they become real numbers, so that small rectangles far from the map's first
 // texel are exact as well.
-vec4 between(Row upper, Row lower, float before, float after)
-{
-    return vec4(lower.whole - upper.whole) - before * vec4(lower.first - upper.first) +
-           after * vec4(lower.last - upper.last);
-}
-
-// The sum over a part of the map, `lo` to `hi` in texels.
-vec4 rectangle_sum(int tile, int map, vec2 lo, vec2 hi)
+vec4 mean_of(int tile, int channel, int map, vec2 lo, vec2 hi)
 {
     ivec2 a = ivec2(floor(lo));
-    ivec2 b = ivec2(floor(hi));
-    vec2 before = lo - vec2(a);
-    vec2 after = hi - vec2(b);
-    Row first = row_at(tile, map, a.y, a.x, b.x);
-    Row last = row_at(tile, map, b.y, a.x, b.x);
-    return between(first, last, before.x, after.x) -
-           before.y * between(first, row_at(tile, map, a.y + 1, a.x, b.x), before.x, after.x) +
-           after.y * between(last, row_at(tile, map, b.y + 1, a.x, b.x), before.x, after.x);
-}
-
-vec4 mean_of(int tile, int map, vec2 lo, vec2 hi)
-{
-    ivec2 a = ivec2(floor(lo));
-    ivec2 b = ivec2(ceil(hi));
-    uvec4 around = sum_at(tile, map, b) - sum_at(tile, map, ivec2(a.x, b.y)) -
-                sum_at(tile, map, ivec2(b.x, a.y)) + sum_at(tile, map, a);
-    // Most windows hold nothing.
-    if (around == uvec4(0u)) {
-        return vec4(0.0);
+    ivec2 b = ivec2(ceil(hi)) - 1;
+    // The outermost corners hold all: where that is nothing or everything of the slice, as it mostly is, the
+    // rest is not asked for.
+    uvec4 s00 = sum_at(tile, map, a);
+    uvec4 s30 = sum_at(tile, map, ivec2(b.x + 1, a.y));
+    uvec4 s03 = sum_at(tile, map, ivec2(a.x, b.y + 1));
+    uvec4 s33 = sum_at(tile, map, b + 1);
+    uvec4 all_of_it = inside(s00, s30, s03, s33);
+    ivec2 texels = b + 1 - a;
+    if (all_of_it[channel] == 0u || all_of_it[channel] == uint(texels.x * texels.y)) {
+        return vec4(all_of_it[channel] == 0u ? 0.0 : 1.0);
     }
+    uvec4 s10 = sum_at(tile, map, ivec2(a.x + 1, a.y));
+    uvec4 s20 = sum_at(tile, map, ivec2(b.x, a.y));
+    uvec4 s01 = sum_at(tile, map, ivec2(a.x, a.y + 1));
+    uvec4 s11 = sum_at(tile, map, a + 1);
+    uvec4 s21 = sum_at(tile, map, ivec2(b.x, a.y + 1));
+    uvec4 s31 = sum_at(tile, map, ivec2(b.x + 1, a.y + 1));
+    uvec4 s02 = sum_at(tile, map, ivec2(a.x, b.y));
+    uvec4 s12 = sum_at(tile, map, ivec2(a.x + 1, b.y));
+    uvec4 s22 = sum_at(tile, map, b);
+    uvec4 s32 = sum_at(tile, map, ivec2(b.x + 1, b.y));
+    uvec4 s13 = sum_at(tile, map, ivec2(a.x + 1, b.y + 1));
+    uvec4 s23 = sum_at(tile, map, ivec2(b.x, b.y + 1));
+    // What is left out of the first and of the last row and column.
+    vec2 before = lo - vec2(a);
+    vec2 after = vec2(b + 1) - hi;
+    vec4 left = vec4(inside(s00, s10, s03, s13));
+    vec4 right = vec4(inside(s20, s30, s23, s33));
+    vec4 upper = vec4(inside(s00, s30, s01, s31));
+    vec4 lower = vec4(inside(s02, s32, s03, s33));
+    vec4 corners = before.y * (before.x * vec4(inside(s00, s10, s01, s11)) +
+                               after.x * vec4(inside(s20, s30, s21, s31))) +
+                   after.y * (before.x * vec4(inside(s02, s12, s03, s13)) +
+                              after.x * vec4(inside(s22, s32, s23, s33)));
+    vec4 sum = vec4(all_of_it) - before.x * left - after.x * right - before.y * upper - after.y * lower +
+               corners;
     vec2 size = hi - lo;
-    return clamp(rectangle_sum(tile, map, lo, hi) / (size.x * size.y), 0.0, 1.0);
+    return clamp(sum / (size.x * size.y), 0.0, 1.0);
 }
 
 #endif

@@ -1,7 +1,7 @@
 // The including shader declares `filtered` and `mean_of`.
 
 // What a tile's slices hide of the light's rays through a kernel: outside the map nothing.
-vec4 window_of(int tile, vec4 kernel)
+vec4 window_of(int tile, int channel, vec4 kernel)
 {
     vec2 lo = max(kernel.xy, vec2(0.0));
     vec2 hi = min(kernel.zw, vec2(push.map));
@@ -9,14 +9,14 @@ vec4 window_of(int tile, vec4 kernel)
         return vec4(0.0);
     }
     vec2 inside = (hi - lo) / (kernel.zw - kernel.xy);
-    return inside.x * inside.y * mean_of(tile, push.map, lo, hi);
+    return inside.x * inside.y * mean_of(tile, channel, push.map, lo, hi);
 }
 
 float hidden_at(Receiver r)
 {
     MapWindow m = MapWindow(push.texels_per_uv, push.first, push.eye);
     float hidden = 0.0;
-    for (int slice = 0; slice < slices(); ++slice) {
+    for (int slice = 0; slice < slices() && hidden < 1.0; ++slice) {
         vec4 planes = texelFetch(placement, ivec2(BINS + slice, 0), 0);
         float weight = slice_weight(r.position.z, planes.x, planes.y, r.blocks || !IS_CORRELATED);
         if (weight == 0.0) {
@@ -24,11 +24,11 @@ float hidden_at(Receiver r)
         }
         vec4 kernel = kernel_of(m, r.position, planes.z, push.half_light);
 #ifdef CORRELATED
-        vec4 window = window_of(slice, kernel);
+        vec4 window = window_of(slice, 0, kernel);
         float with = hidden_with_correlated(hidden, window);
         hidden = mix(hidden, with, weight);
 #else
-        vec4 window = window_of(slice >> 2, kernel);
+        vec4 window = window_of(slice >> 2, slice & 3, kernel);
         hidden = hidden_with(combination(), hidden, weight * window[slice & 3]);
 #endif
     }
