@@ -108,6 +108,12 @@ pub const FILTER_ROWS_COLOR: Module = module!("ray_march/filter_rows_color.comp"
 pub const FILTER_COLUMNS_COLOR: Module = module!("ray_march/filter_columns_color.comp");
 /// Where slices begin and end.
 pub const PLACE: Module = module!("occlusion_textures/place.comp");
+/// An empty histogram of distances.
+pub const HISTOGRAM_START: Module = module!("occlusion_textures/histogram_start.comp");
+/// How many texels have a face in each bin of distances.
+pub const HISTOGRAM: Module = module!("occlusion_textures/histogram.comp");
+/// Where slices begin and end, by that.
+pub const PLACE_FITTED: Module = module!("occlusion_textures/place_fitted.comp");
 /// Faces counted in the first sixteen slices.
 pub const SLICE: Module = module!("occlusion_textures/slice.frag");
 /// Faces counted in the others.
@@ -186,6 +192,9 @@ pub const ALL: &[Module] = &[
     FILTER_ROWS_COLOR,
     FILTER_COLUMNS_COLOR,
     PLACE,
+    HISTOGRAM_START,
+    HISTOGRAM,
+    PLACE_FITTED,
     SLICE,
     SLICE_LOWER,
     MASK,

@@ -4,5 +4,5 @@ mod passes;
 pub mod push;
 mod settings;
 
-pub use passes::{Inputs, declare};
-pub use settings::{Combine, Prefilter, Settings};
+pub use passes::{Inputs, declare, wanted};
+pub use settings::{Combine, Placement, Prefilter, Settings};

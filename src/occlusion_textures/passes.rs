@@ -3,7 +3,7 @@
 use super::push;
 use super::settings::{Combine, Prefilter, Settings};
 use crate::RectangleLight;
-use crate::depth_layers::{Eye, MapView};
+use crate::depth_layers::{self, DepthLayers, Eye, MapView, Wanted};
 use crate::graph::{
     Access, COLOR_ATTACHMENTS, Draw, Graph, Layer, Need, Owner, Pass, Push, ResourceId, Target,
     Use, Work,
@@ -16,8 +16,14 @@ use ash::vk;
 /// The width of the image of filtered tiles: the largest that every device has (maxImageDimension2D).
 pub(super) const IMAGE_WIDTH: u32 = 4096;
 
-/// Bins of distances and places for planes, as in `placement.glsl`.
+/// Bins of distances, as in `placement.glsl`.
+const BINS: u32 = 960;
+
+/// Bins and planes of slices.
 const PLACEMENT: [u32; 2] = [1024, 1];
+
+/// The most texels a side of the layers that the histogram is made of.
+const HISTOGRAM_MAP: u32 = 128;
 
 /// Slices that one draw counts.
 const SLICES_A_DRAW: u32 = 4 * COLOR_ATTACHMENTS as u32;
@@ -45,14 +51,21 @@ impl Inputs<'_> {
     }
 }
 
-/// Adds the rows that turn meshes into `visibility`.
+/// The layers that the histogram is made of: few texels tell as much.
+pub fn wanted(settings: &Settings, map: u32) -> Wanted {
+    let back = settings.is_fitted();
+    Wanted { map: map.min(HISTOGRAM_MAP), back, inner: false, receiver_map: None }
+}
+
+/// Adds the rows that turn meshes into `visibility`; `layers` where slices are fitted to them.
 pub fn declare(
     graph: &mut Graph,
+    layers: Option<&DepthLayers>,
     visibility: ResourceId,
     settings: &Settings,
     inputs: &Inputs,
 ) {
-    let placement = declare_placement(graph, settings, inputs);
+    let placement = declare_placement(graph, layers, settings, inputs);
     let mask = declare_mask(graph, placement, settings, inputs);
     let sums = settings.prefilter == Prefilter::Sat;
     let filtered = if sums {
@@ -87,27 +100,70 @@ pub fn declare(
     ));
 }
 
-fn declare_placement(graph: &mut Graph, settings: &Settings, inputs: &Inputs) -> ResourceId {
+fn declare_placement(
+    graph: &mut Graph,
+    layers: Option<&DepthLayers>,
+    settings: &Settings,
+    inputs: &Inputs,
+) -> ResourceId {
     let format = vk::Format::R32G32B32A32_SFLOAT;
     let name = "occlusion_textures.placement";
     let placement = graph.image(name, format, PLACEMENT, Owner::Transient);
     let eye = inputs.eye();
+    let pushed = Push::new(&push::Place {
+        near: (inputs.view.near - eye) as f32,
+        far: (inputs.view.far - eye) as f32,
+        eye: eye as f32,
+        // Published at the bottom; in the middle the error is smaller.
+        plane: if settings.is_correlated() { 0.5 } else { 1.0 },
+        slices: settings.slices as i32,
+    });
+    let mut uses = vec![Use::bound(0, placement, Access::ImageWrite)];
+    let (name, shader, groups) = match layers {
+        Some(layers) => {
+            let histogram = declare_histogram(graph, layers, settings, inputs);
+            uses.push(Use::bound(1, histogram, Access::BufferReadCompute));
+            ("occlusion_textures.place_fitted", shaders::PLACE_FITTED, 1)
+        }
+        None => ("occlusion_textures.place", shaders::PLACE, PLACEMENT[0].div_ceil(64)),
+    };
+    graph.push(Pass::compute(name, shader, [groups, 1, 1], pushed, uses, inputs.need));
+    placement
+}
+
+fn declare_histogram(
+    graph: &mut Graph,
+    layers: &DepthLayers,
+    settings: &Settings,
+    inputs: &Inputs,
+) -> ResourceId {
+    let histogram = graph.buffer("occlusion_textures.histogram", 4 * u64::from(BINS));
     graph.push(Pass::compute(
-        "occlusion_textures.place",
-        shaders::PLACE,
-        [PLACEMENT[0].div_ceil(64), 1, 1],
-        Push::new(&push::Place {
-            near: (inputs.view.near - eye) as f32,
-            far: (inputs.view.far - eye) as f32,
-            eye: eye as f32,
-            // Published at the bottom; in the middle the error is half as large.
-            plane: if settings.is_correlated() { 0.5 } else { 1.0 },
-            slices: settings.slices as i32,
-        }),
-        vec![Use::bound(0, placement, Access::ImageWrite)],
+        "occlusion_textures.histogram_start",
+        shaders::HISTOGRAM_START,
+        [BINS.div_ceil(64), 1, 1],
+        Push::NONE,
+        vec![Use::bound(0, histogram, Access::BufferWriteCompute)],
         inputs.need,
     ));
-    placement
+    let map = wanted(settings, inputs.view.side).map;
+    graph.push(Pass::compute(
+        "occlusion_textures.histogram",
+        shaders::HISTOGRAM,
+        grid([map; 2]),
+        Push::new(&push::Histogram {
+            map: map as i32,
+            near: inputs.view.near as f32,
+            span: (inputs.view.far - inputs.view.near) as f32,
+        }),
+        vec![
+            Use::bound(0, layers.front, Access::SampledCompute),
+            Use::bound(1, layers.back.unwrap_or(layers.front), Access::SampledCompute),
+            Use::bound(2, histogram, Access::BufferUpdate),
+        ],
+        inputs.need,
+    ));
+    histogram
 }
 
 /// The names of what is drawn with some faces: rows, images.
@@ -171,7 +227,7 @@ fn draw(
     inputs: &Inputs,
 ) -> Vec<ResourceId> {
     let draws = settings.slices.div_ceil(SLICES_A_DRAW) as usize;
-    let raster = crate::depth_layers::raster_of(drawn.layer);
+    let raster = depth_layers::raster_of(drawn.layer);
     let mut images = Vec::new();
     for row in 0..draws {
         let targets: Vec<_> = drawn.images[COLOR_ATTACHMENTS * row..][..COLOR_ATTACHMENTS]

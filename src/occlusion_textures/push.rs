@@ -2,7 +2,19 @@
 
 use bytemuck::{Pod, Zeroable};
 
-/// `place.comp`
+/// `histogram.comp`
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Histogram {
+    /// The layers' side in texels.
+    pub map: i32,
+    /// Distance of the near plane from the projection point, m.
+    pub near: f32,
+    /// Of the occluders, m.
+    pub span: f32,
+}
+
+/// `place.comp` and `place_fitted.comp`
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Place {

@@ -21,6 +21,21 @@ impl Prefilter {
         &[("mip", Self::Mip), ("n-buffer", Self::NBuffer), ("sat", Self::Sat)];
 }
 
+/// Where slices begin and end.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Placement {
+    /// All are as thick (section 3.4).
+    #[default]
+    Uniform,
+    /// Thin where there is much in them.
+    Fitted,
+}
+
+impl Placement {
+    /// Every choice and its name.
+    pub const ALL: &[(&str, Self)] = &[("uniform", Self::Uniform), ("fitted", Self::Fitted)];
+}
+
 /// What slices hide together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Combine {
@@ -50,6 +65,8 @@ impl Combine {
 pub struct Settings {
     /// How many slices, 4 to 32; 16 by default.
     pub slices: u32,
+    /// Where they begin and end.
+    pub placement: Placement,
     /// How they are filtered.
     pub prefilter: Prefilter,
     /// How they are combined.
@@ -62,6 +79,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             slices: 16,
+            placement: Placement::default(),
             prefilter: Prefilter::default(),
             combine: Combine::default(),
             fill: false,
@@ -86,6 +104,11 @@ impl Settings {
     /// What is filtered side by side: a slice each, or four.
     pub fn tiles(&self) -> u32 {
         if self.is_correlated() { self.slices } else { self.slices.div_ceil(4) }
+    }
+
+    /// Whether slices are placed by what there is.
+    pub fn is_fitted(&self) -> bool {
+        self.placement == Placement::Fitted
     }
 
     /// The windows of [`Prefilter::Mip`] and [`Prefilter::NBuffer`].

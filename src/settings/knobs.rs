@@ -201,6 +201,14 @@ pub const KNOBS: &[Knob] = &[
                 number",
     },
     Knob {
+        key: "placement",
+        techniques: &[Technique::OcclusionTextures],
+        unit: "choice",
+        range: "uniform, fitted",
+        default: "uniform",
+        about: "where slices begin and end: all as thick, or thin where many nearest and furthest faces are",
+    },
+    Knob {
         key: "prefilter",
         techniques: &[Technique::OcclusionTextures],
         unit: "choice",

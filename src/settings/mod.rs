@@ -7,7 +7,7 @@ pub use knobs::{KNOBS, Knob};
 use crate::Error;
 use crate::baseline::Settings as Baseline;
 use crate::nbuffer;
-use crate::occlusion_textures::{Combine, Prefilter, Settings as OcclusionTextures};
+use crate::occlusion_textures::{Combine, Placement, Prefilter, Settings as OcclusionTextures};
 use crate::ray_march::{Hash, Layers, Projection, Sampling, Search, Settings as RayMarch};
 use crate::soft_shadow_map::{Accumulate, Receivers, Settings as SoftShadowMap, Sides};
 use std::fmt::Display;
@@ -134,6 +134,7 @@ impl Settings {
             "classify" => r.classify = choose(key, value, RayMarch::SWITCH)?,
             "filter" => r.filter = choose(key, value, RayMarch::SWITCH)?,
             "slices" => o.slices = number(key, value)?,
+            "placement" => o.placement = choose(key, value, Placement::ALL)?,
             "prefilter" => o.prefilter = choose(key, value, Prefilter::ALL)?,
             "combine" => o.combine = choose(key, value, Combine::ALL)?,
             "fill" => o.fill = choose(key, value, OcclusionTextures::SWITCH)?,
@@ -174,6 +175,7 @@ impl Settings {
             "classify" => name_of(RayMarch::SWITCH, r.classify),
             "filter" => name_of(RayMarch::SWITCH, r.filter),
             "slices" => o.slices.to_string(),
+            "placement" => name_of(Placement::ALL, o.placement),
             "prefilter" => name_of(Prefilter::ALL, o.prefilter),
             "combine" => name_of(Combine::ALL, o.combine),
             "fill" => name_of(OcclusionTextures::SWITCH, o.fill),
