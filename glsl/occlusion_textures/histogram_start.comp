@@ -6,7 +6,7 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0, std430) writeonly buffer Histogram { uint histogram[]; };
+layout(set = 0, binding = 0, std430) buffer Histogram { uint histogram[]; };
 
 void main()
 {

@@ -159,7 +159,9 @@ pub fn raster_of(layer: Layer) -> Raster {
 fn names_of(layer: Layer) -> (&'static str, &'static str) {
     match layer {
         // Never asked for: slices are drawn by their own room.
-        Layer::Slices | Layer::FrontSlices | Layer::BackSlices | Layer::Front => (FRONT, "depth_layers.front"),
+        Layer::Slices | Layer::FrontSlices | Layer::BackSlices | Layer::Front => {
+            (FRONT, "depth_layers.front")
+        }
         Layer::Back => (BACK, "depth_layers.back"),
         Layer::NearBack => ("depth_layers.near_back_depth", "depth_layers.near_back"),
         Layer::FarFront => ("depth_layers.far_front_depth", "depth_layers.far_front"),

@@ -65,11 +65,10 @@ pub(super) fn wanted(settings: &Settings) -> depth_layers::Wanted {
     match settings.technique {
         Technique::SoftShadowMap => soft_shadow_map::wanted(&settings.soft_shadow_map, map),
         Technique::RayMarch => ray_march::wanted(&settings.ray_march, map),
-        Technique::OcclusionTextures => occlusion_textures::wanted(&settings.occlusion_textures, map),
-        Technique::Hard
-        | Technique::Pcss
-        | Technique::ManyLights
-        | Technique::BackProjection => {
+        Technique::OcclusionTextures => {
+            occlusion_textures::wanted(&settings.occlusion_textures, map)
+        }
+        Technique::Hard | Technique::Pcss | Technique::ManyLights | Technique::BackProjection => {
             depth_layers::Wanted { map, back: false, inner: false, receiver_map: None }
         }
     }
@@ -196,8 +195,12 @@ pub(super) fn build(
         }
         Technique::OcclusionTextures => {
             let layers = settings.occlusion_textures.is_fitted().then(|| layers(&mut graph));
-            let inputs =
-                occlusion_textures::Inputs { light, view: &views.occluders, gbuffer: &gbuffer, need };
+            let inputs = occlusion_textures::Inputs {
+                light,
+                view: &views.occluders,
+                gbuffer: &gbuffer,
+                need,
+            };
             let settings = &settings.occlusion_textures;
             occlusion_textures::declare(&mut graph, layers.as_ref(), visibility, settings, &inputs);
         }

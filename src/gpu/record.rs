@@ -8,7 +8,9 @@ use super::objects::{Object, Objects, whole};
 use super::pipeline::{RowPipeline, variant};
 use super::timing::Timing;
 use crate::frame::{Faces, FramePlan, Geometry, MeshBuffers, MeshDraw};
-use crate::graph::{self, COLOR_ATTACHMENTS, Draw, Layer, Pass, ResourceBarrier, ResourceId, Target, Use, Work};
+use crate::graph::{
+    self, COLOR_ATTACHMENTS, Draw, Layer, Pass, ResourceBarrier, ResourceId, Target, Use, Work,
+};
 use ash::vk;
 use std::ffi::CString;
 

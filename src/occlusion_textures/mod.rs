@@ -3,6 +3,7 @@
 mod passes;
 pub mod push;
 mod settings;
+pub mod twin;
 
 pub use passes::{Inputs, declare, wanted};
 pub use settings::{Combine, Placement, Prefilter, Settings};

@@ -278,9 +278,11 @@ fn declare_mask(
     for (images, first) in [(&fronts, 1), (&backs, 9)] {
         // What there is no slice for is not looked at.
         let bound = |i| images.get(i).or(images.first()).copied();
-        uses.extend((0..8).filter_map(|i| {
-            Some(Use::bound(first + i as u32, bound(i)?, Access::SampledCompute))
-        }));
+        uses.extend(
+            (0..8).filter_map(|i| {
+                Some(Use::bound(first + i as u32, bound(i)?, Access::SampledCompute))
+            }),
+        );
     }
     graph.push(Pass::compute(
         "occlusion_textures.mask",
@@ -324,10 +326,7 @@ fn declare_sums(
             map: side as i32,
             correlated: i32::from(settings.is_correlated()),
         }),
-        vec![
-            Use::bound(0, mask, Access::SampledCompute),
-            Use::bound(1, sums, Access::ImageWrite),
-        ],
+        vec![Use::bound(0, mask, Access::SampledCompute), Use::bound(1, sums, Access::ImageWrite)],
     );
     row(
         "occlusion_textures.sum_columns",
@@ -363,10 +362,7 @@ fn declare_levels(
             kind,
             correlated: i32::from(settings.is_correlated()),
         }),
-        vec![
-            Use::bound(0, mask, Access::SampledCompute),
-            Use::bound(1, image, Access::ImageWrite),
-        ],
+        vec![Use::bound(0, mask, Access::SampledCompute), Use::bound(1, image, Access::ImageWrite)],
         inputs.need,
     ));
     for level in 2..=levels.top() {

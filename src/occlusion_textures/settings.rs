@@ -25,9 +25,9 @@ impl Prefilter {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Placement {
     /// All are as thick (section 3.4).
-    #[default]
     Uniform,
     /// Thin where there is much in them.
+    #[default]
     Fitted,
 }
 

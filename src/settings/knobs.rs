@@ -205,7 +205,7 @@ pub const KNOBS: &[Knob] = &[
         techniques: &[Technique::OcclusionTextures],
         unit: "choice",
         range: "uniform, fitted",
-        default: "uniform",
+        default: "fitted",
         about: "where slices begin and end: all as thick, or thin where many nearest and furthest faces are",
     },
     Knob {
