@@ -1,4 +1,69 @@
-//! Occlusion textures (Eisemann and Décoret 2008).
+//! Occlusion textures (Eisemann and Décoret 2008): the visible fraction from prefiltered slices of the occluders.
+//!
+//! ```text
+//!        projection point           once         place      where slices begin and end
+//!              ·                                 slices     every face counted in its slice
+//!          ────┴────  light                      mask       one number a texel, a bit a slice
+//!          \       /                             sums       means of any rectangle
+//!   - - - - \-----/ - - - - -       each pixel   visibility for each slice between the pixel and the light
+//!      ┌──┐  \   /                                          the mean over its kernel, combined
+//!   - -│  │- -\-/- ┌─┐- - - -   ┐
+//!      └──┘    │   └─┘          │ a slice, flattened into its texture
+//!   - - - - - -│- - - - - - -   ┘
+//!              ● pixel
+//! ```
+//! The light's rays to a point fill a rectangle in every plane between them (section 3.1, eq. 4); what of it a
+//! flattened slice covers is what that slice hides of the light. The mean of a rectangle of any size costs the
+//! same, so the cost does not grow with the light, and there is no noise.
+//!
+//! **Slices** (section 3.4). The map is seen from so far behind the light that the light fits its window. Every
+//! face is counted, whatever lies in front of it: four times four channels of eight bits are drawn into at once
+//! and blending adds, which every device can; from the seventeenth slice on by a second draw. Then a texel is
+//! one number, a bit a slice, and filling a slice into the next one (`fill=on`) is a shift.
+//!
+//! **Filtering** (section 3.2). `prefilter=sat`, the default: summed-area tables of whole numbers, exact for
+//! maps up to 4096², and with parts of texels at a rectangle's rim counted in proportion, so that nothing jumps.
+//! `n-buffer` and `mip` interpolate between levels of windows of 2^k × 2^k texels as published; a rectangle
+//! that is longer than wide is covered by up to eight windows side by side. On the drivers measured the table
+//! is not only the exact one of the three but the fastest, to make as to ask: N-buffers are made at every
+//! texel of every level, and both others take eight fetches where a table mostly takes four.
+//!
+//! **Combination** (section 3.3). As published the visible fraction is the product of what each slice lets
+//! through (eq. 5), as if slices were independent; `sum` and `max` are the papers' others. But a closed solid
+//! lies in two slices at least, and these hide the same part of the light: the product counts it twice. Where
+//! we depart (`combine=correlated`, the default):
+//! * Fronts and backs are counted apart. What is entered and not yet left is inside: a solid blocks in each
+//!   slice from its front to its back. A column in which not everything entered is left goes through an open
+//!   mesh, and only its faces block. Both sides of a double-sided face are counted, so that it is a sheet.
+//! * The model: over the kernel's rectangle, let a be the share of texels that the slice blocks, b the share
+//!   that any slice nearer the light blocks, and j the share of both. j is ab where they are independent,
+//!   min(a, b) where one lies behind the other, max(0, a + b − 1) where they are side by side. Where j lies
+//!   between these is how they are correlated, and so far between the same bounds for a and h is what the slice
+//!   has in common with what is already hidden, h, which was seen through other rectangles: h grows by a less
+//!   that. It is exact for independent, nested and disjoint slices, however many. Where the window does not
+//!   tell (it is all covered, or not at all) the share of what goes on from the slice right above decides.
+//!   All four shares are channels of one texel, so they cost the slice no other fetch.
+//! * A slice's texture lies in its middle instead of its lower plane, or (`placement=fitted`) at the mean
+//!   distance of its nearest and furthest faces.
+//!
+//! **Placement.** Uniform as published, or, the default and the authors' future work (section 5), by a histogram of
+//! the distances of nearest and furthest faces, made on the device: half of a slice's share is distance, half is
+//! faces. `combine=product placement=uniform` is what was published, and a test holds it against an independent
+//! version.
+//!
+//! **Self-shadowing** (section 3.4). There is no split into occluders and receivers. A point's own slice does
+//! not count, and the slice above fades in as the point goes away from it: what is nearer than a slice's
+//! thickness shadows too little or not at all: creases and contacts of an occluder with itself are too light.
+//! The part of the light below the pixel's own plane is a closed form, as for the other techniques
+//! here. Where we depart (`correlated` only): pixels that receive and do not block, as a ground does, are in no
+//! slice, and all that is nearer the light than they are counts (what the authors suggest in section 4.1).
+//!
+//! **Limits.** What lies within a slice is one plane: the error is half a slice's thickness at most, so thin
+//! slices near the receiver matter. A mesh drawn by the host and ready-made occluder maps are refused, as
+//! neither can be sorted into slices. Three open meshes over one texel may make what is between two of them
+//! solid. More than 255 faces over a texel in one slice count as 255. What is filtered is one image of 4096² at
+//! most: 16 slices of 1024², 32 of 724²; the N-buffer takes six times as much at 256². The light has a place: one
+//! infinitely far, of an angular size, is not there yet.
 
 mod passes;
 pub mod push;
