@@ -32,6 +32,7 @@ ifndef QUICK
 	@benches/fetch_dragon.sh || echo "without the dragon: it could not be fetched"
 	$(CARGO) bench --bench soft_shadow_map -- --out out/bench
 	$(CARGO) bench --bench ray_march
+	$(CARGO) bench --bench occlusion_textures
 endif
 
 # ---------------------------------------------------------------------------------------------

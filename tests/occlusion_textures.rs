@@ -84,15 +84,10 @@ const TABLE: &[Row] = &[
     (PUBLISHED, [0.20, 3.82, 19.21, 5.30, 8.22, 8.37, 8.75, 1.34, 6.42, 8.17]),
     (FILLED, [0.20, 12.49, 30.79, 10.25, 16.96, 18.18, 21.31, 13.31, 10.50, 13.61]),
     (
-        "combine=product placement=uniform slices=8",
-        [0.20, 4.60, 19.20, 6.02, 7.04, 7.41, 8.20, 1.46, 6.09, 7.90],
-    ),
-    (
         "combine=product placement=uniform slices=4",
         [0.20, 6.16, 19.20, 8.42, 5.05, 5.82, 7.23, 1.96, 8.34, 7.62],
     ),
     ("", [0.20, 1.24, 1.16, 0.53, 0.97, 1.13, 0.60, 1.27, 2.13, 1.28]),
-    ("slices=8", [0.20, 1.24, 1.16, 0.53, 1.26, 1.24, 0.79, 1.28, 2.91, 2.10]),
     ("slices=4", [0.20, 1.28, 1.16, 0.51, 1.44, 1.57, 0.73, 1.44, 4.56, 3.86]),
     ("placement=uniform", [0.20, 1.50, 1.16, 1.13, 0.89, 1.12, 0.54, 1.27, 2.23, 1.39]),
     ("prefilter=n-buffer", [0.63, 2.04, 2.12, 0.51, 2.10, 2.31, 1.86, 1.77, 2.27, 2.29]),
@@ -392,7 +387,7 @@ fn flicker(device: &HeadlessDevice, words: &str, tilt: f64) -> f32 {
     card("below", DVec3::new(-0.6, 1.0, 0.0), 0.1, 0.0);
     card("between", DVec3::new(0.0, 2.1, 0.0), 1.0, tilt);
     let setup = Setup::ground(&scene, 2.2, 48);
-    let mut stage = setup.stage(device, &format!("technique=occlusion-textures {words}"));
+    let mut stage = setup.stage(device, &format!("technique=occlusion-textures map=96 {words}"));
     let mut before: Option<Vec<f32>> = None;
     let mut worst = 0.0f32;
     for step in 0..=200 {
@@ -433,5 +428,6 @@ fn nothing_flickers_when_an_occluder_goes_through_slices() {
     }
 }
 
-/// Measured, and half as much more: a millimetre alone moves what is seen of the light by 0.001.
-const FLICKER: [f32; 3] = [0.038, 0.039, 0.023];
+/// Measured, and half as much more. A millimetre moves what is seen of the light by 0.001; a row of texels at
+/// the card's edge that comes or goes, 1 cm seen twice as large, by 0.02.
+const FLICKER: [f32; 3] = [0.055, 0.045, 0.04];
