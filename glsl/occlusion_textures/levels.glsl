@@ -32,6 +32,12 @@ vec4 window_mean(Levels l, int tile, int level, vec2 centre)
     return mix(upper, lower, f.y);
 }
 
+// Means do not tell nothing from little.
+bool is_empty(int tile, int map, vec2 lo, vec2 hi)
+{
+    return false;
+}
+
 // The mean over a part of the map, `lo` to `hi` in texels: windows as wide as its shorter side, side by
 // side along the longer one.
 vec4 mean_of(int tile, int channel, int map, vec2 lo, vec2 hi)

@@ -18,6 +18,16 @@ uvec4 inside(uvec4 upper_left, uvec4 upper_right, uvec4 lower_left, uvec4 lower_
     return lower_right - lower_left - upper_right + upper_left;
 }
 
+// Whether a tile has nothing in a part of the map.
+bool is_empty(int tile, int map, vec2 lo, vec2 hi)
+{
+    ivec2 a = ivec2(floor(lo));
+    ivec2 b = ivec2(ceil(hi));
+    uvec4 all_of_it = inside(sum_at(tile, map, a), sum_at(tile, map, ivec2(b.x, a.y)),
+                             sum_at(tile, map, ivec2(a.x, b.y)), sum_at(tile, map, b));
+    return all_of_it == uvec4(0u);
+}
+
 // The mean over a part of the map, `lo` to `hi` in texels; all of a tile's channels, where that of the slice
 // is not nothing or everything. Of the texels at its rim it has a part, so the
 // columns a, a + 1, b, b + 1 and as many rows cut it into nine pieces, of which each counts in proportion.

@@ -12,9 +12,37 @@ vec4 window_of(int tile, int channel, vec4 kernel)
     return inside.x * inside.y * mean_of(tile, channel, push.map, lo, hi);
 }
 
+// Whether none of the kernels of a point meets anything. Their rims go one way from slice to slice, so they
+// lie between the first one and the last.
+bool is_lit(MapWindow m, vec3 position)
+{
+    float first = texelFetch(placement, ivec2(BINS, 0), 0).z;
+    float last = texelFetch(placement, ivec2(BINS + slices() - 1, 0), 0).z;
+    vec4 a = kernel_of(m, position, first, push.half_light);
+    vec4 b = kernel_of(m, position, min(last, position.z), push.half_light);
+    vec2 lo = max(min(a.xy, b.xy), vec2(0.0));
+    vec2 hi = min(max(a.zw, b.zw), vec2(push.map));
+    bool lit = any(lessThanEqual(hi, lo));
+#ifdef CORRELATED
+    // What the last slice and those above it block is what any does.
+    lit = lit || is_empty(slices() - 1, push.map, lo, hi);
+#else
+    if (!lit) {
+        lit = true;
+        for (int tile = 0; lit && 4 * tile < slices(); ++tile) {
+            lit = is_empty(tile, push.map, lo, hi);
+        }
+    }
+#endif
+    return lit;
+}
+
 float hidden_at(Receiver r)
 {
     MapWindow m = MapWindow(push.texels_per_uv, push.first, push.eye);
+    if (is_lit(m, r.position)) {
+        return 0.0;
+    }
     float hidden = 0.0;
     for (int slice = 0; slice < slices() && hidden < 1.0; ++slice) {
         vec4 planes = texelFetch(placement, ivec2(BINS + slice, 0), 0);
