@@ -1,5 +1,8 @@
 // The including shader declares `filtered` and `mean_of`.
 
+// What is hidden only grows: from here on the slices that are left change nothing that an eye sees.
+const float OPAQUE = 1.0 - 1.0 / 1024.0;
+
 // What a tile's slices hide of the light's rays through a kernel: outside the map nothing.
 vec4 window_of(int tile, int channel, vec4 kernel)
 {
@@ -44,7 +47,7 @@ float hidden_at(Receiver r)
         return 0.0;
     }
     float hidden = 0.0;
-    for (int slice = 0; slice < slices() && hidden < 1.0; ++slice) {
+    for (int slice = 0; slice < slices() && hidden < OPAQUE; ++slice) {
         vec4 planes = texelFetch(placement, ivec2(BINS + slice, 0), 0);
         float weight = slice_weight(r.position.z, planes.x, planes.y, r.blocks || !IS_CORRELATED);
         if (weight == 0.0) {
