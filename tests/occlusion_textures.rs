@@ -215,35 +215,6 @@ fn an_independent_version_of_the_published_formulas_says_the_same() {
     }
 }
 
-/// Whole numbers: every sum of a table of 4096² texels is what its mask says.
-#[test]
-fn a_table_of_the_largest_map_is_exact() {
-    let device = device();
-    let scene = generate::card(light(0.4));
-    let setup = Setup::ground(&scene, 1.0, 8);
-    let words = "technique=occlusion-textures map=4096 slices=4 combine=product";
-    let mut stage = setup.stage(&device, words);
-    let plan = stage.plan(&setup.light(), None).unwrap();
-    stage.run(&plan).unwrap();
-    let (mask, [width, height]) = stage.inspect::<u32>(&plan, "occlusion_textures.mask").unwrap();
-    assert_eq!([width, height], [4096; 2]);
-    let (sums, _) = stage.inspect::<[u32; 4]>(&plan, "occlusion_textures.filtered").unwrap();
-    let mut above = vec![[0u32; 4]; 4096];
-    for (y, (bits, row)) in mask.chunks_exact(4096).zip(sums.chunks_exact(4096)).enumerate() {
-        let mut before = [0u32; 4];
-        for (x, (bits, sum)) in bits.iter().zip(row).enumerate() {
-            for (slice, b) in before.iter_mut().enumerate() {
-                *b += bits >> slice & 1;
-                above[x][slice] += *b;
-            }
-            assert_eq!(*sum, above[x], "texel {x}, {y}");
-        }
-    }
-    let most = sums.last().unwrap().iter().max().unwrap();
-    println!("the largest sum is {most}");
-    assert!(*most > 1 << 23, "a float of 16 bits could hold {most}");
-}
-
 /// Kernels of every size from three prefilters: tables are exact, and the others' interpolation between
 /// levels is off by what it is.
 #[test]
@@ -372,62 +343,3 @@ fn bad_input_is_refused_with_a_sentence() {
     let graph = frame::full_graph(&Description { settings: words, ..Description::new([64, 64]) });
     assert!(graph.passes().iter().any(|p| p.name == "occlusion_textures.visibility"));
 }
-
-/// How much more or less of the light any pixel sees from one of 201 frames to the next, while a card sinks
-/// by 0.2 m, a millimetre a frame, between two others that stay where they are.
-fn flicker(device: &HeadlessDevice, words: &str, tilt: f64) -> f32 {
-    let mut scene = generate::stage(light(1.0));
-    let mut card = |name: &str, at: DVec3, side: f64, turn: f64| {
-        let mut mesh = generate::quad(side, side);
-        mesh.double_sided = true;
-        let place = DMat4::from_translation(at) * DMat4::from_rotation_x(turn);
-        scene.add(name, mesh, place, Role::Occluder);
-    };
-    card("above", DVec3::new(0.6, 3.0, 0.0), 0.1, 0.0);
-    card("below", DVec3::new(-0.6, 1.0, 0.0), 0.1, 0.0);
-    card("between", DVec3::new(0.0, 2.1, 0.0), 1.0, tilt);
-    let setup = Setup::ground(&scene, 2.2, 48);
-    let mut stage = setup.stage(device, &format!("technique=occlusion-textures map=96 {words}"));
-    let mut before: Option<Vec<f32>> = None;
-    let mut worst = 0.0f32;
-    for step in 0..=200 {
-        let mut meshes = stage.instances().to_vec();
-        let down = DMat4::from_translation(DVec3::NEG_Y * 0.001 * f64::from(step));
-        let between = meshes.last_mut().unwrap();
-        between.world_from_mesh = down * between.world_from_mesh;
-        let meshes = &*meshes.leak();
-        let plan = stage.plan_with(&setup.light(), |frame| frame.meshes = meshes).unwrap();
-        stage.run(&plan).unwrap();
-        let now = stage.visibility().unwrap();
-        worst = worst.max(before.map_or(0.0, |b| largest(&b, &now)));
-        before = Some(now);
-    }
-    worst
-}
-
-/// A card parallel to the light goes from one slice to the next all at once, and its texture then jumps by a
-/// slice's thickness t = 2 m/16. Its edge at x = ½, 2 m under the light and 2 m above the ground, is seen from
-/// the ground at x in front of the light's point l = (x − x_e r)/(1 − r), r = 4 m/d = 2, so that a jump of d by
-/// t moves l by (x − x_e) t · r/d ≤ t on a penumbra where x − x_e ≤ 1: of a light of 1 m, t along each axis.
-/// Nothing jumps by more than 2t, published or not. A card that is tilted goes over row by row, and a fitted
-/// texture stays with its card.
-#[test]
-fn nothing_flickers_when_an_occluder_goes_through_slices() {
-    let device = device();
-    let thickness = 2.0 / 16.0;
-    for (words, tilt, most) in [
-        (PUBLISHED, 0.0, 2.0 * thickness),
-        ("placement=uniform", 0.0, 2.0 * thickness),
-        ("placement=uniform", 0.5, FLICKER[0]),
-        ("", 0.0, FLICKER[1]),
-        ("", 0.5, FLICKER[2]),
-    ] {
-        let worst = flicker(&device, words, tilt);
-        println!("{words}, tilted by {tilt}: {worst:.4} of at most {most}");
-        assert!(worst > 0.0 && worst <= most, "{words}, {tilt}: {worst}");
-    }
-}
-
-/// Measured, and half as much more. A millimetre moves what is seen of the light by 0.001; a row of texels at
-/// the card's edge that comes or goes, 1 cm seen twice as large, by 0.02.
-const FLICKER: [f32; 3] = [0.055, 0.045, 0.04];
