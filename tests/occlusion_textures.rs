@@ -301,6 +301,25 @@ fn a_scene_thinner_than_a_slice_could_be_works() {
     assert!(error < 1.5, "{error}");
 }
 
+/// A light as wide as the sun, 0.53°, and 100 objects' sizes away: as good as infinitely far, and no worse than
+/// one that is near.
+#[test]
+fn a_rectangle_far_away_is_a_sun() {
+    let device = device();
+    let away = 100.0;
+    let half = away * 0.265f64.to_radians().tan();
+    let sun = RectangleLight::new(DVec3::Y * away, DVec3::X * half, DVec3::NEG_Z * half).unwrap();
+    let scene = generate::normalized(&model("bunny"), sun).unwrap();
+    let setup = Setup::ground(&scene, 1.0, 160);
+    let mut stage = setup.stage(&device, "technique=occlusion-textures map=512");
+    let image = setup.visibility(&mut stage);
+    let (truth, noise) = setup.traced(&stage, 256);
+    let error = percent(&truth, &image);
+    let narrow = truth.iter().filter(|v| **v > 0.0 && **v < 1.0).count();
+    println!("{error:.2} %, noise {:.2} points, {narrow} pixels in penumbra", 100.0 * noise);
+    assert!(narrow > 100 && error < 1.5, "{error}");
+}
+
 #[test]
 fn bad_input_is_refused_with_a_sentence() {
     let refuse = |words: &str| {

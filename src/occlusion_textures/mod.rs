@@ -58,12 +58,26 @@
 //! here. Where we depart (`correlated` only): pixels that receive and do not block, as a ground does, are in no
 //! slice, and all that is nearer the light than they are counts (what the authors suggest in section 4.1).
 //!
+//! **A sun** is a rectangle of its angular size, far away: a test has one 100 objects' sizes off. The near plane
+//! stands 0.1 % of the distance in front of the nearest occluder, which from some hundred sizes on takes slices.
+//!
+//! **Measured** (lavapipe, 256² maps, 16 slices; mean error in percent over shadow and penumbra, published, filled,
+//! ours): tall box 5.3, 10.3, 0.5; bunny 8.2, 17.0, 1.0; Suzanne 8.8, 21.3, 0.6; stacked cards 3.8, 12.5, 1.2;
+//! slats 19, 31, 1.2, the last being the truth's noise. Leaves at random 1.3, 13.3, 1.3: there the product is
+//! right, and ours finds the same. The bunny and Suzanne as their own occluders 6.4, 10.5, 2.1 and 8.2, 13.6, 1.3.
+//! Four fitted slices do better than sixteen published ones on all of them but leaves. Ours takes 1.1 to 1.3
+//! times the time of the product with the same slices; its time grows with the slices' number to the power of
+//! 0.8 and with the map's side to the power of 0.5. Behind an occluder a pixel costs the same for every light from
+//! 0.7 object sizes on, and less from a smaller one, whose kernels are more often empty or full; one whose
+//! kernels meet nothing costs next to nothing, so a view costs what its shadows are large.
+//!
 //! **Limits.** What lies within a slice is one plane: the error is half a slice's thickness at most, so thin
 //! slices near the receiver matter. A mesh drawn by the host and ready-made occluder maps are refused, as
-//! neither can be sorted into slices. Three open meshes over one texel may make what is between two of them
-//! solid. More than 255 faces over a texel in one slice count as 255. What is filtered is one image of 4096² at
-//! most: 16 slices of 1024², 32 of 724²; the N-buffer takes six times as much at 256². The light has a place: one
-//! infinitely far, of an angular size, is not there yet.
+//! neither can be sorted into slices. Two open meshes over one texel may make what is between them solid. More
+//! than 255 faces over a texel in one slice count as 255. Another occluder may lighten a pixel, where it makes two
+//! slices look more alike than they are. What is filtered is one image of 4096² at most: 16 slices of 1024², 32 of
+//! 724²; levels of an N-buffer are six times as many at 256². A host's fixed window is not looked at, as with
+//! `ray-march`.
 
 mod passes;
 pub mod push;
