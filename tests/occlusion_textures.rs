@@ -301,6 +301,24 @@ fn a_scene_thinner_than_a_slice_could_be_works() {
     assert!(error < 1.5, "{error}");
 }
 
+/// The same passes over as many texels and pixels, whatever the light's size; what a pixel then costs is in the
+/// bench.
+#[test]
+fn the_work_does_not_grow_with_the_light() {
+    let device = device();
+    let work = |side: f64| {
+        let scene = normalized("bunny", side);
+        let setup = Setup::ground(&scene, 2.2, 32);
+        let mut stage = setup.stage(&device, "technique=occlusion-textures");
+        let plan = stage.plan(&setup.light(), None).unwrap().plan;
+        let passes = plan.steps.iter().map(|s| &plan.graph.passes()[s.pass]);
+        passes.map(|p| format!("{} {:?}", p.name, p.work)).collect::<Vec<_>>()
+    };
+    let small = work(0.05);
+    assert!(small.len() > 8, "{small:?}");
+    assert_eq!(small, work(2.0));
+}
+
 /// A light as wide as the sun, 0.53°, and 100 objects' sizes away: as good as infinitely far, and no worse than
 /// one that is near.
 #[test]
