@@ -5,12 +5,12 @@
 
 use antumbra::occlusion_textures::Combine;
 use antumbra::occlusion_textures::twin::{
-    bin_of, hidden_with, hidden_with_correlated, kernel_of, slice_weight, solid_of,
+    bin_of, hidden_with, hidden_with_correlated, kernel_of, slice_weight, solid_of, tile_bits,
 };
 use antumbra_tests::compare::Tolerance;
 use antumbra_tests::{Function, device};
 use num_traits::Float;
-use proptest::prelude::{Strategy, any};
+use proptest::prelude::{Just, Strategy, any};
 
 #[test]
 fn distances_lie_in_bins() {
@@ -71,7 +71,7 @@ fn combinations() {
             "occlusion_textures/combine.glsl",
             "float hidden_with(int combine, float hidden, float more)",
         )
-        .random(1_000, (proptest::prelude::Just(code), 0.0..=1.0f32, 0.0..=1.0f32))
+        .random(1_000, (Just(code), 0.0..=1.0f32, 0.0..=1.0f32))
         .f64(Tolerance::absolute(2e-7), move |x| vec![hidden_with(combine, x[1], x[2])])
         .check(&device());
     }
@@ -123,6 +123,22 @@ fn columns_of_faces() {
             vec![solid_of(&faces)]
         })
         .check(&device());
+}
+
+#[test]
+fn tiles_hold_slices() {
+    let tiles = (any::<u32>(), any::<bool>())
+        .prop_flat_map(|(mask, one)| (Just(mask), 0..if one { 32i32 } else { 8 }, Just(one)));
+    Function::new(
+        "occlusion_textures/tile.glsl",
+        "uvec4 tile_bits(uint mask, int tile, bool correlated)",
+    )
+    .case((u32::MAX, 31, true))
+    .case((1, 0, true))
+    .case((1, 1, true))
+    .random(4_000, tiles)
+    .bits(|x| tile_bits(x[0], x[1], x[2] != 0).to_vec())
+    .check(&device());
 }
 
 /// Where the right answer is known: a pair of slices that are independent, identical (one behind the other)

@@ -97,6 +97,19 @@ pub fn solid_of(faces: &[(u32, u32)]) -> u32 {
     if depth == 0 { there | inside } else { there }
 }
 
+/// What a tile holds of a texel: four slices, or of one slice whether it blocks, whether any above it does, both,
+/// and whether it goes on from the one right above.
+pub fn tile_bits(mask: u32, tile: u32, correlated: bool) -> [u32; 4] {
+    let blocks = |slice: u32| mask >> slice & 1 == 1;
+    if !correlated {
+        return [0, 1, 2, 3].map(|i| u32::from(blocks(4 * tile + i)));
+    }
+    let own = blocks(tile);
+    let above = (0..tile).any(blocks);
+    let right_above = tile > 0 && blocks(tile - 1);
+    [own, above, own && above, own && right_above].map(u32::from)
+}
+
 /// Occlusion textures as published: uniform slices, flattened to their lower planes.
 pub struct Published {
     view: MapView,
