@@ -34,6 +34,7 @@ endif
 ifndef QUICK
 	$(CARGO) bench --bench soft_shadow_map -- --out out/bench
 	$(CARGO) bench --bench ray_march
+	$(CARGO) bench --bench occlusion_textures
 endif
 
 # ---------------------------------------------------------------------------------------------

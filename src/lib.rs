@@ -72,6 +72,7 @@ pub mod graph;
 pub mod light;
 pub mod nbuffer;
 pub mod node;
+pub mod occlusion_textures;
 pub mod ray_march;
 pub mod scene;
 pub mod settings;

@@ -2,7 +2,7 @@
 
 use crate::frame::{self, Description, Frame, FrameGraph, FramePlan, Limits, Stamp};
 use crate::gpu::{Allocator, Host, HostDraw, NodeObjects, Requirements, Retired};
-use crate::graph::{Draw, Layer, Owner, Pass, Shape, Work};
+use crate::graph::{Draw, Layer, Owner, Pass, Shape, Target, Work};
 use crate::settings::Technique;
 use crate::soft_shadow_map::Accumulate;
 use crate::{Error, depth_layers};
@@ -163,7 +163,12 @@ impl ShadowNode {
     /// such layer.
     pub fn layer_pass(&self, layer: Layer) -> Option<LayerPass> {
         let FrameGraph { graph, .. } = frame::nominal(&self.description, self.limits);
-        let draws = |p: &Pass| matches!(p.work, Work::Raster { draw: Draw::Layer { layer: l, .. }, .. } if l == layer);
+        let draws = |p: &Pass| match p.work {
+            Work::Raster { draw: Draw::Layer { layer: l, .. }, target, .. } => {
+                l == layer && matches!(target, Target::Depth { .. })
+            }
+            _ => false,
+        };
         let kind = graph.kinds().position(draws)?;
         let (render_pass, extent) = self.objects.render_pass(kind)?;
         Some(LayerPass { render_pass, extent, raster: depth_layers::raster_of(layer) })

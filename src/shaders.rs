@@ -106,6 +106,38 @@ pub const TRACE_COLOR: Module = module!("ray_march/trace_color.comp");
 pub const FILTER_ROWS_COLOR: Module = module!("ray_march/filter_rows_color.comp");
 /// The same along columns.
 pub const FILTER_COLUMNS_COLOR: Module = module!("ray_march/filter_columns_color.comp");
+/// Where slices begin and end.
+pub const PLACE: Module = module!("occlusion_textures/place.comp");
+/// An empty histogram of distances.
+pub const HISTOGRAM_START: Module = module!("occlusion_textures/histogram_start.comp");
+/// How many texels have a face in each bin of distances.
+pub const HISTOGRAM: Module = module!("occlusion_textures/histogram.comp");
+/// Where slices begin and end, by that.
+pub const PLACE_FITTED: Module = module!("occlusion_textures/place_fitted.comp");
+/// Faces counted in the first sixteen slices.
+pub const SLICE: Module = module!("occlusion_textures/slice.frag");
+/// Faces counted in the others.
+pub const SLICE_LOWER: Module = module!("occlusion_textures/slice_lower.frag");
+/// Counted faces to a bit a slice.
+pub const MASK: Module = module!("occlusion_textures/mask.comp");
+/// Summed-area tables along rows.
+pub const SUM_ROWS: Module = module!("occlusion_textures/sum_rows.comp");
+/// The same along columns.
+pub const SUM_COLUMNS: Module = module!("occlusion_textures/sum_columns.comp");
+/// What slices hide of each pixel, from summed-area tables.
+pub const VISIBILITY_SAT: Module = module!("occlusion_textures/visibility_sat.comp");
+/// The same by what slices have in common.
+pub const VISIBILITY_SAT_CORRELATED: Module =
+    module!("occlusion_textures/visibility_sat_correlated.comp");
+/// Means of the smallest windows of slices.
+pub const MEANS_FIRST_LEVEL: Module = module!("occlusion_textures/first_level.comp");
+/// Means of a level's windows.
+pub const MEANS_NEXT_LEVEL: Module = module!("occlusion_textures/next_level.comp");
+/// What slices hide of each pixel, from levels of means.
+pub const VISIBILITY_LEVELS: Module = module!("occlusion_textures/visibility_levels.comp");
+/// The same by what slices have in common.
+pub const VISIBILITY_LEVELS_CORRELATED: Module =
+    module!("occlusion_textures/visibility_levels_correlated.comp");
 /// The soft shadow map projected onto the G-buffer.
 pub const RESOLVE: Module = module!("visibility/resolve.comp");
 /// Everything lit.
@@ -163,6 +195,21 @@ pub const ALL: &[Module] = &[
     TRACE_COLOR,
     FILTER_ROWS_COLOR,
     FILTER_COLUMNS_COLOR,
+    PLACE,
+    HISTOGRAM_START,
+    HISTOGRAM,
+    PLACE_FITTED,
+    SLICE,
+    SLICE_LOWER,
+    MASK,
+    SUM_ROWS,
+    SUM_COLUMNS,
+    VISIBILITY_SAT,
+    VISIBILITY_SAT_CORRELATED,
+    MEANS_FIRST_LEVEL,
+    MEANS_NEXT_LEVEL,
+    VISIBILITY_LEVELS,
+    VISIBILITY_LEVELS_CORRELATED,
     RESOLVE,
     LIT,
     LIT_COLOR,

@@ -29,6 +29,12 @@ const WAYS: &[&str] = &[
     "technique=ray-march map=50 rays=9 levels=mip layers=2 hash=md5 sampling=random",
     "technique=ray-march map=65 levels=thirds projection=orthographic filter=off",
     "technique=ray-march map=64 search=linear projection=centre sampling=low-discrepancy",
+    "technique=occlusion-textures map=64",
+    "technique=occlusion-textures map=65 slices=32 prefilter=n-buffer placement=uniform",
+    "technique=occlusion-textures map=50 slices=5 prefilter=mip fill=on",
+    "technique=occlusion-textures map=64 slices=7 combine=product placement=uniform",
+    "technique=occlusion-textures map=33 slices=20 combine=sum prefilter=n-buffer",
+    "technique=occlusion-textures map=64 combine=max prefilter=mip",
 ];
 
 fn spheres() -> Scene {

@@ -30,6 +30,10 @@ fn descriptions() -> Vec<(String, Description)> {
         "technique=ray-march",
         "technique=ray-march map=100 rays=7 layers=3 levels=thirds filter=off",
         "technique=ray-march map=17 layers=2 levels=mip search=linear projection=orthographic",
+        "technique=occlusion-textures",
+        "technique=occlusion-textures map=65 slices=32 prefilter=n-buffer placement=uniform",
+        "technique=occlusion-textures map=1024 slices=17 combine=product prefilter=mip fill=on",
+        "technique=occlusion-textures map=100 slices=4 combine=sum",
     ] {
         let textures: &[Option<bool>] =
             if words.contains("ray-march") { &[None, Some(false), Some(true)] } else { &[None] };
@@ -39,7 +43,8 @@ fn descriptions() -> Vec<(String, Description)> {
                 .flat_map(|formats| textures.iter().map(move |t| (formats, *t)))
         {
             let format = vk::Format::R8G8B8A8_UNORM;
-            if occluder_maps.is_some() && words.contains("many-lights") {
+            let draws_all = ["many-lights", "occlusion-textures"];
+            if occluder_maps.is_some() && draws_all.iter().any(|t| words.contains(t)) {
                 continue;
             }
             let description = Description {
@@ -145,6 +150,11 @@ fn disagreements(graph: &Graph, pass: &Pass) -> Vec<String> {
         (vk::DescriptorType::SAMPLED_IMAGE, 16),
     ] {
         let bound = pass.uses.iter().filter(|u| u.access.descriptor() == Some(kind)).count();
+        let targets =
+            pass.uses.iter().filter(|u| u.access == antumbra::graph::Access::ColorTarget).count();
+        if targets > antumbra::graph::COLOR_ATTACHMENTS {
+            found.push(format!("{}: {targets} color attachments", pass.name));
+        }
         if bound > most {
             found.push(format!("{}: {bound} of {kind:?}, where {most} are guaranteed", pass.name));
         }

@@ -148,13 +148,20 @@ pub fn raster_of(layer: Layer) -> Raster {
         Layer::Back => Raster { cull: Cull::FRONT, clear: 1.0, compare: Op::LESS },
         Layer::NearBack => Raster { cull: Cull::FRONT, clear: 0.0, compare: Op::GREATER },
         Layer::FarFront => Raster { cull: Cull::BACK, clear: 1.0, compare: Op::LESS },
+        // Without a depth test: every face counts.
+        Layer::Slices => Raster { cull: Cull::NONE, clear: 0.0, compare: Op::ALWAYS },
+        Layer::FrontSlices => Raster { cull: Cull::BACK, clear: 0.0, compare: Op::ALWAYS },
+        Layer::BackSlices => Raster { cull: Cull::FRONT, clear: 0.0, compare: Op::ALWAYS },
     }
 }
 
 /// A layer's image and the pass that draws it.
 fn names_of(layer: Layer) -> (&'static str, &'static str) {
     match layer {
-        Layer::Front => (FRONT, "depth_layers.front"),
+        // Never asked for: slices are drawn by their own room.
+        Layer::Slices | Layer::FrontSlices | Layer::BackSlices | Layer::Front => {
+            (FRONT, "depth_layers.front")
+        }
         Layer::Back => (BACK, "depth_layers.back"),
         Layer::NearBack => ("depth_layers.near_back_depth", "depth_layers.near_back"),
         Layer::FarFront => ("depth_layers.far_front_depth", "depth_layers.far_front"),

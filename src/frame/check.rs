@@ -1,8 +1,9 @@
 //! What a frame's numbers and images must be, each refusal a sentence in the host's words.
 
 use super::rows::wanted;
-use super::{Description, Frame, HostImage, Visibility};
+use super::{Description, Frame, Geometry, HostImage, Visibility};
 use crate::graph::is_depth_format;
+use crate::settings::Technique;
 use crate::{Error, visibility};
 use ash::vk::{self, ImageLayout as Layout, ImageUsageFlags as Usage};
 
@@ -42,6 +43,13 @@ impl Frame<'_> {
             if !mesh.world_from_mesh.is_finite() || bounds.into_iter().any(|b| !b.is_finite()) {
                 return bad(format!(
                     "mesh {index}: its transform and bounds must be finite numbers"
+                ));
+            }
+            let sliced = description.settings.technique == Technique::OcclusionTextures;
+            if sliced && mesh.role.blocks() && matches!(mesh.geometry, Geometry::HostDrawn(_)) {
+                return bad(format!(
+                    "mesh {index} is drawn by the host, which cannot sort it into the slices of \
+                     occlusion-textures; give its buffers, or choose another technique"
                 ));
             }
         }

@@ -114,6 +114,13 @@ impl Description {
                     .into(),
             ));
         }
+        if self.occluder_maps.is_some() && self.settings.technique == Technique::OcclusionTextures {
+            return Err(Error::Frame(
+                "occlusion-textures sorts every face of the occluders into slices, and occluder maps hold \
+                 two of them; lend meshes, or choose another technique"
+                    .into(),
+            ));
+        }
         if self.settings.technique == Technique::RayMarch
             && ray_march::list_bytes(self.extent) > graph::STORAGE_BYTES
         {

@@ -286,12 +286,15 @@ fn look(
         }
         _ => Vec::new(),
     };
-    // Ray marching looks from behind the light.
+    // Ray marching and slices look from behind the light.
     let seen = match settings.technique {
         Technique::RayMarch
             if host_maps.is_none() && settings.ray_march.projection != Projection::Centre =>
         {
             ray_march::view(light, &boxes(occluders), settings.ray_march.projection, settings.map)
+        }
+        Technique::OcclusionTextures => {
+            ray_march::view(light, &boxes(occluders), Projection::Behind, settings.map)
         }
         _ => None,
     };

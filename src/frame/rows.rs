@@ -6,7 +6,7 @@ use crate::depth_layers::{self, Eye, HostMapView, MapView};
 use crate::graph::{Graph, Need, Owner, ResourceId};
 use crate::settings::{Settings, Technique};
 use crate::visibility::{self, GBuffer};
-use crate::{RectangleLight, ray_march, soft_shadow_map};
+use crate::{RectangleLight, occlusion_textures, ray_march, soft_shadow_map};
 use glam::DMat4;
 
 /// What a device's limits mean to a plan.
@@ -65,6 +65,9 @@ pub(super) fn wanted(settings: &Settings) -> depth_layers::Wanted {
     match settings.technique {
         Technique::SoftShadowMap => soft_shadow_map::wanted(&settings.soft_shadow_map, map),
         Technique::RayMarch => ray_march::wanted(&settings.ray_march, map),
+        Technique::OcclusionTextures => {
+            occlusion_textures::wanted(&settings.occlusion_textures, map)
+        }
         Technique::Hard | Technique::Pcss | Technique::ManyLights | Technique::BackProjection => {
             depth_layers::Wanted { map, back: false, inner: false, receiver_map: None }
         }
@@ -189,6 +192,17 @@ pub(super) fn build(
                 need,
             };
             ray_march::declare(&mut graph, &layers, visibility, &settings.ray_march, &inputs);
+        }
+        Technique::OcclusionTextures => {
+            let layers = settings.occlusion_textures.is_fitted().then(|| layers(&mut graph));
+            let inputs = occlusion_textures::Inputs {
+                light,
+                view: &views.occluders,
+                gbuffer: &gbuffer,
+                need,
+            };
+            let settings = &settings.occlusion_textures;
+            occlusion_textures::declare(&mut graph, layers.as_ref(), visibility, settings, &inputs);
         }
         Technique::Hard => {
             let front = layers(&mut graph).front;

@@ -382,3 +382,25 @@ fn many_lights_take_no_ready_made_maps() {
     let error = description.check().unwrap_err().to_string();
     assert!(error.contains("lend meshes"), "{error}");
 }
+
+/// Only the node's own fragments know the slices.
+#[test]
+fn slices_take_no_host_draws_and_no_ready_made_maps() {
+    let mut meshes = meshes();
+    let mut description = of_technique(Technique::OcclusionTextures, &[]);
+    let rows = ran(&make(&description, &frame(&meshes)));
+    assert!(rows.contains(&"occlusion_textures.front_slices"), "{rows:?}");
+    for mesh in &mut meshes {
+        mesh.geometry = Geometry::HostDrawn(7);
+    }
+    let error = plan(&description, Limits::default(), &frame(&meshes)).unwrap_err().to_string();
+    assert!(error.contains("drawn by the host") && error.contains("give its buffers"), "{error}");
+    // A mesh that only receives is not sorted into slices.
+    for mesh in &mut meshes {
+        mesh.role = Role::Receiver;
+    }
+    assert!(plan(&description, Limits::default(), &frame(&meshes)).is_ok());
+    description.occluder_maps = Some(vk::Format::D32_SFLOAT);
+    let error = description.check().unwrap_err().to_string();
+    assert!(error.contains("lend meshes"), "{error}");
+}

@@ -13,7 +13,7 @@ use crate::graph::{Graph, Pass};
 use ash::vk;
 
 /// No row binds more than this.
-const MAX_BINDINGS: usize = 12;
+const MAX_BINDINGS: usize = 20;
 
 /// The sets of all kinds, slot by slot.
 pub(crate) struct Descriptors {

@@ -5,7 +5,7 @@ use super::objects::{Object, Objects, name};
 use crate::Error;
 use crate::depth_layers::DepthPush;
 use crate::frame::Faces;
-use crate::graph::{Draw, Graph, Pass, ResourceId, Shape, Target, Work};
+use crate::graph::{Draw, Graph, Pass, Shape, Target, Work};
 use crate::shaders::Module;
 use ash::vk;
 
@@ -20,6 +20,8 @@ pub(crate) struct RowPipeline {
     pub render_pass: vk::RenderPass,
     pub framebuffer: vk::Framebuffer,
     pub extent: vk::Extent2D,
+    /// Color attachments of a raster.
+    pub colors: usize,
 }
 
 /// Which of a mesh row's pipelines draws a mesh.
@@ -134,46 +136,53 @@ impl RowPipeline {
         target: Target,
     ) -> Result<(), Error> {
         let doing = |what: &str| format!("creating the {what} of {}", pass.name);
-        let (image, view, format) = attachment_of(graph, pass, objects)?;
-        let Shape::Image { width, height, .. } = graph.resource(image).shape else {
-            return Err(Error::Frame(format!("{} draws into a buffer", pass.name)));
+        let targets = attachments_of(graph, pass, objects)?;
+        let Some(&(_, _, extent)) = targets.first() else {
+            return Err(Error::Frame(format!("{} has no image to draw into", pass.name)));
         };
-        self.extent = vk::Extent2D { width, height };
+        self.extent = extent;
+        self.colors = if matches!(target, Target::Add) { targets.len() } else { 0 };
         let layout = match target {
             Target::Depth { .. } => vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
             Target::Add => vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
         };
         // The barriers in front of the row put the image into this layout and order it against
         // everything else, so the render pass itself changes and orders nothing.
-        let attachments = [vk::AttachmentDescription::default()
-            .format(format)
-            .samples(vk::SampleCountFlags::TYPE_1)
-            .load_op(vk::AttachmentLoadOp::CLEAR)
-            .store_op(vk::AttachmentStoreOp::STORE)
-            .stencil_load_op(vk::AttachmentLoadOp::DONT_CARE)
-            .stencil_store_op(vk::AttachmentStoreOp::DONT_CARE)
-            .initial_layout(layout)
-            .final_layout(layout)];
-        let reference = [vk::AttachmentReference { attachment: 0, layout }];
+        let description = |format| {
+            vk::AttachmentDescription::default()
+                .format(format)
+                .samples(vk::SampleCountFlags::TYPE_1)
+                .load_op(vk::AttachmentLoadOp::CLEAR)
+                .store_op(vk::AttachmentStoreOp::STORE)
+                .stencil_load_op(vk::AttachmentLoadOp::DONT_CARE)
+                .stencil_store_op(vk::AttachmentStoreOp::DONT_CARE)
+                .initial_layout(layout)
+                .final_layout(layout)
+        };
+        let attachments: Vec<_> =
+            targets.iter().map(|(_, format, _)| description(*format)).collect();
+        let references: Vec<_> = (0..targets.len() as u32)
+            .map(|attachment| vk::AttachmentReference { attachment, layout })
+            .collect();
         let subpass =
             vk::SubpassDescription::default().pipeline_bind_point(vk::PipelineBindPoint::GRAPHICS);
         let subpasses = [match target {
-            Target::Depth { .. } => subpass.depth_stencil_attachment(&reference[0]),
-            Target::Add => subpass.color_attachments(&reference),
+            Target::Depth { .. } => subpass.depth_stencil_attachment(&references[0]),
+            Target::Add => subpass.color_attachments(&references),
         }];
         let create =
             vk::RenderPassCreateInfo::default().attachments(&attachments).subpasses(&subpasses);
-        // SAFETY: one attachment, one subpass that uses it.
+        // SAFETY: one subpass, which uses every attachment; a test holds their number to four.
         self.render_pass = unsafe { host.device.create_render_pass(&create, None) }
             .map_err(Error::vulkan(doing("render pass")))?;
-        let views = [view];
+        let views: Vec<_> = targets.iter().map(|(view, ..)| *view).collect();
         let create = vk::FramebufferCreateInfo::default()
             .render_pass(self.render_pass)
             .attachments(&views)
-            .width(width)
-            .height(height)
+            .width(extent.width)
+            .height(extent.height)
             .layers(1);
-        // SAFETY: the view has the render pass's format and this size.
+        // SAFETY: the views have the render pass's formats and, a test says, this size.
         self.framebuffer = unsafe { host.device.create_framebuffer(&create, None) }
             .map_err(Error::vulkan(doing("framebuffer")))?;
         Ok(())
@@ -245,7 +254,7 @@ impl RowPipeline {
             .line_width(1.0);
         let samples = vk::PipelineMultisampleStateCreateInfo::default()
             .rasterization_samples(vk::SampleCountFlags::TYPE_1);
-        let add = [vk::PipelineColorBlendAttachmentState::default()
+        let add = vk::PipelineColorBlendAttachmentState::default()
             .blend_enable(true)
             .src_color_blend_factor(vk::BlendFactor::ONE)
             .dst_color_blend_factor(vk::BlendFactor::ONE)
@@ -253,7 +262,9 @@ impl RowPipeline {
             .src_alpha_blend_factor(vk::BlendFactor::ONE)
             .dst_alpha_blend_factor(vk::BlendFactor::ONE)
             .alpha_blend_op(vk::BlendOp::ADD)
-            .color_write_mask(vk::ColorComponentFlags::R)];
+            .color_write_mask(vk::ColorComponentFlags::RGBA);
+        // All alike: attachments that blend each in its own way are an optional feature.
+        let add = vec![add; self.colors];
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&add);
         let mut depth = vk::PipelineDepthStencilStateCreateInfo::default();
         let mut create = vk::GraphicsPipelineCreateInfo::default()
@@ -296,19 +307,20 @@ impl RowPipeline {
     }
 }
 
-/// The one image that a raster row draws into.
-fn attachment_of(
+/// The images that a raster row draws into, in the order of its uses: views, formats and sizes.
+fn attachments_of(
     graph: &Graph,
     pass: &Pass,
     objects: &Objects,
-) -> Result<(ResourceId, vk::ImageView, vk::Format), Error> {
-    let target = pass.writes().next();
-    match target.map(|id| (id, objects.get(id), graph.resource(id).shape)) {
-        Some((id, Object::Image { view, .. }, Shape::Image { format, .. })) => {
-            Ok((id, view, format))
-        }
-        _ => Err(Error::Frame(format!("{} has no image to draw into", pass.name))),
-    }
+) -> Result<Vec<(vk::ImageView, vk::Format, vk::Extent2D)>, Error> {
+    pass.writes()
+        .map(|id| match (objects.get(id), graph.resource(id).shape) {
+            (Object::Image { view, .. }, Shape::Image { format, width, height, .. }) => {
+                Ok((view, format, vk::Extent2D { width, height }))
+            }
+            _ => Err(Error::Frame(format!("{} draws into what is no image", pass.name))),
+        })
+        .collect()
 }
 
 /// Runs `make` with stages whose modules live just as long.

@@ -8,7 +8,9 @@ use super::objects::{Object, Objects, whole};
 use super::pipeline::{RowPipeline, variant};
 use super::timing::Timing;
 use crate::frame::{Faces, FramePlan, Geometry, MeshBuffers, MeshDraw};
-use crate::graph::{self, Draw, Layer, Pass, ResourceBarrier, ResourceId, Target, Use, Work};
+use crate::graph::{
+    self, COLOR_ATTACHMENTS, Draw, Layer, Pass, ResourceBarrier, ResourceId, Target, Use, Work,
+};
 use ash::vk;
 use std::ffi::CString;
 
@@ -128,17 +130,18 @@ impl Recorder<'_> {
     }
 
     fn begin_render_pass(&self, row: &RowPipeline, target: Target) {
-        let clear = [match target {
+        let clear = match target {
             Target::Depth { clear, .. } => vk::ClearValue {
                 depth_stencil: vk::ClearDepthStencilValue { depth: clear, stencil: 0 },
             },
             Target::Add => vk::ClearValue { color: vk::ClearColorValue { float32: [0.0; 4] } },
-        }];
+        };
+        let clear = [clear; COLOR_ATTACHMENTS];
         let begin = vk::RenderPassBeginInfo::default()
             .render_pass(row.render_pass)
             .framebuffer(row.framebuffer)
             .render_area(vk::Rect2D { extent: row.extent, ..Default::default() })
-            .clear_values(&clear);
+            .clear_values(&clear[..row.colors.max(1)]);
         // SAFETY: Host::borrow's promise: cmd is recording outside a render pass; the barriers
         // before put the attachment into the render pass's layout.
         unsafe {

@@ -20,7 +20,8 @@ mod show;
 pub use access::{Access, Scope};
 pub use barrier::{Barrier, State};
 pub use pass::{
-    Draw, Layer, MeshList, Need, PUSH_BYTES, Pass, Push, STORAGE_BYTES, Target, Use, Work,
+    COLOR_ATTACHMENTS, Draw, Layer, MeshList, Need, PUSH_BYTES, Pass, Push, STORAGE_BYTES, Target,
+    Use, Work,
 };
 pub use plan::{Border, BoundaryUse, Plan, ResourceBarrier, Skipped, Step, compile};
 pub(crate) use resource::aspects;

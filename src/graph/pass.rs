@@ -11,6 +11,9 @@ pub const PUSH_BYTES: usize = 128;
 /// The largest storage buffer that every device binds (maxStorageBufferRange), in bytes.
 pub const STORAGE_BYTES: u64 = 1 << 27;
 
+/// The color attachments that every device draws into at once (maxColorAttachments).
+pub const COLOR_ATTACHMENTS: usize = 4;
+
 /// The push constants of a pass, as bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Push {
@@ -69,7 +72,7 @@ pub enum Target {
         /// New `compare` old keeps the new value.
         compare: vk::CompareOp,
     },
-    /// One color attachment, cleared to 0, each fragment added to it.
+    /// Up to [`COLOR_ATTACHMENTS`] color attachments of one size, cleared to 0, each fragment added to them.
     Add,
 }
 
@@ -103,13 +106,25 @@ pub enum Layer {
     FarFront,
     /// Receivers' nearest faces.
     Receivers,
+    /// Every face of the occluders, counted in its slice.
+    Slices,
+    /// Those that look at the projection point.
+    FrontSlices,
+    /// Those that look away from it.
+    BackSlices,
 }
 
 impl Layer {
     /// The meshes that it shows.
     pub fn meshes(self) -> MeshList {
         match self {
-            Self::Front | Self::Back | Self::NearBack | Self::FarFront => MeshList::Occluders,
+            Self::Front
+            | Self::Back
+            | Self::NearBack
+            | Self::FarFront
+            | Self::Slices
+            | Self::FrontSlices
+            | Self::BackSlices => MeshList::Occluders,
             Self::Receivers => MeshList::Receivers,
         }
     }

@@ -191,4 +191,49 @@ pub const KNOBS: &[Knob] = &[
         about: "whether noise is filtered, as widely as takes more noise away than it blurs: less with many \
                 rays, and not at all where penumbrae are narrow",
     },
+    Knob {
+        key: "slices",
+        techniques: &[Technique::OcclusionTextures],
+        unit: "slices",
+        range: "4 to 32",
+        default: "16",
+        about: "parts of the occluders, from the light on, that are each flattened into a texture; any whole \
+                number",
+    },
+    Knob {
+        key: "placement",
+        techniques: &[Technique::OcclusionTextures],
+        unit: "choice",
+        range: "uniform, fitted",
+        default: "fitted",
+        about: "where slices begin and end: all as thick, or thin where many nearest and furthest faces are",
+    },
+    Knob {
+        key: "prefilter",
+        techniques: &[Technique::OcclusionTextures],
+        unit: "choice",
+        range: "mip, n-buffer, sat",
+        default: "sat",
+        about: "where means over a slice's part come from: textures of 2^k texels a side side by side, the \
+                same at every texel, or summed-area tables, which are exact",
+    },
+    Knob {
+        key: "combine",
+        techniques: &[Technique::OcclusionTextures],
+        unit: "choice",
+        range: "product, sum, max, correlated",
+        default: "correlated",
+        about: "what slices hide together: as if they knew nothing of each other (as published), as if none \
+                lay behind another, as if all did, or by what they have in common where the light's rays \
+                come through",
+    },
+    Knob {
+        key: "fill",
+        techniques: &[Technique::OcclusionTextures],
+        unit: "switch",
+        range: "on, off",
+        default: "off",
+        about: "whether a slice blocks in the next one too, which closes the leaks of thin occluders and makes \
+                others too dark",
+    },
 ];

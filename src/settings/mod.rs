@@ -7,6 +7,7 @@ pub use knobs::{KNOBS, Knob};
 use crate::Error;
 use crate::baseline::Settings as Baseline;
 use crate::nbuffer;
+use crate::occlusion_textures::{Combine, Placement, Prefilter, Settings as OcclusionTextures};
 use crate::ray_march::{Hash, Layers, Projection, Sampling, Search, Settings as RayMarch};
 use crate::soft_shadow_map::{Accumulate, Receivers, Settings as SoftShadowMap, Sides};
 use std::fmt::Display;
@@ -28,6 +29,8 @@ pub enum Technique {
     SoftShadowMap,
     /// Rays through depth layers (Curtis 2009).
     RayMarch,
+    /// Prefiltered slices, combined (Eisemann and Décoret 2008).
+    OcclusionTextures,
 }
 
 impl Technique {
@@ -39,6 +42,7 @@ impl Technique {
         ("back-projection", Self::BackProjection),
         ("soft-shadow-map", Self::SoftShadowMap),
         ("ray-march", Self::RayMarch),
+        ("occlusion-textures", Self::OcclusionTextures),
     ];
 
     /// The name it has on a command line.
@@ -50,6 +54,7 @@ impl Technique {
             Self::BackProjection => "back-projection",
             Self::SoftShadowMap => "soft-shadow-map",
             Self::RayMarch => "ray-march",
+            Self::OcclusionTextures => "occlusion-textures",
         }
     }
 }
@@ -73,6 +78,8 @@ pub struct Settings {
     pub soft_shadow_map: SoftShadowMap,
     /// The other knobs of [`Technique::RayMarch`].
     pub ray_march: RayMarch,
+    /// The other knobs of [`Technique::OcclusionTextures`].
+    pub occlusion_textures: OcclusionTextures,
     /// The other knobs of what users would pick instead.
     pub baseline: Baseline,
 }
@@ -84,6 +91,7 @@ impl Default for Settings {
             map: 256,
             soft_shadow_map: SoftShadowMap::default(),
             ray_march: RayMarch::default(),
+            occlusion_textures: OcclusionTextures::default(),
             baseline: Baseline::default(),
         }
     }
@@ -98,6 +106,7 @@ impl Settings {
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), Error> {
         let s = &mut self.soft_shadow_map;
         let r = &mut self.ray_march;
+        let o = &mut self.occlusion_textures;
         let technique = self.technique;
         match key {
             _ if !KNOBS.iter().any(|k| k.key == key && k.serves(technique)) => {
@@ -124,6 +133,11 @@ impl Settings {
             "projection" => r.projection = choose(key, value, Projection::ALL)?,
             "classify" => r.classify = choose(key, value, RayMarch::SWITCH)?,
             "filter" => r.filter = choose(key, value, RayMarch::SWITCH)?,
+            "slices" => o.slices = number(key, value)?,
+            "placement" => o.placement = choose(key, value, Placement::ALL)?,
+            "prefilter" => o.prefilter = choose(key, value, Prefilter::ALL)?,
+            "combine" => o.combine = choose(key, value, Combine::ALL)?,
+            "fill" => o.fill = choose(key, value, OcclusionTextures::SWITCH)?,
             _ if technique == Technique::RayMarch => r.seed = number(key, value)?,
             _ => self.baseline.seed = number(key, value)?,
         }
@@ -139,6 +153,7 @@ impl Settings {
     fn value(&self, key: &str) -> Option<String> {
         let s = &self.soft_shadow_map;
         let r = &self.ray_march;
+        let o = &self.occlusion_textures;
         Some(match key {
             "map" => self.map.to_string(),
             "receiver_map" => s.receiver_map.to_string(),
@@ -159,6 +174,11 @@ impl Settings {
             "projection" => name_of(Projection::ALL, r.projection),
             "classify" => name_of(RayMarch::SWITCH, r.classify),
             "filter" => name_of(RayMarch::SWITCH, r.filter),
+            "slices" => o.slices.to_string(),
+            "placement" => name_of(Placement::ALL, o.placement),
+            "prefilter" => name_of(Prefilter::ALL, o.prefilter),
+            "combine" => name_of(Combine::ALL, o.combine),
+            "fill" => name_of(OcclusionTextures::SWITCH, o.fill),
             _ => return None,
         })
     }
@@ -173,6 +193,7 @@ impl Settings {
         match self.technique {
             Technique::SoftShadowMap => self.soft_shadow_map.check_agreement(),
             Technique::RayMarch => self.ray_march.check_agreement(self.map),
+            Technique::OcclusionTextures => self.occlusion_textures.check_agreement(self.map),
             _ => Ok(()),
         }
     }
@@ -185,6 +206,7 @@ impl Settings {
                 self.soft_shadow_map.in_range(key)
                     && self.baseline.in_range(key)
                     && self.ray_march.in_range(key)
+                    && self.occlusion_textures.in_range(key)
             }
         };
         if good {

@@ -121,6 +121,7 @@ fn image_format(format: ReflectImageFormat) -> Result<vk::Format, String> {
         ReflectImageFormat::RG32_FLOAT => vk::Format::R32G32_SFLOAT,
         ReflectImageFormat::RGBA32_FLOAT => vk::Format::R32G32B32A32_SFLOAT,
         ReflectImageFormat::RGBA16_FLOAT => vk::Format::R16G16B16A16_SFLOAT,
+        ReflectImageFormat::RGBA32_UINT => vk::Format::R32G32B32A32_UINT,
         ReflectImageFormat::R32_UINT => vk::Format::R32_UINT,
         ReflectImageFormat::RGBA8 => vk::Format::R8G8B8A8_UNORM,
         other => return Err(format!("storage images of format {other:?} are not used here")),

@@ -1,0 +1,36 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "occlusion_textures/placement.glsl"
+
+// How many texels have their nearest or their furthest face in each bin of distances.
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, binding = 0) uniform texture2D front;
+layout(set = 0, binding = 1) uniform texture2D back;
+layout(set = 0, binding = 2, std430) buffer Histogram { uint histogram[]; };
+
+layout(push_constant) uniform Push {
+    int map;    // the layers' side in texels
+    float near; // distance of the near plane from the projection point, m
+    float span; // of the occluders, m
+} push;
+
+void main()
+{
+    ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+    if (p.x >= push.map || p.y >= push.map) {
+        return;
+    }
+    float nearest = texelFetch(front, p, 0).x;
+    if (nearest == 0.0) {
+        return;
+    }
+    atomicAdd(histogram[bin_of(nearest, push.near, push.span)], 1u);
+    // An open mesh has no furthest back face.
+    float furthest = texelFetch(back, p, 0).x;
+    if (furthest < 1.0) {
+        atomicAdd(histogram[bin_of(furthest, push.near, push.span)], 1u);
+    }
+}

@@ -1,0 +1,17 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "occlusion_textures/placement.glsl"
+
+// An empty histogram.
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, binding = 0, std430) buffer Histogram { uint histogram[]; };
+
+void main()
+{
+    uint i = gl_GlobalInvocationID.x;
+    if (i < uint(BINS)) {
+        histogram[i] = 0u;
+    }
+}

@@ -1,0 +1,62 @@
+// Means of any rectangle from levels: windows of 2^k x 2^k texels, between which is interpolated
+// (Eisemann and Decoret 2008, section 3.2).
+
+#ifndef OCCLUSION_TEXTURES_LEVELS_GLSL
+#define OCCLUSION_TEXTURES_LEVELS_GLSL
+
+#include "occlusion_textures/tile_levels.glsl"
+
+// A rectangle is covered by no more windows side by side than this; a longer one is sampled.
+const int MOST_WINDOWS = 8;
+
+vec4 node_value(Levels l, int tile, int level, ivec2 node)
+{
+    ivec2 n = clamp(node, ivec2(0), ivec2(side_of(l, level) - 1));
+    if (level == 0) {
+        return vec4(tile_bits(texelFetch(mask, n, 0).x, tile, IS_CORRELATED));
+    }
+    return texelFetch(filtered, place_of_tile(l, tile, level, n), 0);
+}
+
+// The mean over a window of a level round a place, from the four nodes nearest to it.
+vec4 window_mean(Levels l, int tile, int level, vec2 centre)
+{
+    float window = float(1 << level);
+    vec2 at = l.kind == MIP ? centre / window - 0.5 : centre - 0.5 * window;
+    ivec2 corner = ivec2(floor(at));
+    vec2 f = at - vec2(corner);
+    vec4 upper = mix(node_value(l, tile, level, corner), node_value(l, tile, level, corner + ivec2(1, 0)), f.x);
+    vec4 lower = mix(node_value(l, tile, level, corner + ivec2(0, 1)),
+                     node_value(l, tile, level, corner + ivec2(1, 1)), f.x);
+    return mix(upper, lower, f.y);
+}
+
+// Means do not tell nothing from little.
+bool is_empty(int tile, int map, vec2 lo, vec2 hi)
+{
+    return false;
+}
+
+// The mean over a part of the map, `lo` to `hi` in texels: windows as wide as its shorter side, side by
+// side along the longer one.
+vec4 mean_of(int tile, int channel, int map, vec2 lo, vec2 hi)
+{
+    Levels l = Levels(map, level_kind());
+    vec2 size = hi - lo;
+    float shorter = max(min(size.x, size.y), 1.0);
+    float exact = min(log2(shorter), float(top_of(l)));
+    int level = int(exact);
+    int next = min(level + 1, top_of(l));
+    float f = exact - float(level);
+    int count = clamp(int(max(size.x, size.y) / shorter + 0.5), 1, MOST_WINDOWS);
+    vec2 along = size.x > size.y ? vec2(size.x, 0.0) : vec2(0.0, size.y);
+    vec2 middle = 0.5 * (lo + hi) - 0.5 * along;
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < count; ++i) {
+        vec2 centre = middle + along * ((float(i) + 0.5) / float(count));
+        sum += mix(window_mean(l, tile, level, centre), window_mean(l, tile, next, centre), f);
+    }
+    return sum / float(count);
+}
+
+#endif

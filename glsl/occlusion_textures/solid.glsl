@@ -1,0 +1,29 @@
+// What of a column is solid: faces that bound it, and slices that lie inside.
+
+#ifndef OCCLUSION_TEXTURES_SOLID_GLSL
+#define OCCLUSION_TEXTURES_SOLID_GLSL
+
+// A column walked from the light down, slice by slice.
+struct Column {
+    uint faces;  // bit k: slice k holds a face
+    uint inside; // bit k: matter reaches from slice k into slice k + 1
+    int depth;   // solids entered and not yet left
+};
+
+// The next slice, with as many faces that look at the light and that look away from it.
+Column walk(Column c, int slice, int fronts, int backs)
+{
+    c.depth += fronts - backs;
+    c.faces |= uint(fronts + backs > 0) << uint(slice);
+    c.inside |= uint(c.depth > 0) << uint(slice);
+    return c;
+}
+
+// The slices that block, with a bit each. What is entered must be left again: otherwise the column goes
+// through an open mesh, which has no inside, and only its faces are known.
+uint solid_of(Column c)
+{
+    return c.depth == 0 ? c.faces | c.inside | c.inside << 1 : c.faces;
+}
+
+#endif

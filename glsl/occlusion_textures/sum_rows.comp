@@ -1,0 +1,32 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "occlusion_textures/tile.glsl"
+
+// Summed-area tables, first half: every texel with those before it in its row. One invocation a row of a
+// tile.
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, binding = 0) uniform utexture2D mask;
+layout(set = 0, binding = 1, rgba32ui) writeonly uniform uimage2D sums;
+
+layout(push_constant) uniform Push {
+    int map; // the map's side in texels
+    int correlated;
+} push;
+
+void main()
+{
+    int y = int(gl_GlobalInvocationID.x);
+    int tile = int(gl_GlobalInvocationID.y);
+    if (y >= push.map) {
+        return;
+    }
+    int first = (tile * push.map + y) * push.map;
+    uvec4 sum = uvec4(0u);
+    for (int x = 0; x < push.map; ++x) {
+        sum += tile_bits(texelFetch(mask, ivec2(x, y), 0).x, tile, push.correlated != 0);
+        imageStore(sums, place_in_image(first + x), sum);
+    }
+}

@@ -1,0 +1,90 @@
+// The including shader declares `filtered` and `mean_of`.
+
+// What is hidden only grows: from here on the slices that are left change nothing that an eye sees.
+const float OPAQUE = 1.0 - 1.0 / 1024.0;
+
+// What a tile's slices hide of the light's rays through a kernel: outside the map nothing.
+vec4 window_of(int tile, int channel, vec4 kernel)
+{
+    vec2 lo = max(kernel.xy, vec2(0.0));
+    vec2 hi = min(kernel.zw, vec2(push.map));
+    if (any(lessThanEqual(hi, lo))) {
+        return vec4(0.0);
+    }
+    vec2 inside = (hi - lo) / (kernel.zw - kernel.xy);
+    return inside.x * inside.y * mean_of(tile, channel, push.map, lo, hi);
+}
+
+// Whether none of the kernels of a point meets anything. Their rims go one way from slice to slice, so they
+// lie between the first one and the last.
+bool is_lit(MapWindow m, vec3 position)
+{
+    float first = texelFetch(placement, ivec2(BINS, 0), 0).z;
+    float last = texelFetch(placement, ivec2(BINS + slices() - 1, 0), 0).z;
+    vec4 a = kernel_of(m, position, first, push.half_light);
+    vec4 b = kernel_of(m, position, min(last, position.z), push.half_light);
+    vec2 lo = max(min(a.xy, b.xy), vec2(0.0));
+    vec2 hi = min(max(a.zw, b.zw), vec2(push.map));
+    bool lit = any(lessThanEqual(hi, lo));
+#ifdef CORRELATED
+    // What the last slice and those above it block is what any does.
+    lit = lit || is_empty(slices() - 1, push.map, lo, hi);
+#else
+    if (!lit) {
+        lit = true;
+        for (int tile = 0; lit && 4 * tile < slices(); ++tile) {
+            lit = is_empty(tile, push.map, lo, hi);
+        }
+    }
+#endif
+    return lit;
+}
+
+float hidden_at(Receiver r)
+{
+    MapWindow m = MapWindow(push.texels_per_uv, push.first, push.eye);
+    if (is_lit(m, r.position)) {
+        return 0.0;
+    }
+    float hidden = 0.0;
+    for (int slice = 0; slice < slices() && hidden < OPAQUE; ++slice) {
+        vec4 planes = texelFetch(placement, ivec2(BINS + slice, 0), 0);
+        float weight = slice_weight(r.position.z, planes.x, planes.y, r.blocks || !IS_CORRELATED);
+        if (weight == 0.0) {
+            break;
+        }
+        vec4 kernel = kernel_of(m, r.position, planes.z, push.half_light);
+#ifdef CORRELATED
+        vec4 window = window_of(slice, 0, kernel);
+        float with = hidden_with_correlated(hidden, window);
+        hidden = mix(hidden, with, weight);
+#else
+        vec4 window = window_of(slice >> 2, slice & 3, kernel);
+        hidden = hidden_with(combination(), hidden, weight * window[slice & 3]);
+#endif
+    }
+    return hidden;
+}
+
+void main()
+{
+    ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+    if (p.x >= push.extent.x || p.y >= push.extent.y) {
+        return;
+    }
+    GBuffer g = GBuffer(push.light_from_ndc, push.extent, push.background, is_masked());
+    Receiver r = receiver_without_normal(g, p);
+    float v = 1.0;
+    // Behind the light's plane there is nothing to hide.
+    if (r.receives && r.position.z > 0.0) {
+        if (r.blocks) {
+            // The part of the light above the pixel's own plane.
+            r.normal = facet_normal(g, p, depth_at(p), r.position);
+            v = fraction_above(r.normal.xy * push.half_light, dot(r.normal, r.position));
+        }
+        if (v > 0.0) {
+            v = min(v, 1.0 - hidden_at(r));
+        }
+    }
+    imageStore(visibility, p, vec4(v));
+}
