@@ -19,7 +19,9 @@
 //! **Slices** (section 3.4). The map is seen from so far behind the light that the light fits its window. Every
 //! face is counted, whatever lies in front of it: four times four channels of eight bits are drawn into at once
 //! and blending adds, which every device can; from the seventeenth slice on by a second draw. Then a texel is
-//! one number, a bit a slice, and filling a slice into the next one (`fill=on`) is a shift.
+//! one number, a bit a slice, and filling a slice into the next one (`fill=on`) is a shift. The product takes
+//! what is filled as more that hides the light, which doubles its error; `correlated` sees that it is the same,
+//! and its error stays as it is.
 //!
 //! **Filtering** (section 3.2). `prefilter=sat`, the default: summed-area tables of whole numbers, exact for
 //! maps up to 4096², and with parts of texels at a rectangle's rim counted in proportion, so that nothing jumps.
