@@ -187,14 +187,20 @@ fn levels(scale: &Scale) -> Vec<Group> {
     models.iter().map(group).collect()
 }
 
-/// Three prefilters at three map sizes.
+/// Three prefilters at three map sizes, of one texture of four slices.
 fn eisemann() -> Group {
     let mut entries = Vec::new();
     for prefilter in ["mip", "sat", "n-buffer"] {
         for map in [256, 512, 1024] {
             entries.push(Entry {
                 technique: "occlusion-textures",
-                ..entry(prefilter, format!("prefilter={prefilter} map={map}"), f64::from(map))
+                ..entry(
+                    prefilter,
+                    format!(
+                        "slices=4 combine=product placement=uniform prefilter={prefilter} map={map}"
+                    ),
+                    f64::from(map),
+                )
             });
         }
     }
