@@ -202,7 +202,7 @@ fn steep_plates() -> Scene {
             * DMat4::from_rotation_z(degrees.to_radians())
             * DMat4::from_rotation_y(0.4);
         let plate = generate::cuboid(DVec3::new(0.5, 0.004, 0.8));
-        scene.add("plate", plate, at, antumbra::scene::Role::Occluder);
+        scene.add("plate", plate, at, Role::Occluder);
     }
     scene
 }

@@ -7,24 +7,14 @@
 // A bench tells what goes wrong by panicking.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[path = "../soft_shadow_map/table.rs"]
-#[allow(dead_code, reason = "another bench uses the rest")]
-mod table;
+#[path = "../technique/mod.rs"]
+mod technique;
 
-use antumbra::gpu::headless::{FrameTimes, HeadlessDevice, HeadlessOptions, Stage, View};
-use antumbra::scene::{Role, Scene, from_gltf, generate};
-use antumbra::truth::{ErrorSummary, Receiver, Sampling, Tracer};
-use antumbra::{FramePlan, RectangleLight, Settings, Technique};
-use glam::DVec3;
-use std::path::Path;
-use table::{Table, line};
-
-struct Options {
-    rounds: usize,
-    sides: &'static [u32],
-}
-
-type Study = (&'static str, fn(&HeadlessDevice, &Options) -> Table);
+use antumbra::Technique;
+use antumbra::gpu::headless::{FrameTimes, HeadlessDevice};
+use antumbra::scene::Scene;
+use technique::table::{Table, line};
+use technique::{Options, Ready, Study, in_turns, make_tables, scene};
 
 const STUDIES: [Study; 4] = [
     ("prefilters", prefilters),
@@ -36,118 +26,27 @@ const STUDIES: [Study; 4] = [
 const PUBLISHED: &str = "combine=product placement=uniform";
 
 fn main() {
-    let mut options = Options { rounds: 11, sides: &[256, 512, 1024] };
-    let mut asked = Vec::new();
-    for argument in std::env::args().skip(1) {
-        match argument.as_str() {
-            "--quick" => options = Options { rounds: 5, sides: &[256, 512] },
-            // What cargo itself passes.
-            "--bench" => {}
-            table if STUDIES.iter().any(|(name, _)| *name == table) => asked.push(argument),
-            other => {
-                let names = STUDIES.map(|(name, _)| name).join(", ");
-                panic!("{other}: the options are --quick and tables: {names}")
-            }
-        }
-    }
-    let device = HeadlessDevice::new(&HeadlessOptions::default()).unwrap_or_else(|e| panic!("{e}"));
-    println!("{}", device.name());
-    for (name, make) in STUDIES {
-        if asked.is_empty() || asked.iter().any(|a| a == name) {
-            make(&device, &options);
-        }
-    }
+    let full = Options { rounds: 11, sides: &[256, 512, 1024] };
+    make_tables(&STUDIES, full, Options { rounds: 5, sides: &[256, 512] });
 }
 
-/// A model under a light of a width in metres, or one of the generated scenes.
-fn scene(name: &str, side: f64) -> Scene {
-    let light = generate::square_light(side).unwrap();
-    match name {
-        "stacked" => generate::stacked_cards(light),
-        "box" => generate::tall_box(light),
-        "foliage" => generate::foliage(light, 300, 7),
-        model => {
-            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{model}.glb"));
-            generate::normalized(&from_gltf(&path).unwrap(), light).unwrap()
-        }
-    }
+fn ready(device: &HeadlessDevice, scene: &Scene, words: &str) -> Ready {
+    ready_over(device, scene, words, 2.2)
 }
 
-/// A stage with its plan, of 480² pixels, and the least that each of its passes took.
-struct Ready {
-    stage: Stage,
-    plan: FramePlan,
-    light: RectangleLight,
-    least: Vec<(&'static str, f64)>,
+/// The pixels over |x|, |z| ≤ `half` metres.
+fn ready_over(device: &HeadlessDevice, scene: &Scene, words: &str, half: f64) -> Ready {
+    Ready::new(device, scene, technique::settings(Technique::OcclusionTextures, words), half)
 }
 
-impl Ready {
-    fn new(device: &HeadlessDevice, scene: &Scene, words: &str) -> Self {
-        Self::over(device, scene, words, 2.2)
-    }
-
-    /// The pixels over |x|, |z| ≤ `half` metres.
-    fn over(device: &HeadlessDevice, scene: &Scene, words: &str, half: f64) -> Self {
-        let technique = Technique::OcclusionTextures;
-        let mut settings = Settings { technique, ..Settings::default() };
-        for (key, value) in words.split_whitespace().filter_map(|w| w.split_once('=')) {
-            settings.set(key, value).unwrap_or_else(|e| panic!("{e}"));
-        }
-        let keep = |i: &antumbra::scene::Instance| i.role != Role::Occluder;
-        let view = View::map_of_ground(half, 8.0);
-        let mut stage = Stage::new(device, scene, &view, [480; 2], settings, keep).unwrap();
-        let light = scene.light(None).unwrap().light;
-        let plan = stage.plan(&light, None).unwrap();
-        stage.run(&plan).unwrap();
-        Self { stage, plan, light, least: Vec::new() }
-    }
-
-    fn run(&mut self) {
-        let times: FrameTimes = self.stage.run(&self.plan).unwrap();
-        let passes: Vec<_> = times.passes.iter().map(|(name, ms)| (*name, *ms)).collect();
-        if self.least.is_empty() {
-            self.least = passes;
-        } else {
-            for (least, now) in self.least.iter_mut().zip(passes) {
-                least.1 = least.1.min(now.1);
-            }
-        }
-    }
-
-    /// Milliseconds of passes by their names' ends; of all without names.
-    fn ms(&self, names: &[&str]) -> f64 {
-        let of = |name: &str| {
-            names.is_empty() || names.iter().any(|n| name == format!("occlusion_textures.{n}"))
-        };
-        self.least.iter().filter(|(name, _)| of(name)).map(|(_, ms)| ms).sum()
-    }
-
-    /// Mean error in percent.
-    fn error(&mut self, truth: &[f32]) -> f64 {
-        let seen = self.stage.visibility().unwrap();
-        100.0 * ErrorSummary::between(truth, &seen, None).unwrap().mean_abs_error
-    }
-
-    fn truth(&self, scene: &Scene) -> Vec<f32> {
-        let wide = |a: &[f32; 4]| DVec3::new(a[0].into(), a[1].into(), a[2].into());
-        let gbuffer = self.stage.gbuffer();
-        let (positions, normals) = (gbuffer.positions().unwrap(), gbuffer.normals().unwrap());
-        let receivers: Vec<Receiver> = positions
-            .iter()
-            .zip(&normals)
-            .map(|(p, n)| Receiver { position: wide(p), normal: wide(n) })
-            .collect();
-        let sampling = Sampling::new(256, 1).unwrap();
-        let tracer = Tracer::new(scene).unwrap();
-        tracer.visible_fractions(&self.light, &receivers, &sampling).unwrap().visible
-    }
-}
-
-/// Runs several in turns.
-fn in_turns(ready: &mut [Ready], rounds: usize) {
-    for _ in 0..rounds {
-        ready.iter_mut().for_each(Ready::run);
-    }
+/// The least milliseconds that passes took, by their names' ends; all of them without names.
+fn ms(times: &[FrameTimes], names: &[&str]) -> f64 {
+    let of = |name: &str| {
+        names.is_empty() || names.iter().any(|n| name == format!("occlusion_textures.{n}"))
+    };
+    let least = |i: usize| times.iter().map(|t| t.passes[i].1).fold(f64::INFINITY, f64::min);
+    let passes = times[0].passes.iter().enumerate();
+    passes.filter(|(_, (name, _))| of(name)).map(|(i, _)| least(i)).sum()
 }
 
 const BUILD: [&str; 4] = ["sum_rows", "sum_columns", "first_level", "next_level"];
@@ -162,12 +61,12 @@ fn prefilters(device: &HeadlessDevice, options: &Options) -> Table {
         let names = ["mip", "sat", "n-buffer"];
         let mut ready = names.map(|prefilter| {
             let words = format!("{PUBLISHED} slices=4 map={n} prefilter={prefilter}");
-            Ready::new(device, &scene, &words)
+            ready(device, &scene, &words)
         });
-        in_turns(&mut ready, options.rounds);
-        for (name, one) in names.iter().zip(&mut ready) {
+        let all = in_turns(&mut ready, options.rounds);
+        for ((name, one), times) in names.iter().zip(&mut ready).zip(&all) {
             let truth = truth.get_or_insert_with(|| one.truth(&scene));
-            let (build, pixels) = (one.ms(&BUILD), one.ms(&["visibility"]));
+            let (build, pixels) = (ms(times, &BUILD), ms(times, &["visibility"]));
             table.row(vec![
                 n.to_string(),
                 (*name).into(),
@@ -193,13 +92,13 @@ fn light_sizes(device: &HeadlessDevice, options: &Options) -> Table {
     let mut ready: Vec<_> = sides
         .iter()
         .flat_map(|&side| {
-            kinds.map(|(words, half)| Ready::over(device, &scene("bunny", side), words, half))
+            kinds.map(|(words, half)| ready_over(device, &scene("bunny", side), words, half))
         })
         .collect();
-    in_turns(&mut ready, options.rounds);
-    for (side, ready) in sides.iter().zip(ready.chunks(kinds.len())) {
+    let all = in_turns(&mut ready, options.rounds);
+    for (side, all) in sides.iter().zip(all.chunks(kinds.len())) {
         let mut row = vec![side.to_string()];
-        row.extend(ready.iter().map(|r| format!("{:.1}", r.ms(&[]))));
+        row.extend(all.iter().map(|times| format!("{:.1}", ms(times, &[]))));
         table.row(row);
     }
     table
@@ -227,11 +126,11 @@ fn combination(device: &HeadlessDevice, options: &Options) -> Table {
                 format!("{PUBLISHED} fill=on {words}"),
                 words.clone(),
             ]
-            .map(|words| Ready::new(device, &scene, &words));
-            in_turns(&mut ready, options.rounds);
+            .map(|words| ready(device, &scene, &words));
+            let all = in_turns(&mut ready, options.rounds);
             let truth = truth.get_or_insert_with(|| ready[0].truth(&scene));
             let errors = [0, 1, 2].map(|i| ready[i].error(truth));
-            let (published, ours) = (ready[0].ms(&[]), ready[2].ms(&[]));
+            let (published, ours) = (ms(&all[0], &[]), ms(&all[2], &[]));
             table.row(vec![
                 format!("{name} {side}"),
                 slices.to_string(),
@@ -258,16 +157,16 @@ fn exponents(device: &HeadlessDevice, options: &Options) -> Table {
     for (what, more, steps) in [("slices", "map=256", slices), ("map", "slices=16", maps)] {
         for words in [PUBLISHED, ""] {
             let mut ready =
-                steps.map(|x| Ready::new(device, &scene, &format!("{words} {more} {what}={x}")));
-            in_turns(&mut ready, options.rounds);
-            let ms = ready.each_ref().map(|r| r.ms(&[]));
+                steps.map(|x| ready(device, &scene, &format!("{words} {more} {what}={x}")));
+            let all = in_turns(&mut ready, options.rounds);
+            let times: Vec<_> = all.iter().map(|times| ms(times, &[])).collect();
             let points: Vec<_> =
-                steps.iter().zip(ms).map(|(x, ms): (&f64, f64)| (x.ln(), ms.ln())).collect();
+                steps.iter().zip(&times).map(|(x, ms)| (f64::ln(*x), ms.ln())).collect();
             let (_, exponent, r2) = line(&points);
             table.row(vec![
                 what.into(),
                 if words.is_empty() { "correlated" } else { "published" }.into(),
-                ms.map(|ms| format!("{ms:.0}")).join(" "),
+                times.iter().map(|ms| format!("{ms:.0}")).collect::<Vec<_>>().join(" "),
                 format!("{exponent:.2}"),
                 format!("{r2:.2}"),
             ]);

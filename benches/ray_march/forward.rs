@@ -1,7 +1,7 @@
 //! Rays at the G-buffer's pixels beside rays at fragments as they are drawn.
 
 use super::{Options, median_of, ms, settings};
-use crate::table::Table;
+use crate::technique::table::Table;
 use antumbra::gpu::headless::{Forward, HeadlessDevice, Stage, View};
 use antumbra::scene::{Camera, Instance, Role, Scene, from_gltf, generate};
 use std::path::Path;
@@ -52,8 +52,8 @@ pub fn forward(device: &HeadlessDevice, options: &Options) -> Table {
                 at_fragments.push(times.passes.last().unwrap().1);
                 drawn.push(times);
             }
-            let [gbuffer, pixels, at_fragments] =
-                [gbuffer, pixels, at_fragments].map(|times| crate::table::median(&times));
+            let [gbuffer, pixels, at_fragments] = [gbuffer, pixels, at_fragments]
+                .map(|times| crate::technique::table::median(&times));
             let common = |t: &antumbra::gpu::headless::FrameTimes| {
                 t.passes.iter().map(|(_, ms)| ms).sum::<f64>() - t.passes.last().unwrap().1
             };

@@ -8,27 +8,17 @@
 
 mod forward;
 mod levels;
-#[path = "../soft_shadow_map/table.rs"]
-#[allow(dead_code, reason = "another bench uses the rest")]
-mod table;
+#[path = "../technique/mod.rs"]
+mod technique;
 
-use antumbra::gpu::headless::{FrameTimes, HeadlessDevice, HeadlessOptions, Stage, View};
+use antumbra::gpu::headless::{FrameTimes, HeadlessDevice};
 use antumbra::nbuffer::{Kind, Levels};
-use antumbra::scene::{Role, Scene, from_gltf, generate};
-use antumbra::truth::{ErrorSummary, Receiver, Sampling, Tracer};
-use antumbra::{FramePlan, RectangleLight, Settings, Technique};
-use glam::DVec3;
+use antumbra::scene::Scene;
+use antumbra::{Settings, Technique};
 use levels::{BUILD, bytes, tightness};
-use std::path::Path;
 use std::time::Instant;
-use table::{Table, median};
-
-struct Options {
-    rounds: usize,
-    sides: &'static [u32],
-}
-
-type Study = (&'static str, fn(&HeadlessDevice, &Options) -> Table);
+use technique::table::{Table, median};
+use technique::{Options, Ready, Study, in_turns, make_tables, scene};
 
 const STUDIES: [Study; 5] = [
     ("levels", kinds),
@@ -39,107 +29,20 @@ const STUDIES: [Study; 5] = [
 ];
 
 fn main() {
-    let mut options = Options { rounds: 7, sides: &[256, 512, 1024] };
-    let mut asked = Vec::new();
-    for argument in std::env::args().skip(1) {
-        match argument.as_str() {
-            "--quick" => options = Options { rounds: 3, sides: &[256, 512] },
-            // What cargo itself passes.
-            "--bench" => {}
-            table if STUDIES.iter().any(|(name, _)| *name == table) => asked.push(argument),
-            other => {
-                let names = STUDIES.map(|(name, _)| name).join(", ");
-                panic!("{other}: the options are --quick and tables: {names}")
-            }
-        }
-    }
-    let device = HeadlessDevice::new(&HeadlessOptions::default()).unwrap_or_else(|e| panic!("{e}"));
-    println!("{}", device.name());
-    for (name, make) in STUDIES {
-        if asked.is_empty() || asked.iter().any(|a| a == name) {
-            make(&device, &options);
-        }
-    }
+    let full = Options { rounds: 7, sides: &[256, 512, 1024] };
+    make_tables(&STUDIES, full, Options { rounds: 3, sides: &[256, 512] });
 }
 
-/// A model under a light of a width in metres, or one of the generated scenes.
-fn scene(name: &str, side: f64) -> Scene {
-    let light = generate::square_light(side).unwrap();
-    match name {
-        "slats" => generate::slats(light, 24),
-        "foliage" => generate::foliage(light, 300, 7),
-        model => {
-            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{model}.glb"));
-            generate::normalized(&from_gltf(&path).unwrap(), light).unwrap()
-        }
-    }
-}
-
-/// Ray marching's settings from the words of a command line.
 fn settings(words: &str) -> Settings {
-    let mut settings = Settings { technique: Technique::RayMarch, ..Settings::default() };
-    for (key, value) in words.split_whitespace().filter_map(|w| w.split_once('=')) {
-        settings.set(key, value).unwrap_or_else(|e| panic!("{e}"));
-    }
-    settings
+    technique::settings(Technique::RayMarch, words)
 }
 
-/// A stage with its plan: 480² pixels of the ground.
-struct Ready {
-    stage: Stage,
-    plan: FramePlan,
-    light: RectangleLight,
-}
-
-impl Ready {
-    fn new(device: &HeadlessDevice, scene: &Scene, words: &str) -> Self {
-        let keep = |i: &antumbra::scene::Instance| i.role != Role::Occluder;
-        let view = View::map_of_ground(2.2, 8.0);
-        let mut stage = Stage::new(device, scene, &view, [480; 2], settings(words), keep).unwrap();
-        let light = scene.light(None).unwrap().light;
-        let plan = stage.plan(&light, None).unwrap();
-        stage.run(&plan).unwrap();
-        Self { stage, plan, light }
-    }
-
-    fn run(&mut self) -> FrameTimes {
-        self.stage.run(&self.plan).unwrap()
-    }
-
-    /// Mean error in percent.
-    fn error(&mut self, truth: &[f32]) -> f64 {
-        let seen = self.stage.visibility().unwrap();
-        100.0 * ErrorSummary::between(truth, &seen, None).unwrap().mean_abs_error
-    }
-
-    fn truth(&self, scene: &Scene) -> Vec<f32> {
-        let wide = |a: &[f32; 4]| DVec3::new(a[0].into(), a[1].into(), a[2].into());
-        let gbuffer = self.stage.gbuffer();
-        let (positions, normals) = (gbuffer.positions().unwrap(), gbuffer.normals().unwrap());
-        let receivers: Vec<Receiver> = positions
-            .iter()
-            .zip(&normals)
-            .map(|(p, n)| Receiver { position: wide(p), normal: wide(n) })
-            .collect();
-        let sampling = Sampling::new(256, 1).unwrap();
-        let tracer = Tracer::new(scene).unwrap();
-        tracer.visible_fractions(&self.light, &receivers, &sampling).unwrap().visible
-    }
+fn ready(device: &HeadlessDevice, scene: &Scene, words: &str) -> Ready {
+    Ready::new(device, scene, settings(words), 2.2)
 }
 
 fn ms(times: &FrameTimes, names: &[&str]) -> f64 {
     levels::ms(times.passes.iter().copied(), names)
-}
-
-/// Runs several in turns; each one's frames.
-fn in_turns(ready: &mut [Ready], rounds: usize) -> Vec<Vec<FrameTimes>> {
-    let mut all: Vec<Vec<FrameTimes>> = ready.iter().map(|_| Vec::new()).collect();
-    for _ in 0..rounds {
-        for (one, times) in ready.iter_mut().zip(&mut all) {
-            times.push(one.run());
-        }
-    }
-    all
 }
 
 fn median_of(times: &[FrameTimes], of: impl Fn(&FrameTimes) -> f64) -> f64 {
@@ -161,7 +64,7 @@ fn kinds(device: &HeadlessDevice, options: &Options) -> Table {
         for &n in options.sides {
             let mut ready: Vec<_> = Kind::ALL
                 .iter()
-                .map(|(kind, _)| Ready::new(device, &scene, &format!("map={n} levels={kind}")))
+                .map(|(kind, _)| ready(device, &scene, &format!("map={n} levels={kind}")))
                 .collect();
             let all = in_turns(&mut ready, options.rounds);
             for ((kind_name, kind), times) in Kind::ALL.iter().zip(&all) {
@@ -194,7 +97,7 @@ fn search(device: &HeadlessDevice, options: &Options) -> Table {
         for &n in &options.sides[..2] {
             for rays in [4, 16] {
                 let mut ready = ["hierarchical", "linear"].map(|search| {
-                    Ready::new(device, &scene, &format!("map={n} rays={rays} search={search}"))
+                    ready(device, &scene, &format!("map={n} rays={rays} search={search}"))
                 });
                 let truth = truth.get_or_insert_with(|| ready[0].truth(&scene));
                 let all = in_turns(&mut ready, options.rounds);
@@ -223,13 +126,12 @@ fn classification(device: &HeadlessDevice, options: &Options) -> Table {
     for (name, side) in [("bunny", 0.1), ("bunny", 0.4), ("bunny", 1.0), ("foliage", 0.4)] {
         let scene = scene(name, side);
         for rays in [4, 16, 64] {
-            let mut ready = ["on", "off"].map(|c| {
-                Ready::new(device, &scene, &format!("rays={rays} classify={c} filter=off"))
-            });
+            let mut ready = ["on", "off"]
+                .map(|c| ready(device, &scene, &format!("rays={rays} classify={c} filter=off")));
             let all = in_turns(&mut ready, options.rounds);
             let frames = [0, 1].map(|i| median_of(&all[i], frame_ms));
             let [on, off] = &mut ready;
-            let (a, b) = (on.stage.visibility().unwrap(), off.stage.visibility().unwrap());
+            let (a, b) = (on.visibility(), off.visibility());
             let worst = a.iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
             table.row(vec![
                 name.into(),
@@ -251,7 +153,7 @@ fn bandwidth(device: &HeadlessDevice, options: &Options) -> Table {
     let mut table = Table::new("bandwidth", &columns);
     let scene = scene("bunny", 0.4);
     for &n in options.sides {
-        let mut ready = Ready::new(device, &scene, &format!("map={n}"));
+        let mut ready = ready(device, &scene, &format!("map={n}"));
         let bytes = bytes(Levels { map: n, kind: Kind::NBuffer }) as usize;
         let source = vec![1u8; bytes];
         let mut target = vec![0u8; bytes];
