@@ -54,8 +54,8 @@ const MOST_BEHIND: f64 = 64.0;
 ///
 /// The projection point lies so far behind the light that the light fills the angle under which its centre
 /// sees the occluders (Curtis 2009 eq. 3.1). Rays need no more than that: they are cut to what lies over
-/// the map, and beyond the map there are no occluders. A light so large that this would be further away than
-/// [`MOST_BEHIND`] is seen from there: rays to its rim leave the map through its sides.
+/// the map, and beyond the map there are no occluders. For a light so large that this would be further away
+/// than 64 times the furthest occluder the point lies there; rays to its rim leave the map through its sides.
 pub fn view(
     light: &RectangleLight,
     occluders: &[(MeshBounds, DMat4)],
