@@ -46,8 +46,8 @@ pub fn wanted(settings: &Settings, map: u32) -> Wanted {
 }
 
 /// How far behind the light the projection point lies at most, over the distance of the furthest occluder.
-/// From there on rays of the map are parallel to within 1/64, and heights lose what distances gain: rounding
-/// is 1.2e-7 · 65² of it, or 5e-4 of a map's texel where there are 256 over that distance.
+/// From there on rays of the map are parallel to within 1/64, and a height's rounding, 6e-8 of it, is that of
+/// a distance 65 times as large: 4e-6 of the furthest occluder's, a thousandth of a texel where 256 cover it.
 const MOST_BEHIND: f64 = 64.0;
 
 /// How the layers look at the occluders; none where there are none in front of the light.
