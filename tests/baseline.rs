@@ -69,6 +69,9 @@ const TABLE: &[Row] = &[
     ("technique=ray-march", [0.49, 1.44, 2.03]),
     ("technique=ray-march rays=64", [0.30, 0.88, 1.62]),
     ("technique=ray-march rays=256", [0.23, 0.60, 1.48]),
+    ("technique=occlusion-textures slices=4", [0.20, 2.50, 4.56]),
+    ("technique=occlusion-textures", [0.20, 1.96, 2.13]),
+    ("technique=occlusion-textures slices=32", [0.20, 1.03, 1.99]),
 ];
 
 /// Room for drivers that place edges differently, in percentage points.
