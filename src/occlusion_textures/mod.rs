@@ -70,23 +70,24 @@
 //! **A sun** is a rectangle of its angular size, far away: a test has one 100 objects' sizes off. The near plane
 //! stands 0.1 % of the distance in front of the nearest occluder, which from some hundred sizes on takes slices.
 //!
-//! **Measured** (lavapipe, 256² maps, 16 slices; mean error in percent over shadow and penumbra, published, filled,
-//! ours): tall box 5.3, 10.3, 0.5; bunny 8.2, 17.0, 1.0; Suzanne 8.8, 21.3, 0.6; stacked cards 3.8, 12.5, 1.2;
-//! slats 19, 31, 1.2, the last being the truth's noise. Leaves at random 1.3, 13.3, 1.3: there the product is
-//! right, and ours finds the same. The bunny and Suzanne as their own occluders 6.4, 10.5, 2.1 and 8.2, 13.6, 1.3.
-//! Four fitted slices do better than sixteen published ones on all of them but leaves. With the same
-//! slices ours takes 1.1 to 1.3 times the time of the product at 256², and up to 2.4 times at 1024², where its
-//! tables, four times as many, are most of it. Time grows with the slices' number to the power of 0.65 to 0.8, and
-//! with the map's side to that of 0.5 as published and up to 0.9 with ours. Behind an occluder a pixel costs the same for every light from
-//! 0.7 object sizes on, and less from a smaller one, whose kernels are more often empty or full; one whose
-//! kernels meet nothing costs next to nothing, so a view costs what its shadows are large.
+//! **Measured** (lavapipe, 256² maps, 16 slices; mean error in percent over shadow and penumbra, published,
+//! filled, ours): tall box 5.3, 10.3, 0.5; bunny 8.2, 17.0, 1.0; Suzanne 8.8, 21.3, 0.6; stacked cards 3.8,
+//! 12.5, 1.2; slats 19, 31, 1.2, the last being the truth's noise. Leaves at random 1.3, 13.3, 1.3: there the
+//! product is right, and ours finds the same. The bunny and Suzanne as their own occluders 6.4, 10.5, 2.1 and
+//! 8.2, 13.6, 1.3. Four fitted slices do better than sixteen published ones on all of them but leaves. With the
+//! same slices ours takes 1.1 to 1.3 times the time of the product at 256², and up to 2.4 times at 1024², where
+//! its tables, four times as many, are most of it. Time grows with the slices' number to the power of 0.65 to
+//! 0.8, and with the map's side to that of 0.5 as published and up to 0.9 with ours. Behind an occluder a pixel
+//! costs the same for every light from 0.7 object sizes on, and less from a smaller one, whose kernels are more
+//! often empty or full; one whose kernels meet nothing costs next to nothing, so a view costs what its shadows
+//! are large.
 //!
 //! **Limits.** What lies within a slice is one plane: the error is half a slice's thickness at most, so thin
 //! slices near the receiver matter. A mesh drawn by the host and ready-made occluder maps are refused, as
 //! neither can be sorted into slices. Two open meshes over one texel may make what is between them solid. More
-//! than 255 faces over a texel in one slice count as 255. Another occluder may lighten a pixel, where it makes two
-//! slices look more alike than they are. What is filtered takes 256 MiB at most: by summed-area
-//! tables 16 slices of 1024² or 32 of 724², by N-buffers 16 of 511². A host's fixed window is not looked at, as with
+//! than 255 faces over a texel in one slice count as 255. Another occluder may lighten a pixel, where it makes
+//! two slices look more alike than they are. What is filtered takes 256 MiB at most: by summed-area tables 16
+//! slices of 1024² or 32 of 724², by N-buffers 16 of 511². A host's fixed window is not looked at, as with
 //! `ray-march`.
 
 mod passes;
