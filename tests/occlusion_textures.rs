@@ -363,8 +363,8 @@ fn bad_input_is_refused_with_a_sentence() {
     assert!(refuse("prefilter=none").contains("mip, n-buffer, sat"));
     // What fits, and what would.
     for (words, most) in [
-        ("slices=16 map=1025", 1024),
-        ("slices=32 map=725", 724),
+        ("slices=16 map=1449", 1448),
+        ("slices=32 map=1025", 1024),
         ("slices=4 combine=product map=2000 prefilter=n-buffer", 1),
     ] {
         let error = refuse(words);

@@ -5,7 +5,8 @@
 
 use antumbra::occlusion_textures::Combine;
 use antumbra::occlusion_textures::twin::{
-    bin_of, hidden_with, hidden_with_correlated, kernel_of, slice_weight, solid_of, tile_bits,
+    bin_of, hidden_with, hidden_with_correlated, kernel_of, packed, slice_weight, solid_of,
+    tile_means, tile_sums,
 };
 use antumbra_tests::compare::Tolerance;
 use antumbra_tests::{Function, device};
@@ -76,22 +77,22 @@ fn combinations() {
         .check(&device());
     }
     fn twin<T: Float>(x: &[T]) -> Vec<T> {
-        vec![hidden_with_correlated(x[0], [x[1], x[2], x[3], x[4]])]
+        vec![hidden_with_correlated(x[0], x[1], [x[2], x[3], x[4]])]
     }
     // Shares as a window has them: what both block is between what they must and what they can.
-    let windows = (0.0..=1.0f32, 0.0..=1.0f32, 0.0..=1.0f32, 0.0..=1.0f32, 0.0..=1.0f32).prop_map(
-        |(hidden, own, covered, t, on)| {
+    let share = || 0.0..=1.0f32;
+    let windows = (share(), share(), share(), share(), share()).prop_map(
+        |(hidden, before, own, covered, t)| {
             let (least, most) = ((own + covered - 1.0).max(0.0), own.min(covered));
-            let both = least + t * (most - least);
-            (hidden, (own, covered, both, on * both))
+            (hidden, before, (own, covered, least + t * (most - least)))
         },
     );
     Function::new(
         "occlusion_textures/combine.glsl",
-        "float hidden_with_correlated(float hidden, vec4 window)",
+        "float hidden_with_correlated(float hidden, float before, vec3 window)",
     )
-    .case((0.0, (0.0, 0.0, 0.0, 0.0)))
-    .case((1.0, (1.0, 1.0, 1.0, 1.0)))
+    .case((0.0, 0.0, (0.0, 0.0, 0.0)))
+    .case((1.0, 1.0, (1.0, 1.0, 1.0)))
     .random(4_000, windows)
     // The share of two small differences: 2⁻²⁴ over 10⁻³, times a difference of up to a quarter.
     .f64(Tolerance::absolute(1e-4), twin::<f64>)
@@ -125,20 +126,63 @@ fn columns_of_faces() {
         .check(&device());
 }
 
+/// A mask, a tile, and whether it holds correlated slices, `each` of them.
+fn tiles(each: i32) -> impl Strategy<Value = (u32, i32, bool)> {
+    (any::<u32>(), any::<bool>()).prop_flat_map(move |(mask, correlated)| {
+        (Just(mask), 0..if correlated { 32 / each } else { 8 }, Just(correlated))
+    })
+}
+
 #[test]
 fn tiles_hold_slices() {
-    let tiles = (any::<u32>(), any::<bool>())
-        .prop_flat_map(|(mask, one)| (Just(mask), 0..if one { 32i32 } else { 8 }, Just(one)));
-    Function::new(
-        "occlusion_textures/tile.glsl",
-        "uvec4 tile_bits(uint mask, int tile, bool correlated)",
-    )
-    .case((u32::MAX, 31, true))
-    .case((1, 0, true))
-    .case((1, 1, true))
-    .random(4_000, tiles)
-    .bits(|x| tile_bits(x[0], x[1], x[2] != 0).to_vec())
-    .check(&device());
+    let glue = "uvec4 sums(uint mask, int tile, bool correlated)
+{
+    Sums s = tile_sums(mask, tile, correlated);
+    return uvec4(s.four.xy, s.four.z << 1 | s.four.w, s.fifth);
+}";
+    let file = "occlusion_textures/tile.glsl";
+    Function::new(file, "uvec4 sums(uint mask, int tile, bool correlated)")
+        .glue(glue)
+        .case((u32::MAX, 15, true))
+        .case((1, 0, true))
+        .case((1, 1, true))
+        .random(4_000, tiles(2))
+        .bits(|x| {
+            let [a, b, c, d, e] = tile_sums(x[0], x[1], x[2] != 0);
+            vec![a, b, c << 1 | d, e]
+        })
+        .check(&device());
+    Function::new(file, "uvec4 tile_means(uint mask, int tile, bool correlated)")
+        .case((u32::MAX, 31, true))
+        .case((1, 0, true))
+        .case((1, 1, true))
+        .random(4_000, tiles(1))
+        .bits(|x| tile_means(x[0], x[1], x[2] != 0).to_vec())
+        .check(&device());
+}
+
+/// Five sums of up to 2²⁴ in 128 bits, there and back.
+#[test]
+fn five_sums_fit_into_a_texel() {
+    let sum = || 0..=1u32 << 24;
+    let file = "occlusion_textures/tile.glsl";
+    Function::new(file, "uvec4 texel(uvec4 four, uint fifth)")
+        .glue("uvec4 texel(uvec4 four, uint fifth) { return packed(Sums(four, fifth)); }")
+        .case(((1 << 24, 1 << 24, 1 << 24, 1 << 24), 1 << 24))
+        .random(4_000, ((sum(), sum(), sum(), sum()), sum()))
+        .bits(|x| packed([x[0], x[1], x[2], x[3], x[4]]).to_vec())
+        .check(&device());
+    Function::new(file, "uvec4 sums(uvec4 four, uint fifth)")
+        .glue(
+            "uvec4 sums(uvec4 four, uint fifth)
+{
+    Sums s = unpacked(packed(Sums(four, fifth)));
+    return uvec4(s.four.xyz, s.fifth ^ s.four.w << 1);
+}",
+        )
+        .random(4_000, ((sum(), sum(), sum(), sum()), sum()))
+        .bits(|x| vec![x[0], x[1], x[2], x[4] ^ x[3] << 1])
+        .check(&device());
 }
 
 /// Where the right answer is known: a pair of slices that are independent, identical (one behind the other)
@@ -146,7 +190,7 @@ fn tiles_hold_slices() {
 #[test]
 fn pairs_of_slices_of_which_the_answer_is_known() {
     for (a, b) in [(0.3, 0.3), (0.5, 0.2), (0.05, 0.9), (0.4, 0.6), (0.25, 0.5)] {
-        let of = |both: f64, on: f64| hidden_with_correlated(a, [b, a, both, on]);
+        let of = |both: f64, before: f64| hidden_with_correlated(a, before, [b, a, both]);
         let (lesser, greater) = (f64::min(a, b), f64::max(a, b));
         let independent = a + b - a * b;
         assert!((of(a * b, 0.0) - independent).abs() < 1e-12, "independent: {a}, {b}");
@@ -160,9 +204,9 @@ fn pairs_of_slices_of_which_the_answer_is_known() {
     // However many slices: four quarters side by side hide all, a solid through four hides its own share.
     let (mut side_by_side, mut solid) = (0.0, 0.0);
     for k in 0..4 {
-        side_by_side = hidden_with_correlated(side_by_side, [0.25, 0.25 * f64::from(k), 0.0, 0.0]);
+        side_by_side = hidden_with_correlated(side_by_side, 0.25, [0.25, 0.25 * f64::from(k), 0.0]);
         let above = if k == 0 { 0.0 } else { 0.25 };
-        solid = hidden_with_correlated(solid, [0.25, above, above, above]);
+        solid = hidden_with_correlated(solid, above, [0.25, above, above]);
     }
     assert!((side_by_side - 1.0).abs() < 0.02, "{side_by_side}");
     assert!((solid - 0.25).abs() < 1e-3, "{solid}");

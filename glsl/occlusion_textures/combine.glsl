@@ -19,8 +19,8 @@ float hidden_with(int combine, float hidden, float more)
 const float FEW = 1.0e-3;
 
 // The same where the slice's window says what its blocking texels (x) have in common with those of all
-// slices above it (y): z are both, w go on from the slice right above.
-float hidden_with_correlated(float hidden, vec4 window)
+// slices above it (y): z are both. `before` is what the slice right above hides of its own window.
+float hidden_with_correlated(float hidden, float before, vec3 window)
 {
     float own = window.x;
     float covered = window.y;
@@ -29,7 +29,8 @@ float hidden_with_correlated(float hidden, vec4 window)
     // How far from independent they could be, towards nested and towards disjoint.
     float most = min(own, covered) - independent;
     float least = independent - max(own + covered - 1.0, 0.0);
-    float prior = own > 0.0 ? window.w / own : 0.0;
+    // Where the window does not tell: as much as may go on from the slice right above.
+    float prior = own > 0.0 ? min(before, window.z) / own : 0.0;
     float towards = correlation >= 0.0 ? (correlation + FEW * prior) / (most + FEW)
                                        : correlation / (least + FEW);
     // The light's rays through the window are not the same as through the slices above: what is hidden

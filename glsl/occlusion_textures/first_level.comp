@@ -22,7 +22,7 @@ uvec4 bits_at(ivec2 p, int tile)
     // Behind the map's end there is nothing.
     bool outside = any(greaterThanEqual(p, ivec2(push.map)));
     uint texel = outside ? 0u : texelFetch(mask, p, 0).x;
-    return tile_bits(texel, tile, push.correlated != 0);
+    return tile_means(texel, tile, push.correlated != 0);
 }
 
 void main()

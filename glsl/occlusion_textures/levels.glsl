@@ -13,7 +13,7 @@ vec4 node_value(Levels l, int tile, int level, ivec2 node)
 {
     ivec2 n = clamp(node, ivec2(0), ivec2(side_of(l, level) - 1));
     if (level == 0) {
-        return vec4(tile_bits(texelFetch(mask, n, 0).x, tile, IS_CORRELATED));
+        return vec4(tile_means(texelFetch(mask, n, 0).x, tile, IS_CORRELATED));
     }
     return texelFetch(filtered, place_of_tile(l, tile, level, n), 0);
 }
@@ -32,16 +32,17 @@ vec4 window_mean(Levels l, int tile, int level, vec2 centre)
 }
 
 // Means do not tell nothing from little.
-bool is_empty(int tile, int map, vec2 lo, vec2 hi)
+bool is_empty(vec2 lo, vec2 hi)
 {
     return false;
 }
 
-// The mean over a part of the map, `lo` to `hi` in texels: windows as wide as its shorter side, side by
-// side along the longer one.
-vec4 mean_of(int tile, int channel, int map, vec2 lo, vec2 hi)
+// What of a part of the map, `lo` to `hi` in texels, a slice blocks, those above it, and both: windows as wide
+// as its shorter side, side by side along the longer one.
+vec3 mean_of(int slice, vec2 lo, vec2 hi)
 {
-    Levels l = Levels(map, level_kind());
+    int tile = IS_CORRELATED ? slice : slice >> 2;
+    Levels l = Levels(push.map, level_kind());
     vec2 size = hi - lo;
     float shorter = max(min(size.x, size.y), 1.0);
     float exact = min(log2(shorter), float(top_of(l)));
@@ -56,7 +57,8 @@ vec4 mean_of(int tile, int channel, int map, vec2 lo, vec2 hi)
         vec2 centre = middle + along * ((float(i) + 0.5) / float(count));
         sum += mix(window_mean(l, tile, level, centre), window_mean(l, tile, next, centre), f);
     }
-    return sum / float(count);
+    sum /= float(count);
+    return IS_CORRELATED ? sum.xyz : vec3(sum[slice & 3]);
 }
 
 #endif

@@ -4,77 +4,100 @@
 #define OCCLUSION_TEXTURES_SAT_GLSL
 
 // Texels before (x, y) in both directions, summed.
-uvec4 sum_at(int tile, int map, ivec2 p)
+uvec4 words_at(int tile, ivec2 p)
 {
     bool none = p.x <= 0 || p.y <= 0;
-    ivec2 q = clamp(p, ivec2(1), ivec2(map)) - 1;
-    uvec4 sum = texelFetch(filtered, place_in_image((tile * map + q.y) * map + q.x), 0);
-    return none ? uvec4(0u) : sum;
+    ivec2 q = clamp(p, ivec2(1), ivec2(push.map)) - 1;
+    uvec4 words = texelFetch(filtered, place_in_image((tile * push.map + q.y) * push.map + q.x), 0);
+    return none ? uvec4(0u) : words;
+}
+
+// The sums of a slice; correlated also those of all above it, and of all above the next one.
+uvec3 sum_at(int slice, ivec2 p)
+{
+#ifdef CORRELATED
+    Sums s = unpacked(words_at(slice >> 1, p));
+    return (slice & 1) == 0 ? s.four.xzw : uvec3(s.four.yw, s.fifth);
+#else
+    return uvec3(words_at(slice >> 2, p)[slice & 3], 0u, 0u);
+#endif
 }
 
 // Part of a rectangle of texels, from the sums at its corners.
-uvec4 inside(uvec4 upper_left, uvec4 upper_right, uvec4 lower_left, uvec4 lower_right)
+uvec3 inside(uvec3 upper_left, uvec3 upper_right, uvec3 lower_left, uvec3 lower_right)
 {
     return lower_right - lower_left - upper_right + upper_left;
 }
 
-// Whether a tile has nothing in a part of the map.
-bool is_empty(int tile, int map, vec2 lo, vec2 hi)
+// Whether no slice has anything in any texel that a part of the map touches.
+bool is_empty(vec2 lo, vec2 hi)
 {
     ivec2 a = ivec2(floor(lo));
     ivec2 b = ivec2(ceil(hi));
-    uvec4 all_of_it = inside(sum_at(tile, map, a), sum_at(tile, map, ivec2(b.x, a.y)),
-                             sum_at(tile, map, ivec2(a.x, b.y)), sum_at(tile, map, b));
-    return all_of_it == uvec4(0u);
+#ifdef CORRELATED
+    // What the last slice and those above it block is what any does.
+    int last = slices() - 1;
+    return inside(sum_at(last, a), sum_at(last, ivec2(b.x, a.y)), sum_at(last, ivec2(a.x, b.y)),
+                  sum_at(last, b)).z == 0u;
+#else
+    bool empty = true;
+    for (int tile = 0; empty && 4 * tile < slices(); ++tile) {
+        empty = words_at(tile, b) - words_at(tile, ivec2(a.x, b.y)) - words_at(tile, ivec2(b.x, a.y)) +
+                    words_at(tile, a) == uvec4(0u);
+    }
+    return empty;
+#endif
 }
 
-// The mean over a part of the map, `lo` to `hi` in texels; all of a tile's channels, where that of the slice
-// is not nothing or everything. Of the texels at its rim it has a part, so the
-// columns a, a + 1, b, b + 1 and as many rows cut it into nine pieces, of which each counts in proportion.
-// Sums are taken apart before they become real numbers, so that small rectangles far from the map's first
-// texel are exact as well.
-vec4 mean_of(int tile, int channel, int map, vec2 lo, vec2 hi)
+// What of a part of the map, `lo` to `hi` in texels, a slice blocks, those above it, and both; the first alone
+// where it is nothing or everything. Of the texels at the rim the rectangle has a part, so the columns a,
+// a + 1, b, b + 1 and as many rows cut it into nine pieces, of which each counts in proportion. Sums are taken
+// apart before they become real numbers, so that small rectangles far from the map's first texel are exact as
+// well.
+vec3 mean_of(int slice, vec2 lo, vec2 hi)
 {
     ivec2 a = ivec2(floor(lo));
     ivec2 b = ivec2(ceil(hi)) - 1;
     // The outermost corners hold all: where that is nothing or everything of the slice, as it mostly is, the
     // rest is not asked for.
-    uvec4 s00 = sum_at(tile, map, a);
-    uvec4 s30 = sum_at(tile, map, ivec2(b.x + 1, a.y));
-    uvec4 s03 = sum_at(tile, map, ivec2(a.x, b.y + 1));
-    uvec4 s33 = sum_at(tile, map, b + 1);
-    uvec4 all_of_it = inside(s00, s30, s03, s33);
+    uvec3 s00 = sum_at(slice, a);
+    uvec3 s30 = sum_at(slice, ivec2(b.x + 1, a.y));
+    uvec3 s03 = sum_at(slice, ivec2(a.x, b.y + 1));
+    uvec3 s33 = sum_at(slice, b + 1);
+    uvec3 all_of_it = inside(s00, s30, s03, s33);
     ivec2 texels = b + 1 - a;
-    if (all_of_it[channel] == 0u || all_of_it[channel] == uint(texels.x * texels.y)) {
-        return vec4(all_of_it[channel] == 0u ? 0.0 : 1.0);
+    if (all_of_it.x == 0u || all_of_it.x == uint(texels.x * texels.y)) {
+        return vec3(all_of_it.x == 0u ? 0.0 : 1.0);
     }
-    uvec4 s10 = sum_at(tile, map, ivec2(a.x + 1, a.y));
-    uvec4 s20 = sum_at(tile, map, ivec2(b.x, a.y));
-    uvec4 s01 = sum_at(tile, map, ivec2(a.x, a.y + 1));
-    uvec4 s11 = sum_at(tile, map, a + 1);
-    uvec4 s21 = sum_at(tile, map, ivec2(b.x, a.y + 1));
-    uvec4 s31 = sum_at(tile, map, ivec2(b.x + 1, a.y + 1));
-    uvec4 s02 = sum_at(tile, map, ivec2(a.x, b.y));
-    uvec4 s12 = sum_at(tile, map, ivec2(a.x + 1, b.y));
-    uvec4 s22 = sum_at(tile, map, b);
-    uvec4 s32 = sum_at(tile, map, ivec2(b.x + 1, b.y));
-    uvec4 s13 = sum_at(tile, map, ivec2(a.x + 1, b.y + 1));
-    uvec4 s23 = sum_at(tile, map, ivec2(b.x, b.y + 1));
+    uvec3 s10 = sum_at(slice, ivec2(a.x + 1, a.y));
+    uvec3 s20 = sum_at(slice, ivec2(b.x, a.y));
+    uvec3 s01 = sum_at(slice, ivec2(a.x, a.y + 1));
+    uvec3 s11 = sum_at(slice, a + 1);
+    uvec3 s21 = sum_at(slice, ivec2(b.x, a.y + 1));
+    uvec3 s31 = sum_at(slice, ivec2(b.x + 1, a.y + 1));
+    uvec3 s02 = sum_at(slice, ivec2(a.x, b.y));
+    uvec3 s12 = sum_at(slice, ivec2(a.x + 1, b.y));
+    uvec3 s22 = sum_at(slice, b);
+    uvec3 s32 = sum_at(slice, ivec2(b.x + 1, b.y));
+    uvec3 s13 = sum_at(slice, ivec2(a.x + 1, b.y + 1));
+    uvec3 s23 = sum_at(slice, ivec2(b.x, b.y + 1));
     // What is left out of the first and of the last row and column.
     vec2 before = lo - vec2(a);
     vec2 after = vec2(b + 1) - hi;
-    vec4 left = vec4(inside(s00, s10, s03, s13));
-    vec4 right = vec4(inside(s20, s30, s23, s33));
-    vec4 upper = vec4(inside(s00, s30, s01, s31));
-    vec4 lower = vec4(inside(s02, s32, s03, s33));
-    vec4 corners = before.y * (before.x * vec4(inside(s00, s10, s01, s11)) +
-                               after.x * vec4(inside(s20, s30, s21, s31))) +
-                   after.y * (before.x * vec4(inside(s02, s12, s03, s13)) +
-                              after.x * vec4(inside(s22, s32, s23, s33)));
-    vec4 sum = vec4(all_of_it) - before.x * left - after.x * right - before.y * upper - after.y * lower +
+    vec3 left = vec3(inside(s00, s10, s03, s13));
+    vec3 right = vec3(inside(s20, s30, s23, s33));
+    vec3 upper = vec3(inside(s00, s30, s01, s31));
+    vec3 lower = vec3(inside(s02, s32, s03, s33));
+    vec3 corners = before.y * (before.x * vec3(inside(s00, s10, s01, s11)) +
+                               after.x * vec3(inside(s20, s30, s21, s31))) +
+                   after.y * (before.x * vec3(inside(s02, s12, s03, s13)) +
+                              after.x * vec3(inside(s22, s32, s23, s33)));
+    vec3 sum = vec3(all_of_it) - before.x * left - after.x * right - before.y * upper - after.y * lower +
                corners;
     vec2 size = hi - lo;
-    return clamp(sum / (size.x * size.y), 0.0, 1.0);
+    vec3 mean = clamp(sum / (size.x * size.y), 0.0, 1.0);
+    // The next slice is covered by this one and by those above it, and by what both block once.
+    return vec3(mean.xy, max(mean.x + mean.y - mean.z, 0.0));
 }
 
 #endif

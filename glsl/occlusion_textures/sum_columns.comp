@@ -20,10 +20,11 @@ void main()
     if (x >= push.map) {
         return;
     }
-    uvec4 sum = uvec4(0u);
+    Sums sum = Sums(uvec4(0u), 0u);
     for (int y = 0; y < push.map; ++y) {
         ivec2 p = place_in_image((tile * push.map + y) * push.map + x);
-        sum += imageLoad(sums, p);
-        imageStore(sums, p, sum);
+        Sums more = unpacked(imageLoad(sums, p));
+        sum = Sums(sum.four + more.four, sum.fifth + more.fifth);
+        imageStore(sums, p, packed(sum));
     }
 }

@@ -24,9 +24,10 @@ void main()
         return;
     }
     int first = (tile * push.map + y) * push.map;
-    uvec4 sum = uvec4(0u);
+    Sums sum = Sums(uvec4(0u), 0u);
     for (int x = 0; x < push.map; ++x) {
-        sum += tile_bits(texelFetch(mask, ivec2(x, y), 0).x, tile, push.correlated != 0);
-        imageStore(sums, place_in_image(first + x), sum);
+        Sums more = tile_sums(texelFetch(mask, ivec2(x, y), 0).x, tile, push.correlated != 0);
+        sum = Sums(sum.four + more.four, sum.fifth + more.fifth);
+        imageStore(sums, place_in_image(first + x), packed(sum));
     }
 }

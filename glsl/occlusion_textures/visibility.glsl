@@ -3,16 +3,16 @@
 // What is hidden only grows: from here on the slices that are left change nothing that an eye sees.
 const float OPAQUE = 1.0 - 1.0 / 1024.0;
 
-// What a tile's slices hide of the light's rays through a kernel: outside the map nothing.
-vec4 window_of(int tile, int channel, vec4 kernel)
+// What of a kernel a slice blocks, those above it, and both. Outside the map nothing does.
+vec3 window_of(int slice, vec4 kernel)
 {
     vec2 lo = max(kernel.xy, vec2(0.0));
     vec2 hi = min(kernel.zw, vec2(push.map));
     if (any(lessThanEqual(hi, lo))) {
-        return vec4(0.0);
+        return vec3(0.0);
     }
     vec2 inside = (hi - lo) / (kernel.zw - kernel.xy);
-    return inside.x * inside.y * mean_of(tile, channel, push.map, lo, hi);
+    return inside.x * inside.y * mean_of(slice, lo, hi);
 }
 
 // Whether none of the kernels of a point meets anything. Their rims go one way from slice to slice, so they
@@ -25,19 +25,7 @@ bool is_lit(MapWindow m, vec3 position)
     vec4 b = kernel_of(m, position, min(last, position.z), push.half_light);
     vec2 lo = max(min(a.xy, b.xy), vec2(0.0));
     vec2 hi = min(max(a.zw, b.zw), vec2(push.map));
-    bool lit = any(lessThanEqual(hi, lo));
-#ifdef CORRELATED
-    // What the last slice and those above it block is what any does.
-    lit = lit || is_empty(slices() - 1, push.map, lo, hi);
-#else
-    if (!lit) {
-        lit = true;
-        for (int tile = 0; lit && 4 * tile < slices(); ++tile) {
-            lit = is_empty(tile, push.map, lo, hi);
-        }
-    }
-#endif
-    return lit;
+    return any(lessThanEqual(hi, lo)) || is_empty(lo, hi);
 }
 
 float hidden_at(Receiver r)
@@ -47,20 +35,19 @@ float hidden_at(Receiver r)
         return 0.0;
     }
     float hidden = 0.0;
+    float before = 0.0;
     for (int slice = 0; slice < slices() && hidden < OPAQUE; ++slice) {
         vec4 planes = texelFetch(placement, ivec2(BINS + slice, 0), 0);
         float weight = slice_weight(r.position.z, planes.x, planes.y, r.blocks || !IS_CORRELATED);
         if (weight == 0.0) {
             break;
         }
-        vec4 kernel = kernel_of(m, r.position, planes.z, push.half_light);
+        vec3 window = window_of(slice, kernel_of(m, r.position, planes.z, push.half_light));
 #ifdef CORRELATED
-        vec4 window = window_of(slice, 0, kernel);
-        float with = hidden_with_correlated(hidden, window);
-        hidden = mix(hidden, with, weight);
+        hidden = mix(hidden, hidden_with_correlated(hidden, before, window), weight);
+        before = window.x;
 #else
-        vec4 window = window_of(slice >> 2, slice & 3, kernel);
-        hidden = hidden_with(combination(), hidden, weight * window[slice & 3]);
+        hidden = hidden_with(combination(), hidden, weight * window.x);
 #endif
     }
     return hidden;

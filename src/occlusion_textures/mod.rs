@@ -50,8 +50,10 @@
 //!   has in common with what is already hidden, h, which was seen through other rectangles: h grows by a less
 //!   that. It is right for independent, nested and disjoint slices, however many, to within what keeps shares of
 //!   little or nothing from being divided (`FEW`). Where the window does not
-//!   tell (it is all covered, or not at all) the share of what goes on from the slice right above decides.
-//!   All four shares are channels of one texel, so they cost the slice no other fetch.
+//!   tell (it is all covered, or not at all) what may go on from the slice right above decides.
+//!   What any slice above the next one blocks is a + b − j, so two slices and three sums of what is above them
+//!   are all there is to know of a pair: five sums of 25 bits in the 128 of a texel, exact up to 4096², so that
+//!   nothing of it costs a slice another fetch.
 //! * A slice's texture lies in its middle instead of its lower plane, or (`placement=fitted`) at the mean
 //!   distance of its nearest and furthest faces.
 //!
@@ -75,8 +77,8 @@
 //! 12.5, 1.2; slats 19, 31, 1.2, the last being the truth's noise. Leaves at random 1.3, 13.3, 1.3: there the
 //! product is right, and ours finds the same. The bunny and Suzanne as their own occluders 6.4, 10.5, 2.1 and
 //! 8.2, 13.6, 1.3. Four fitted slices do better than sixteen published ones on all of them but leaves. With the
-//! same slices ours takes 1.1 to 1.3 times the time of the product at 256², and up to 2.4 times at 1024², where
-//! its tables, four times as many, are most of it. Time grows with the slices' number to the power of 0.65 to
+//! same slices ours takes 1.05 to 1.15 times the time of the product at 256², 1.3 at 512² and 1.4 at 1024²,
+//! where its tables, twice as many, weigh more. Time grows with the slices' number to the power of 0.65 to
 //! 0.8, and with the map's side to that of 0.5 as published and up to 0.9 with ours. Behind an occluder a pixel
 //! costs the same for every light from 0.7 object sizes on, and less from a smaller one, whose kernels are more
 //! often empty or full; one whose kernels meet nothing costs next to nothing, so a view costs what its shadows
@@ -87,7 +89,7 @@
 //! neither can be sorted into slices. Two open meshes over one texel may make what is between them solid. More
 //! than 255 faces over a texel in one slice count as 255. Another occluder may lighten a pixel, where it makes
 //! two slices look more alike than they are. What is filtered takes 256 MiB at most: by summed-area tables 16
-//! slices of 1024² or 32 of 724², by N-buffers 16 of 511². A host's fixed window is not looked at, as with
+//! slices of 1448² or 32 of 1024², by N-buffers 16 of 511². A host's fixed window is not looked at, as with
 //! `ray-march`.
 
 mod passes;

@@ -107,9 +107,14 @@ impl Settings {
         self.combine == Combine::Correlated
     }
 
-    /// What is filtered side by side: a slice each, or four.
+    /// What is filtered side by side: four slices each; correlated two, or one of levels.
     pub fn tiles(&self) -> u32 {
-        if self.is_correlated() { self.slices } else { self.slices.div_ceil(4) }
+        let each = match (self.is_correlated(), self.prefilter) {
+            (false, _) => 4,
+            (true, Prefilter::Sat) => 2,
+            (true, Prefilter::Mip | Prefilter::NBuffer) => 1,
+        };
+        self.slices.div_ceil(each)
     }
 
     /// Whether slices are placed by what there is.

@@ -56,9 +56,9 @@ pub fn hidden_with<T: Float>(combine: Combine, hidden: T, more: T) -> T {
     }
 }
 
-/// The same by what the slice has in common with those above it: `window` is its share, theirs, that of
-/// both, and that of what goes on from the slice right above.
-pub fn hidden_with_correlated<T: Float>(hidden: T, [own, covered, both, on]: [T; 4]) -> T {
+/// The same by what the slice has in common with those above it: `window` is its share, theirs, and that of
+/// both; `before` the share of the slice right above.
+pub fn hidden_with_correlated<T: Float>(hidden: T, before: T, [own, covered, both]: [T; 3]) -> T {
     let few = T::from(1.0e-3).unwrap_or_else(T::epsilon);
     let (zero, one) = (T::zero(), T::one());
     // The shares that two sets have in common at most and at least.
@@ -66,7 +66,7 @@ pub fn hidden_with_correlated<T: Float>(hidden: T, [own, covered, both, on]: [T;
     let least = |a: T, b: T| (a + b - one).max(zero);
     let independent = own * covered;
     let excess = both - independent;
-    let nested = if own > zero { on / own } else { zero };
+    let nested = if own > zero { before.min(both) / own } else { zero };
     let common = if excess >= zero {
         let r = (excess + few * nested) / (most(own, covered) - independent + few);
         own * hidden + r * (most(own, hidden) - own * hidden)
@@ -97,17 +97,44 @@ pub fn solid_of(faces: &[(u32, u32)]) -> u32 {
     if depth == 0 { there | inside } else { there }
 }
 
-/// What a tile holds of a texel: four slices, or of one slice whether it blocks, whether any above it does, both,
-/// and whether it goes on from the one right above.
-pub fn tile_bits(mask: u32, tile: u32, correlated: bool) -> [u32; 4] {
+/// What a tile of a summed-area table holds of a texel: four slices; or a pair of them, and whether any slice
+/// blocks above the pair, above its second, and above what follows it.
+pub fn tile_sums(mask: u32, tile: u32, correlated: bool) -> [u32; 5] {
     let blocks = |slice: u32| mask >> slice & 1 == 1;
+    let bits = if correlated {
+        let first = 2 * tile;
+        let any_before = |slice: u32| (0..slice).any(blocks);
+        [
+            blocks(first),
+            blocks(first + 1),
+            any_before(first),
+            any_before(first + 1),
+            any_before(first + 2),
+        ]
+    } else {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|i| blocks(4 * tile + i));
+        [a, b, c, d, false]
+    };
+    bits.map(u32::from)
+}
+
+/// What a tile of levels holds of a texel: four slices; or of one slice whether it blocks, whether any above it
+/// does, and both.
+pub fn tile_means(mask: u32, tile: u32, correlated: bool) -> [u32; 4] {
     if !correlated {
-        return [0, 1, 2, 3].map(|i| u32::from(blocks(4 * tile + i)));
+        let [a, b, c, d, _] = tile_sums(mask, tile, false);
+        return [a, b, c, d];
     }
-    let own = blocks(tile);
-    let above = (0..tile).any(blocks);
-    let right_above = tile > 0 && blocks(tile - 1);
-    [own, above, own && above, own && right_above].map(u32::from)
+    let own = mask >> tile & 1;
+    let above = u32::from((0..tile).any(|slice| mask >> slice & 1 == 1));
+    [own, above, own & above, 0]
+}
+
+/// A texel of a summed-area table: four sums of 25 bits, and a fifth in what they leave.
+pub fn packed([a, b, c, d, e]: [u32; 5]) -> [u32; 4] {
+    let all = [a, b, c, d].iter().rev().fold(0u128, |all, &x| all << 32 | u128::from(x));
+    let all = (0..4).fold(all, |all, i| all | u128::from(e >> (7 * i) & 127) << (32 * i + 25));
+    [0, 1, 2, 3].map(|i| (all >> (32 * i)) as u32)
 }
 
 /// Occlusion textures as published: uniform slices, flattened to their lower planes.
