@@ -10,6 +10,8 @@ use antumbra::gpu::headless::{HeadlessDevice, View};
 use antumbra::occlusion_textures::{Combine, twin};
 use antumbra::ray_march::{self, Projection};
 use antumbra::scene::{Mesh, Role, Scene, generate};
+use antumbra::truth::Receiver;
+use antumbra::visibility::twin::fraction_above;
 use antumbra::{Description, RectangleLight, frame};
 use antumbra_tests::device;
 use antumbra_tests::measure::{Setup, model, percent, settings, summary};
@@ -148,7 +150,7 @@ fn errors_are_what_they_were_measured_to_be() {
 fn in_light_space(scene: &Scene, map: u32) -> (MapView, Vec<[DVec3; 3]>) {
     let light = scene.light(None).unwrap().light;
     let to_light = light.light_from_world();
-    let occluders = || scene.instances.iter().filter(|i| i.role == Role::Occluder);
+    let occluders = || scene.instances.iter().filter(|i| i.role.blocks());
     let boxes: Vec<_> =
         occluders().map(|i| (scene.meshes[i.mesh].bounds(), i.world_from_mesh)).collect();
     let triangles = occluders().flat_map(|i| {
@@ -165,58 +167,77 @@ fn in_light_space(scene: &Scene, map: u32) -> (MapView, Vec<[DVec3; 3]>) {
 
 /// The published formulas by a way that shares nothing with the shaders. They agree but for texels through
 /// whose centre an edge goes, of which a raster may take another one than exact arithmetic: their errors are
-/// within 2 points, and so small is what is between them that it is held to half a point.
+/// within 2 points, and on scenes apart from their receivers so small is what is between them that it is held to
+/// half a point. A point that shadows itself takes the plane it lies in from its neighbours' depths, where the
+/// twin knows its triangle.
 #[test]
 fn an_independent_version_of_the_published_formulas_says_the_same() {
     let device = device();
-    for (name, scene, both) in scenes().iter().filter(|(.., both)| !both) {
-        let setup = setup_of(name, scene, *both, 48);
+    for (name, scene, both) in scenes() {
+        let setup = setup_of(name, &scene, both, 48);
         let light = setup.light();
-        let (view, triangles) = in_light_space(scene, 64);
+        let (view, triangles) = in_light_space(&scene, 64);
         let mut truth = None;
-        for (slices, fill, way) in [
-            (4, "off", Combine::Product),
-            (8, "off", Combine::Product),
-            (16, "off", Combine::Product),
-            (16, "on", Combine::Product),
-            (16, "off", Combine::Sum),
-            (16, "off", Combine::Max),
-        ] {
+        let of = |slices, fill, way| (slices, fill, way);
+        let ways = [4, 8, 16]
+            .into_iter()
+            .flat_map(|slices| [false, true].map(|fill| of(slices, fill, Combine::Product)))
+            .chain([of(16, false, Combine::Sum), of(16, false, Combine::Max)]);
+        for (slices, fill, way) in ways {
             let combine = Combine::ALL.iter().find(|(_, c)| *c == way).unwrap().0;
             let words = format!(
-                "technique=occlusion-textures map=64 placement=uniform slices={slices} fill={fill} combine={combine}"
+                "technique=occlusion-textures map=64 placement=uniform slices={slices} fill={} combine={combine}",
+                if fill { "on" } else { "off" }
             );
             let mut stage = setup.stage(&device, &words);
             let ours = setup.visibility(&mut stage);
-            let twin = twin::Published::new(&light, &view, slices, fill == "on", &triangles);
-            let to_light = light.light_from_world();
-            let its: Vec<f32> = Setup::receivers(&stage)
-                .iter()
-                .map(|r| twin.visible(to_light.transform_point3(r.position), way) as f32)
-                .collect();
+            let twin = twin::Published::new(&light, &view, slices, fill, &triangles);
+            let its = |way| -> Vec<f32> {
+                let receivers = Setup::receivers(&stage);
+                receivers.iter().map(|r| twin_at(&twin, &light, r, way, both)).collect()
+            };
             let (truth, _) = truth.get_or_insert_with(|| setup.traced(&stage, 256));
-            let (a, b) = (percent(truth, &ours), percent(truth, &its));
-            let apart = 100.0 * mean(&ours, &its);
+            let found = its(way);
+            let (a, b) = (percent(truth, &ours), percent(truth, &found));
+            let apart = 100.0 * mean(&ours, &found);
             println!(
                 "{name}, {slices} slices, fill={fill}, {combine}: {a:.2} %, twin {b:.2} %, apart {apart:.3} %"
             );
             assert!(
-                (a - b).abs() < 2.0 && apart < 0.5,
+                (a - b).abs() < 2.0 && apart < if both { 1.0 } else { 0.5 },
                 "{name}, {words}: {a} against {b}, {apart}"
             );
             // It notices another combination.
-            if *name == "bunny" && way == Combine::Product {
-                let wrong: Vec<f32> = Setup::receivers(&stage)
-                    .iter()
-                    .map(|r| {
-                        let p = to_light.transform_point3(r.position);
-                        twin.visible(p, Combine::Max) as f32
-                    })
-                    .collect();
-                assert!(100.0 * mean(&ours, &wrong) > 0.5, "slices={slices}");
+            if name == "bunny" && way == Combine::Product {
+                assert!(100.0 * mean(&ours, &its(Combine::Max)) > 0.5, "slices={slices}");
             }
         }
     }
+}
+
+/// What the twin says of a receiver; of one that blocks too, no more than is above its own plane.
+fn twin_at(
+    twin: &twin::Published,
+    light: &RectangleLight,
+    r: &Receiver,
+    way: Combine,
+    blocks: bool,
+) -> f32 {
+    if r.normal == DVec3::ZERO {
+        return 1.0;
+    }
+    let to_light = light.light_from_world();
+    let p = to_light.transform_point3(r.position);
+    if p.z <= 0.0 {
+        return 1.0;
+    }
+    let mut v = twin.visible(p, way);
+    if blocks {
+        let n = to_light.transform_vector3(r.normal);
+        let half = light.half_extents();
+        v = v.min(fraction_above([n.x * half[0], n.y * half[1]], n.dot(p)));
+    }
+    v as f32
 }
 
 /// Kernels of every size from three prefilters: tables are exact, and the others' interpolation between
@@ -323,24 +344,40 @@ fn the_work_does_not_grow_with_the_light() {
     assert_eq!(small, work(2.0));
 }
 
-/// A light as wide as the sun, 0.53°, and 100 objects' sizes away: as good as infinitely far, and no worse than
-/// one that is near.
+/// A sun of 0.53° and one of 3°: no technique is worse than where the light is near.
 #[test]
-fn a_rectangle_far_away_is_a_sun() {
+fn a_sun_is_a_light_like_others() {
     let device = device();
-    let away = 100.0;
-    let half = away * 0.265f64.to_radians().tan();
-    let sun = RectangleLight::new(DVec3::Y * away, DVec3::X * half, DVec3::NEG_Z * half).unwrap();
-    let scene = generate::normalized(&model("bunny"), sun).unwrap();
-    let setup = Setup::ground(&scene, 1.0, 160);
-    let mut stage = setup.stage(&device, "technique=occlusion-textures map=512");
-    let image = setup.visibility(&mut stage);
-    let (truth, noise) = setup.traced(&stage, 256);
-    let error = percent(&truth, &image);
-    let narrow = truth.iter().filter(|v| **v > 0.0 && **v < 1.0).count();
-    println!("{error:.2} %, noise {:.2} points, {narrow} pixels in penumbra", 100.0 * noise);
-    assert!(narrow > 100 && error < 1.5, "{error}");
+    for degrees in [0.53f64, 3.0] {
+        let down = DVec3::new(0.3, -1.0, 0.2);
+        let sun = RectangleLight::sun(down, degrees.to_radians(), DVec3::Y * 2.0, 0.8).unwrap();
+        let scene = generate::normalized(&model("bunny"), sun).unwrap();
+        let setup = Setup::ground(&scene, 1.6, 160);
+        let mut truth = None;
+        for (words, most) in SUN {
+            let mut stage = setup.stage(&device, &format!("map=512 {words}"));
+            let image = setup.visibility(&mut stage);
+            let (truth, noise) = truth.get_or_insert_with(|| setup.traced(&stage, 256));
+            let error = percent(truth, &image);
+            let narrow = truth.iter().filter(|v| **v > 0.0 && **v < 1.0).count();
+            println!(
+                "{degrees}°, {words}: {error:.2} %, noise {:.2} points, {narrow} pixels in penumbra",
+                100.0 * *noise
+            );
+            assert!(narrow > 100 && error < *most, "{words}: {error}");
+        }
+    }
 }
+
+/// Settings, and the most that the mean error may be, in percent: a third more than measured.
+const SUN: &[(&str, f64)] = &[
+    ("technique=occlusion-textures", 0.5),
+    ("technique=occlusion-textures slices=4", 0.7),
+    ("technique=ray-march rays=64", 0.9),
+    ("technique=soft-shadow-map", 0.8),
+    ("technique=pcss", 2.4),
+    ("technique=many-lights", 0.5),
+];
 
 #[test]
 fn bad_input_is_refused_with_a_sentence() {

@@ -12,8 +12,12 @@ const MAX_TANGENT: f64 = 10.0;
 /// The near plane is no nearer than this share of the furthest distance seen.
 const MIN_NEAR: f64 = 1e-4;
 
-/// The near plane stands this much before the nearest point, so that what is stored stays under 1.
+/// The near plane stands this share of what is seen before the nearest point of it, so that what is stored
+/// stays under 1.
 const NEAR_MARGIN: f64 = 1e-3;
+
+/// And what the roundings of a vertex may come to: 64 of f32, as a share of what is added up.
+const ROUNDING: f64 = 64.0 * 5.960_464_477_539_063e-8;
 
 /// Where a map is seen from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -217,10 +221,17 @@ fn boxes_of(
     occluders: &[(MeshBounds, DMat4)],
 ) -> Option<(Vec<[DVec3; 8]>, f64, f64)> {
     let light_from_world = light.light_from_world();
-    let boxes: Vec<_> =
-        occluders.iter().map(|(b, m)| corners(b, &(light_from_world * *m))).collect();
+    let (mut boxes, mut summed) = (Vec::new(), 0.0f64);
+    for (bounds, world_from_mesh) in occluders {
+        let light_from_mesh = light_from_world * *world_from_mesh;
+        boxes.push(corners(bounds, &light_from_mesh));
+        let most = [0, 1, 2].map(|i| f64::from(bounds[0][i].abs().max(bounds[1][i].abs())));
+        let row = light_from_mesh.row(2).abs();
+        summed = summed.max(row.dot(DVec3::from_array(most).extend(1.0)));
+    }
     let (least, far) = distances(&boxes)?;
-    let near = (least * (1.0 - NEAR_MARGIN)).max(far * MIN_NEAR);
+    let margin = NEAR_MARGIN * (far - least) + ROUNDING * summed;
+    let near = (least - margin).max(far * MIN_NEAR);
     Some((boxes, near, far))
 }
 

@@ -252,7 +252,7 @@ impl Scene {
         let Some(first) = self.lights.first() else {
             return Err(Error::Scene(
                 "the scene has no area light; give a node the extras \"area_light\": \"rectangle\", \
-                 \"width\" and \"height\""
+                 \"width\" and \"height\", or \"area_light\": \"sun\" and \"angular_size\""
                     .into(),
             ));
         };

@@ -4,7 +4,7 @@
 
 use super::json::Root;
 use super::{MAX_COORDINATE, Problem, nodes, quoted};
-use crate::scene::{AreaLight, Role};
+use crate::scene::{AreaLight, Bounds, Role};
 use crate::{Error, RectangleLight};
 use glam::DMat4;
 use serde_json::Value;
@@ -21,19 +21,23 @@ pub(super) fn role(extras: &Value) -> Result<Role, Problem> {
     })
 }
 
-/// The node's area light, if it has one: its rectangle carried into the world.
+/// The node's area light, if it has one: its rectangle carried into the world. A sun is as far from `all`, the
+/// box of what casts shadows, as it has to be.
 pub(super) fn light(
     root: &Root,
     node: usize,
     extras: &Value,
     world: &DMat4,
+    all: &Bounds,
 ) -> Result<Option<AreaLight>, Problem> {
     let Some(kind) = extras.get("area_light") else { return Ok(None) };
     let sentence = |problem: Problem| format!("{}: {problem}", nodes::label(root, node));
-    if kind.as_str() != Some("rectangle") {
-        return Err(sentence(format!("its area_light is {}; write \"rectangle\"", shown(kind))));
-    }
-    let light = rectangle(extras, world).map_err(sentence)?;
+    let light = match kind.as_str() {
+        Some("rectangle") => rectangle(extras, world),
+        Some("sun") => sun(extras, world, all),
+        _ => Err(format!("its area_light is {}; write \"rectangle\" or \"sun\"", shown(kind))),
+    };
+    let light = light.map_err(sentence)?;
     let color = color(extras).map_err(sentence)?;
     let intensity = match extras.get("intensity") {
         Some(value) => brightness(value, "intensity").map_err(sentence)?,
@@ -79,6 +83,21 @@ fn rectangle(extras: &Value, world: &DMat4) -> Result<RectangleLight, Problem> {
             "its light cannot be used: {problem}; a node above it with a rotation and an uneven \
              scale may skew it"
         ),
+        other => other.to_string(),
+    })
+}
+
+fn sun(extras: &Value, world: &DMat4, all: &Bounds) -> Result<RectangleLight, Problem> {
+    let lacking = "its area_light has no angular_size; give it one in radians, as in \"angular_size\": 0.0093";
+    let value = extras.get("angular_size").ok_or(lacking)?;
+    let size = value.as_f64().ok_or_else(|| {
+        format!("its angular_size is {}; write a number of radians", shown(value))
+    })?;
+    // Of its direction nothing is left but the direction.
+    let emission = -world.z_axis.truncate();
+    let radius = (0.5 * all.size().length()).max(SIDES[0]);
+    RectangleLight::sun(emission, size, all.center(), radius).map_err(|e| match e {
+        Error::Light(problem) => format!("its light cannot be used: {problem}"),
         other => other.to_string(),
     })
 }

@@ -37,7 +37,8 @@ const MAX_COORDINATE: f64 = 1e9;
 /// - Missing normals are flat, as glTF has it. Vertices that no triangle uses are left out.
 /// - Skinned and morphed meshes stand at rest, as their vertices say.
 /// - Area lights and roles come from the nodes' extras: `"area_light": "rectangle"` with `"width"`,
-///   `"height"` (metres, before the node's scale) and optionally `"color"` and `"intensity"`;
+///   `"height"` (metres, before the node's scale), or `"area_light": "sun"` with `"angular_size"` (radians),
+///   wherever the node stands; both optionally with `"color"` and `"intensity"`;
 ///   `"shadow_role": "occluder"`, `"receiver"` or `"both"`. A scene without a light is returned all
 ///   the same: [`Scene::light`] is what refuses it.
 /// - The camera is that of the first node with a perspective one; orthographic ones are passed over.
@@ -48,7 +49,7 @@ const MAX_COORDINATE: f64 = 1e9;
 /// # Errors
 /// [`Error::File`] for a file that cannot be read, is not glTF 2.0, requires an extension that is not
 /// supported (any that changes triangles or transforms), contradicts itself, has coordinates that are
-/// not finite or beyond 10⁹ m, has no triangles, or has an area light that is not a rectangle.
+/// not finite or beyond 10⁹ m, has no triangles, or has an area light that is neither a rectangle nor a sun.
 pub fn from_gltf(path: &Path) -> Result<Scene, Error> {
     let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
     read(path)
@@ -75,14 +76,12 @@ fn parse(bytes: &[u8], folder: &Path) -> Result<Scene, Problem> {
     // Of each glTF mesh already read, where its triangles are in the scene.
     let mut known: Vec<Option<Vec<(usize, Bounds)>>> = vec![None; root.meshes.len()];
 
-    for placed in nodes::placed(&root)? {
+    let all_placed = nodes::placed(&root)?;
+    for placed in &all_placed {
         let label = || nodes::label(&root, placed.node);
         let node = json::at(&root.nodes, placed.node, "nodes", label)?;
-        if let Some(light) = extras::light(&root, placed.node, &node.extras, &placed.world)? {
-            scene.lights.push(light);
-        }
         if let (None, Some(camera)) = (scene.camera, node.camera) {
-            scene.camera = nodes::camera(&root, camera, &placed)?;
+            scene.camera = nodes::camera(&root, camera, placed)?;
         }
         let Some(index) = node.mesh else { continue };
         let role = extras::role(&node.extras).map_err(|e| format!("{}: {e}", label()))?;
@@ -105,6 +104,15 @@ fn parse(bytes: &[u8], folder: &Path) -> Result<Scene, Problem> {
     }
     if scene.instances.is_empty() {
         return Err("it has no triangles in its scene, so nothing can cast or show a shadow".into());
+    }
+    // Lights come last: a sun lies where it shines on all.
+    let all = scene.bounds(|i| i.role.blocks()).or_else(|| scene.bounds(|_| true));
+    let all = all.unwrap_or(Bounds { min: DVec3::ZERO, max: DVec3::ZERO });
+    for placed in &all_placed {
+        let node =
+            json::at(&root.nodes, placed.node, "nodes", || nodes::label(&root, placed.node))?;
+        let light = extras::light(&root, placed.node, &node.extras, &placed.world, &all)?;
+        scene.lights.extend(light);
     }
     Ok(scene)
 }

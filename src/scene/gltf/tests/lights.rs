@@ -30,6 +30,21 @@ fn a_light_lies_in_its_nodes_plane_and_emits_along_minus_z() {
     assert_eq!((bright.color, bright.intensity), ([1.0, 0.5, 0.0], 40.0));
 }
 
+/// Wherever its node stands and however it is scaled, a sun shines along its −Z on what casts shadows.
+#[test]
+fn a_sun_is_far_away_and_as_wide_as_its_angle() {
+    let node = json!({"translation": [7, 0, 0], "scale": [2, 2, 2]});
+    let sun = json!({"area_light": "sun", "angular_size": 0.02, "intensity": 3});
+    let lamp = light(node, sun).unwrap();
+    assert_eq!(lamp.intensity, 3.0);
+    let scene = with_nodes(&json!([{"mesh": 0}])).unwrap();
+    let all = scene.bounds(|_| true).unwrap();
+    let away = all.center() - lamp.light.center();
+    assert!((away.normalize() - DVec3::NEG_Z).length() < 1e-12);
+    assert!((away.length() / all.size().length() - 500.0).abs() < 1e-6);
+    assert!((lamp.light.half_extents()[0] / away.length() - 0.01f64.tan()).abs() < 1e-12);
+}
+
 #[test]
 fn a_nodes_scale_stretches_its_light() {
     assert_eq!(rectangle(json!({"scale": [3, 4, 5]})).half_extents(), [3.0, 2.0]);
@@ -60,7 +75,7 @@ fn lights_that_cannot_be_used_are_refused_by_name() {
         (
             json!({}),
             json!({"area_light": "disk"}),
-            "its area_light is \"disk\"; write \"rectangle\"",
+            "its area_light is \"disk\"; write \"rectangle\" or \"sun\"",
         ),
         (json!({}), json!({"area_light": 1}), "its area_light is 1; write \"rectangle\""),
         (json!({}), json!({"width": -2}), "its width is -2; write a number of metres above 0"),
@@ -72,6 +87,26 @@ fn lights_that_cannot_be_used_are_refused_by_name() {
         ),
         (json!({}), json!({"width": 0.0}), "its width 0 is a line light"),
         (json!({}), json!({"width": 0, "height": 0}), "its width 0 and height 0 are a point light"),
+        (
+            json!({}),
+            json!({"area_light": "sun"}),
+            "its area_light has no angular_size; give it one",
+        ),
+        (
+            json!({}),
+            json!({"area_light": "sun", "angular_size": "1"}),
+            "its angular_size is \"1\"; write a number of radians",
+        ),
+        (
+            json!({}),
+            json!({"area_light": "sun", "angular_size": 2}),
+            "its light cannot be used: its angular size must be above 0 and at most 1 rad",
+        ),
+        (
+            json!({"scale": [1, 1, 0]}),
+            json!({"area_light": "sun", "angular_size": 0.1}),
+            "its light cannot be used: its direction",
+        ),
         (json!({}), json!({"color": [1, 1]}), "its color is a list; write three numbers"),
         (json!({}), json!({"color": [1, -1, 1]}), "its color holds -1; numbers from 0 up"),
         (json!({}), json!({"intensity": "1"}), "its intensity holds \"1\"; numbers from 0 up"),
