@@ -12,7 +12,7 @@ const SUN_DISTANCE: f64 = 1000.0;
 /// The largest angular size of a sun, radians.
 const MAX_ANGULAR_SIZE: f64 = 1.0;
 
-/// A rectangle that emits from one side.
+/// A rectangle that emits from one side; one of no height is a line ([`Self::line`]).
 ///
 /// Light space has its origin at the light's centre, +z along the emission, and x and y along the
 /// half-axes; it is right-handed and its unit is the metre. Positions and axes are world space in
@@ -55,6 +55,37 @@ impl RectangleLight {
         let z = -half_u.cross(half_v).normalize();
         let axes = DMat3::from_cols(x, z.cross(x), z);
         Ok(Self { center, axes, half_extents: [width, height] })
+    }
+
+    /// A line light: a segment of no height, as tubes and strips are (Heidrich, Brabec and Seidel 2000).
+    ///
+    /// `half_u` reaches from the centre to one end, in metres. `emission` is the middle of the half space that it
+    /// shines into, of any length; what of it lies along the segment does not matter. Its height is 0 in
+    /// [`Self::half_extents`], by which the techniques that need an area know it.
+    ///
+    /// # Errors
+    /// [`Error::Light`] for values that are not finite, a segment of no length, or an emission along it.
+    pub fn line(center: DVec3, half_u: DVec3, emission: DVec3) -> Result<Self, Error> {
+        let refuse = |problem: &str| Err(Error::Light(problem.into()));
+        let length = half_u.length();
+        if !(center.is_finite() && length.is_finite() && emission.is_finite()) {
+            return refuse("its position, segment and emission must be finite numbers");
+        }
+        if length <= 0.0 {
+            return refuse("a line must be longer than 0");
+        }
+        let x = half_u / length;
+        let z = emission.normalize_or_zero().reject_from_normalized(x);
+        if z.length() <= MAX_SKEW {
+            return refuse("a line must shine into some direction across it");
+        }
+        let z = z.normalize();
+        Ok(Self { center, axes: DMat3::from_cols(x, z.cross(x), z), half_extents: [length, 0.0] })
+    }
+
+    /// Whether the light is a segment without height.
+    pub fn is_line(&self) -> bool {
+        self.half_extents[1] == 0.0
     }
 
     /// A sun: a light of an angular size, so far away that its rays are all but parallel.
@@ -174,6 +205,23 @@ mod tests {
         assert!((light.axes.determinant() - 1.0).abs() < 1e-14);
         let below = light.light_from_world().transform_point3(DVec3::new(1.0, 1.0, -2.0));
         assert!((below - DVec3::new(0.0, 0.0, 2.0)).length() < 1e-14);
+    }
+
+    #[test]
+    fn a_line_has_no_height_and_shines_across_itself() {
+        let line = RectangleLight::line(DVec3::Y, DVec3::X * 2.0, DVec3::new(5.0, -1.0, 0.0));
+        let line = line.unwrap();
+        assert!((line.emission() - DVec3::NEG_Y).length() < 1e-15 && line.is_line());
+        assert_eq!(line.half_extents(), [2.0, 0.0]);
+        assert!((line.axes.determinant() - 1.0).abs() < 1e-14);
+        let make = |u, emission| {
+            let light = RectangleLight::line(DVec3::ZERO, u, emission);
+            light.unwrap_err().to_string()
+        };
+        assert!(make(DVec3::ZERO, DVec3::Y).contains("longer than 0"));
+        assert!(make(DVec3::X, DVec3::X * 3.0).contains("across"));
+        assert!(make(DVec3::X, DVec3::ZERO).contains("across"));
+        assert!(make(DVec3::X, DVec3::NAN).contains("finite"));
     }
 
     #[test]
