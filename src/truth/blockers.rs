@@ -76,6 +76,29 @@ impl<T> Blockers<T> {
         Ok(Self { origin, extent, triangles, tree: build(&boxes) })
     }
 
+    /// Calls `visit` with each triangle whose box meets the region.
+    pub(super) fn for_each_in<const N: usize>(
+        &self,
+        region: &Region<N>,
+        mut visit: impl FnMut(&T),
+    ) {
+        let Self { triangles, tree: Some(tree), .. } = self else { return };
+        let mut stack = vec![0];
+        while let Some(node) = stack.pop() {
+            let node = &tree.nodes[node as usize];
+            if region.misses(node.aabb()) {
+                continue;
+            }
+            let first = node.first_index;
+            if node.is_leaf() {
+                let leaves = &tree.primitive_indices[first as usize..][..node.prim_count as usize];
+                leaves.iter().for_each(|&i| visit(&triangles[i as usize]));
+            } else {
+                stack.extend([first, first + 1]);
+            }
+        }
+    }
+
     /// How far a receiver is moved off its surface along its normal, in metres, where its position
     /// may be off by `position_error` beyond what f32 arithmetic on scene-sized coordinates
     /// explains; about 2 µm a metre of the scene's extent without.
@@ -86,6 +109,26 @@ impl<T> Blockers<T> {
         let largest = |world: DVec3| (world - self.origin).abs().max_element();
         let reach = self.extent.max(largest(position)).max(largest(light));
         OFFSET_PER_ERROR * (POSITION_ROUNDINGS * F32_ROUNDING * reach + position_error)
+    }
+}
+
+/// What of space lies inside each of a few planes.
+pub(super) struct Region<const N: usize> {
+    /// Relative to the blockers' origin.
+    pub(super) apex: DVec3,
+    /// Each with its normal inwards and its distance from the apex.
+    pub(super) planes: [(DVec3, f64); N],
+}
+
+impl<const N: usize> Region<N> {
+    /// Whether the box is beyond one of the planes. Boxes are padded by far more than f64 rounds.
+    fn misses(&self, bounds: &Aabb) -> bool {
+        let (low, high) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+        let (center, half) = ((low + high) / 2.0 - self.apex, (high - low) / 2.0);
+        let nearest = |&(normal, distance): &(DVec3, f64)| {
+            normal.dot(center) + normal.abs().dot(half) + distance
+        };
+        self.planes.iter().any(|plane| nearest(plane) < 0.0)
     }
 }
 

@@ -27,7 +27,7 @@
 //! 11 ms of 360,000); loose triangles that all overlap cross each other, and time goes with the
 //! crossings, hence with the square (14 ms for 1,000, 120 ms for 3,000).
 
-use super::blockers::Blockers;
+use super::blockers::{Blockers, Region};
 use super::polygon_light::PolygonLight;
 use super::pyramid::{Apex, Frame, clip};
 use super::trace::{Receiver, check_position_error};
@@ -35,15 +35,17 @@ use super::union::{MARGIN, Union, to_grid};
 use crate::Error;
 use crate::scene::Scene;
 use glam::DVec3;
-use obvhs::aabb::Aabb;
 use rayon::prelude::*;
 use std::fmt;
 
 /// Receivers further from the light than this many half-extents of it are refused: products of
 /// coordinates would overflow.
-const FURTHEST: f64 = 1e100;
+pub(super) const FURTHEST: f64 = 1e100;
 
-/// The blocking triangles of a scene, ready to be asked.
+/// The blocking triangles of a scene, ready to be asked about a light with an area.
+///
+/// A line ([`crate::RectangleLight::line`]) has none: it is refused with a sentence, and
+/// [`super::ExactLine`] is the one to ask.
 pub struct Exact {
     blockers: Blockers<[DVec3; 3]>,
     position_error: f64,
@@ -82,7 +84,7 @@ impl Exact {
     ///
     /// # Errors
     /// [`Error::Frame`] where the position or normal is not finite, or the receiver further away
-    /// than 10¹⁰⁰ light sizes.
+    /// than 10¹⁰⁰ light sizes; [`Error::Light`] for a line.
     pub fn visible_fraction(
         &self,
         light: &PolygonLight,
@@ -100,7 +102,8 @@ impl Exact {
     /// one that lies in it, and does not block.
     ///
     /// # Errors
-    /// [`Error::Frame`] where the point is not finite, or further away than 10¹⁰⁰ light sizes.
+    /// [`Error::Frame`] where the point is not finite, or further away than 10¹⁰⁰ light sizes;
+    /// [`Error::Light`] for a line.
     pub fn visible_from(&self, light: &PolygonLight, point: DVec3) -> Result<f64, Error> {
         let panel = self.offset(light, point);
         self.of_point(light, point - self.blockers.origin, panel, &mut Union::new())
@@ -148,6 +151,9 @@ impl Exact {
         union: &mut Union,
     ) -> Result<f64, Error> {
         let frame = light.frame().relative_to(self.blockers.origin);
+        if !frame.rows.iter().all(|row| row.is_finite()) {
+            return Err(Error::Light("it has no area; ask truth::ExactLine about a line".into()));
+        }
         let apex = Apex::new(&frame, point);
         if !apex.local.is_finite() || apex.local.abs().max_element() > FURTHEST {
             return Err(Error::Frame(format!(
@@ -161,7 +167,7 @@ impl Exact {
         }
         union.clear();
         let mut corners = Vec::with_capacity(9);
-        self.for_each_in(&Pyramid::new(&frame, &apex, point), |triangle| {
+        self.blockers.for_each_in(&pyramid(&frame, &apex, point), |triangle| {
             let rays = triangle.map(|corner| apex.ray_through(corner));
             if rays.iter().all(|ray| ray.z <= panel) {
                 return;
@@ -178,28 +184,10 @@ impl Exact {
         });
         Ok(union.uncovered(light.outline()))
     }
-
-    /// Calls `visit` with each triangle whose box meets the pyramid.
-    fn for_each_in(&self, pyramid: &Pyramid, mut visit: impl FnMut(&[DVec3; 3])) {
-        let Blockers { triangles, tree: Some(tree), .. } = &self.blockers else { return };
-        let mut stack = vec![0];
-        while let Some(node) = stack.pop() {
-            let node = &tree.nodes[node as usize];
-            if pyramid.misses(node.aabb()) {
-                continue;
-            }
-            let first = node.first_index;
-            if node.is_leaf() {
-                let leaves = &tree.primitive_indices[first as usize..][..node.prim_count as usize];
-                leaves.iter().for_each(|&i| visit(&triangles[i as usize]));
-            } else {
-                stack.extend([first, first + 1]);
-            }
-        }
-    }
 }
 
-fn check(receiver: &Receiver, name: impl fmt::Display) -> Result<(), Error> {
+/// Refuses a receiver that is not finite.
+pub(super) fn check(receiver: &Receiver, name: impl fmt::Display) -> Result<(), Error> {
     if receiver.position.is_finite() && receiver.normal.is_finite() {
         return Ok(());
     }
@@ -209,34 +197,17 @@ fn check(receiver: &Receiver, name: impl fmt::Display) -> Result<(), Error> {
     )))
 }
 
-/// The planes of the pyramid from a receiver to the light's bounding rectangle.
-struct Pyramid {
-    apex: DVec3,
-    /// Each with its normal inwards and its distance from the apex: the four sides, before the
-    /// light's plane, nearer to it than the receiver.
-    planes: [(DVec3, f64); 6],
-}
-
-impl Pyramid {
-    /// The normals are the gradients of [`super::pyramid::Ray::sides`], and of w.
-    fn new(frame: &Frame, apex: &Apex, point: DVec3) -> Self {
-        let [x, y, z] = frame.rows;
-        let r = apex.local;
-        let (x, y, w) = (x * r.z - z * r.x, y * r.z - z * r.y, -z);
-        let planes = [(w - x, 0.0), (w + x, 0.0), (w - y, 0.0), (w + y, 0.0), (z, r.z), (w, 0.0)];
-        Self { apex: point, planes }
-    }
-
-    /// Whether the box is beyond one of the planes. Boxes are padded by far more than f64 rounds.
-    fn misses(&self, bounds: &Aabb) -> bool {
-        let (low, high) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
-        let (center, half) = ((low + high) / 2.0 - self.apex, (high - low) / 2.0);
-        let nearest = |&(normal, distance): &(DVec3, f64)| {
-            normal.dot(center) + normal.abs().dot(half) + distance
-        };
-        self.planes.iter().any(|plane| nearest(plane) < 0.0)
-    }
+/// The pyramid from a receiver to the light's bounding rectangle: its four sides, before the light's
+/// plane, nearer to it than the receiver.
+///
+/// The normals are the gradients of [`super::pyramid::Ray::sides`], and of w.
+fn pyramid(frame: &Frame, apex: &Apex, point: DVec3) -> Region<6> {
+    let [x, y, z] = frame.rows;
+    let r = apex.local;
+    let (x, y, w) = (x * r.z - z * r.x, y * r.z - z * r.y, -z);
+    let planes = [(w - x, 0.0), (w + x, 0.0), (w - y, 0.0), (w + y, 0.0), (z, r.z), (w, 0.0)];
+    Region { apex: point, planes }
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

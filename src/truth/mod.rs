@@ -13,10 +13,11 @@
 //!
 //! - [`closed_form`]: one convex polygon before a rectangle light, exact to rounding.
 //! - [`exact`]: whole scenes and any polygonal light, exact to rounding.
+//! - [`segment`]: the same of a line light: the share of its length.
 //! - [`trace`]: whole scenes by stratified rays, with an estimate of its own noise.
 //! - [`metrics`]: the error of an image as Atty 2006 section 5.2.1 counts it, and what that hides.
 //!
-//! Three conventions hold for all three methods, so that they agree with each other and with what a
+//! Three conventions hold for all of these methods, so that they agree with each other and with what a
 //! rasterizing technique can reproduce:
 //!
 //! - A receiver at or behind the light's plane is not lit by it; there is nothing to shadow and
@@ -28,6 +29,7 @@
 pub mod closed_form;
 pub mod exact;
 pub mod metrics;
+pub mod segment;
 pub mod trace;
 
 mod blockers;
@@ -39,6 +41,7 @@ pub use closed_form::{visible_fraction_of_polygon, visible_fraction_of_quad};
 pub use exact::Exact;
 pub use metrics::ErrorSummary;
 pub use polygon_light::PolygonLight;
+pub use segment::ExactLine;
 pub use trace::{Estimate, Receiver, Sampling, Traced, Tracer};
 
 #[cfg(test)]

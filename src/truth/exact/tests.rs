@@ -11,7 +11,7 @@ use crate::truth::{visible_fraction_of_polygon, visible_fraction_of_quad};
 use glam::DMat4;
 
 #[cfg(feature = "gltf")]
-mod bunny;
+pub(in crate::truth) mod bunny;
 mod laws;
 
 /// What the truth promises where distances are of one order (the module's derivation gives a
@@ -19,7 +19,7 @@ mod laws;
 const PROMISED: f64 = 1e-9;
 
 /// Triangles in f64: each is an f32 mesh, the unit triangle, under a transform of its own.
-fn soup(triangles: &[[DVec3; 3]], role: Role) -> Scene {
+pub(in crate::truth) fn soup(triangles: &[[DVec3; 3]], role: Role) -> Scene {
     let mut scene = Scene::default();
     for (i, &[a, b, c]) in triangles.iter().enumerate() {
         let unit = Mesh {
@@ -34,7 +34,7 @@ fn soup(triangles: &[[DVec3; 3]], role: Role) -> Scene {
     scene
 }
 
-fn halves([a, b, c, d]: [DVec3; 4]) -> [[DVec3; 3]; 2] {
+pub(in crate::truth) fn halves([a, b, c, d]: [DVec3; 4]) -> [[DVec3; 3]; 2] {
     [[a, b, c], [a, c, d]]
 }
 

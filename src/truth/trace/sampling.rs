@@ -13,7 +13,8 @@ const MAX_RAYS: u32 = 1 << 20;
 /// noise without bias, which one grid cannot. Only strata that a shadow's edge crosses have any
 /// noise, each at most ¼ in variance, and there are of the order n of them: n for one straight
 /// edge along the strata, at most 4n for any convex outline. So the standard error is at most
-/// n^(−3/2) / √8 and n^(−3/2) / √2 for those, and falls as rays^(−3/4).
+/// n^(−3/2) / √8 and n^(−3/2) / √2 for those, and falls as rays^(−3/4). On a line, where the strata of a
+/// column coincide, each end of a shadow is noisy in n of them: n^(−3/2) / √8 for one, √k times that for k.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampling {
     side: u32,

@@ -11,14 +11,14 @@ const POINTS: usize = 1000;
 /// How many times each is traced.
 const SEEDS: u64 = 4;
 
-struct Bunny {
-    scene: Scene,
-    light: RectangleLight,
-    receivers: Vec<Receiver>,
+pub(in crate::truth) struct Bunny {
+    pub(in crate::truth) scene: Scene,
+    pub(in crate::truth) light: RectangleLight,
+    pub(in crate::truth) receivers: Vec<Receiver>,
 }
 
 impl Bunny {
-    fn new() -> Self {
+    pub(in crate::truth) fn new() -> Self {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
         let scene = from_gltf(&root.join("bunny.glb")).unwrap();
         let light = scene.lights[0].light;
@@ -46,7 +46,7 @@ impl Bunny {
     }
 
     /// The same receivers with independent random numbers, a few times.
-    fn traced(&self, rays: u32) -> Vec<Traced> {
+    pub(in crate::truth) fn traced(&self, rays: u32) -> Vec<Traced> {
         let tracer = Tracer::new(&self.scene).unwrap();
         let sampling = |seed| Sampling::new(rays, seed).unwrap();
         let of = |seed| tracer.visible_fractions(&self.light, &self.receivers, &sampling(seed));
@@ -94,15 +94,15 @@ impl Surface {
 }
 
 /// Traced − exact in units of the noise that the tracer states.
-struct Deviation {
-    worst: f64,
-    rms: f64,
-    mean: f64,
+pub(in crate::truth) struct Deviation {
+    pub(in crate::truth) worst: f64,
+    pub(in crate::truth) rms: f64,
+    pub(in crate::truth) mean: f64,
     /// How many receivers these are over: those in the penumbra by exact.
-    penumbra: usize,
+    pub(in crate::truth) penumbra: usize,
 }
 
-fn deviation(traced: &[Traced], exact: &[f64]) -> Deviation {
+pub(in crate::truth) fn deviation(traced: &[Traced], exact: &[f64]) -> Deviation {
     let penumbra = |v: f64| v > 0.0 && v < 1.0;
     let noise = stated_noise(traced);
     let errors: Vec<f64> = traced
@@ -121,7 +121,7 @@ fn deviation(traced: &[Traced], exact: &[f64]) -> Deviation {
 }
 
 /// The root mean square of what each image states.
-fn stated_noise(traced: &[Traced]) -> f64 {
+pub(in crate::truth) fn stated_noise(traced: &[Traced]) -> f64 {
     (traced.iter().map(|traced| traced.noise.powi(2)).sum::<f64>() / traced.len() as f64).sqrt()
 }
 

@@ -131,7 +131,8 @@ fn the_tree_loses_no_triangle() {
         let point = random.vector(1.5);
         let apex = Apex::new(&frame, point);
         let mut found = Vec::new();
-        exact.for_each_in(&Pyramid::new(&frame, &apex, point), |triangle| found.push(*triangle));
+        let region = pyramid(&frame, &apex, point);
+        exact.blockers.for_each_in(&region, |triangle| found.push(*triangle));
         for triangle in &exact.blockers.triangles {
             let inside = clip(triangle.map(|corner| apex.ray_through(corner)).to_vec(), 1.0);
             let blocks = apex.local.z > 0.0 && inside.iter().any(|ray| ray.w > 1e-9);
