@@ -51,6 +51,19 @@ pub fn rectangle_light(width: f64, height: f64, tilt: f64) -> Result<RectangleLi
     )
 }
 
+/// A line light of the given length at (0, 4, 0), in metres, facing straight down: along x, turned about
+/// the vertical by `turn` radians, from +x towards −z.
+///
+/// # Errors
+/// [`Error::Light`] for a length that is not a number above 0 or a turn that is not finite.
+pub fn line_light(length: f64, turn: f64) -> Result<RectangleLight, Error> {
+    if length < 0.0 {
+        return Err(Error::Light("its length must be above 0".into()));
+    }
+    let half = DQuat::from_rotation_y(turn) * (DVec3::X * 0.5 * length);
+    RectangleLight::line(LIGHT_CENTER, half, DVec3::NEG_Y)
+}
+
 /// A square card of side 1 at y = 2, parallel to the ground, front side up, double-sided.
 pub fn card(light: RectangleLight) -> Scene {
     let mut scene = stage(light);

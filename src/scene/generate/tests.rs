@@ -148,6 +148,19 @@ fn lights_are_turned_towards_minus_z_and_bad_ones_refused() {
 }
 
 #[test]
+fn line_lights_are_turned_about_the_vertical_and_bad_ones_refused() {
+    let line = line_light(1.2, 0.5).unwrap();
+    assert!(line.is_line() && (line.half_extents()[0] - 0.6).abs() < 1e-15);
+    assert!((line.emission() - DVec3::NEG_Y).length() < 1e-12);
+    let along = line.world_from_light().transform_vector3(DVec3::X);
+    let turned = DVec3::new(0.5_f64.cos(), 0.0, -0.5_f64.sin());
+    assert!((along - turned).length() < 1e-12, "{along}");
+    for (length, turn) in [(-1.0, 0.0), (0.0, 0.0), (f64::NAN, 0.0), (1.0, f64::NAN)] {
+        assert!(line_light(length, turn).is_err(), "{length} {turn}");
+    }
+}
+
+#[test]
 fn a_scene_is_put_into_the_set_up_whatever_its_size() {
     let mut odd = Scene::default();
     let away = DMat4::from_translation(DVec3::new(2e4, -7.0, 3.0))

@@ -6,7 +6,7 @@ use super::json::Root;
 use super::{MAX_COORDINATE, Problem, nodes, quoted};
 use crate::scene::{AreaLight, Bounds, Role};
 use crate::{Error, RectangleLight};
-use glam::DMat4;
+use glam::{DMat4, DVec3};
 use serde_json::Value;
 
 /// The shortest and longest side of a light in the world, in metres: techniques divide by its area,
@@ -46,45 +46,59 @@ pub(super) fn light(
     Ok(Some(AreaLight { name: nodes::name(root, node), light, color, intensity }))
 }
 
+/// A rectangle in the node's X and Y, or of a side of 0 a line along the other.
 fn rectangle(extras: &Value, world: &DMat4) -> Result<RectangleLight, Problem> {
     let (width, height) = (side(extras, "width")?, side(extras, "height")?);
-    let lacking = match (width == 0.0, height == 0.0) {
-        (true, true) => Some("width 0 and height 0 are a point light"),
-        (true, false) => Some("width 0 is a line light"),
-        (false, true) => Some("height 0 is a line light"),
-        (false, false) => None,
-    };
-    if let Some(lacking) = lacking {
-        return Err(format!(
-            "its {lacking}, which no technique here takes yet; write sides above 0"
-        ));
-    }
-    let half_u = world.x_axis.truncate() * (0.5 * width);
-    let mut half_v = world.y_axis.truncate() * (0.5 * height);
-    for (what, half) in [("width", half_u), ("height", half_v)] {
-        let side = 2.0 * half.length();
-        if !(SIDES[0]..=SIDES[1]).contains(&side) {
-            return Err(format!(
-                "its {what} with the node's scale is {side} m; it must be from {:e} to {:e} m",
-                SIDES[0], SIDES[1]
-            ));
-        }
-    }
     let center = world.w_axis.truncate();
     if center.abs().max_element() > MAX_COORDINATE {
         return Err(format!("it lies further than {MAX_COORDINATE:e} m from the origin"));
     }
-    // Light leaves along half_v × half_u. Where the node mirrors, that is its +Z: turn one axis.
-    if half_v.cross(half_u).dot(-world.z_axis.truncate()) < 0.0 {
-        half_v = -half_v;
-    }
-    RectangleLight::new(center, half_u, half_v).map_err(|e| match e {
+    let half_u = world.x_axis.truncate() * (0.5 * width);
+    let half_v = world.y_axis.truncate() * (0.5 * height);
+    let light = match (width == 0.0, height == 0.0) {
+        (true, true) => {
+            return Err(
+                "its width 0 and height 0 are a point, which has no soft shadow; give it a \
+                        width"
+                    .into(),
+            );
+        }
+        (false, true) => line(center, in_range("width", half_u)?, world),
+        (true, false) => line(center, in_range("height", half_v)?, world),
+        (false, false) => {
+            let (half_u, half_v) = (in_range("width", half_u)?, in_range("height", half_v)?);
+            // Light leaves along half_v × half_u. Where the node mirrors, that is its +Z: turn one axis.
+            let turned = half_v.cross(half_u).dot(-world.z_axis.truncate()) < 0.0;
+            RectangleLight::new(center, half_u, if turned { -half_v } else { half_v })
+        }
+    };
+    light.map_err(|e| match e {
         Error::Light(problem) => format!(
             "its light cannot be used: {problem}; a node above it with a rotation and an uneven \
              scale may skew it"
         ),
         other => other.to_string(),
     })
+}
+
+/// Along the node's −Z, as a rectangle, whatever the node mirrors.
+fn line(center: DVec3, half: DVec3, world: &DMat4) -> Result<RectangleLight, Error> {
+    let [x, y, z] = [world.x_axis, world.y_axis, world.z_axis].map(|axis| axis.truncate());
+    // Flattened along its own normal it is the same light.
+    let emission = if z == DVec3::ZERO { y.cross(x) } else { -z };
+    RectangleLight::line(center, half, emission)
+}
+
+/// Half a side in the world, if the side's length there is one.
+fn in_range(what: &str, half: DVec3) -> Result<DVec3, Problem> {
+    let side = 2.0 * half.length();
+    if (SIDES[0]..=SIDES[1]).contains(&side) {
+        return Ok(half);
+    }
+    Err(format!(
+        "its {what} with the node's scale is {side} m; it must be from {:e} to {:e} m",
+        SIDES[0], SIDES[1]
+    ))
 }
 
 fn sun(extras: &Value, world: &DMat4, all: &Bounds) -> Result<RectangleLight, Problem> {
@@ -109,7 +123,7 @@ fn side(extras: &Value, key: &str) -> Result<f64, Problem> {
     value
         .as_f64()
         .filter(|side| side.is_finite() && *side >= 0.0)
-        .ok_or_else(|| format!("its {key} is {}; write a number of metres above 0", shown(value)))
+        .ok_or_else(|| format!("its {key} is {}; write a number of metres from 0 up", shown(value)))
 }
 
 fn color(extras: &Value) -> Result<[f32; 3], Problem> {

@@ -37,7 +37,8 @@ const MAX_COORDINATE: f64 = 1e9;
 /// - Missing normals are flat, as glTF has it. Vertices that no triangle uses are left out.
 /// - Skinned and morphed meshes stand at rest, as their vertices say.
 /// - Area lights and roles come from the nodes' extras: `"area_light": "rectangle"` with `"width"`,
-///   `"height"` (metres, before the node's scale), or `"area_light": "sun"` with `"angular_size"` (radians),
+///   `"height"` (metres, before the node's scale; a height of 0 is a line along the node's X, a width of 0
+///   one along its Y, and both shine along its −Z), or `"area_light": "sun"` with `"angular_size"` (radians),
 ///   wherever the node stands; both optionally with `"color"` and `"intensity"`;
 ///   `"shadow_role": "occluder"`, `"receiver"` or `"both"`. A scene without a light is returned all
 ///   the same: [`Scene::light`] is what refuses it.

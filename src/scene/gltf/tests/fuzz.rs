@@ -193,7 +193,8 @@ fn check(scene: &Scene) {
     }
     for light in &scene.lights {
         assert!(light.light.world_from_light().is_finite());
-        assert!(light.light.half_extents().iter().all(|h| *h > 0.0));
+        let [width, height] = light.light.half_extents();
+        assert!(width > 0.0 && height >= 0.0);
     }
     for camera in [scene.camera.unwrap_or(Camera::framing(scene, 1.5)), Camera::framing(scene, 1.5)]
     {

@@ -69,6 +69,43 @@ fn mirrored_lights_emit_along_their_nodes_minus_z() {
     }
 }
 
+/// A rectangle without height is a line along the node's X, one without width along its Y; light leaves
+/// along −Z, whatever the node mirrors, turns and stretches.
+#[test]
+fn a_side_of_nothing_makes_a_line() {
+    for (sides, along) in [([3.0, 0.0], DVec3::X), ([0.0, 3.0], DVec3::Y)] {
+        let line = |mut node: Value| {
+            node["translation"] = json!([1, 2, 3]);
+            let lamp = light(node, json!({"width": sides[0], "height": sides[1]})).unwrap();
+            assert!(lamp.light.is_line());
+            assert_eq!(lamp.light.center(), DVec3::new(1.0, 2.0, 3.0));
+            let axis = lamp.light.world_from_light().transform_vector3(DVec3::X);
+            (axis, lamp.light.half_extents()[0], lamp.light.emission())
+        };
+        assert_eq!(line(json!({})), (along, 1.5, DVec3::NEG_Z));
+        for (scale, z) in [
+            ([-2, 2, 2], -1.0),
+            ([2, -2, 2], -1.0),
+            ([2, 2, -2], 1.0),
+            ([-2, -2, -2], 1.0),
+            ([2, 2, 0], -1.0),
+        ] {
+            let (axis, half, emission) = line(json!({"scale": scale}));
+            assert!(axis.cross(along).length() < 1e-15, "{scale:?}");
+            assert_eq!((half, emission), (3.0, DVec3::Z * z), "{scale:?}");
+        }
+        // Across the line its node may have no extent at all.
+        let (_, half, emission) = line(json!({"scale": [along.x, along.y, 1.0]}));
+        assert_eq!((half, emission), (1.5, DVec3::NEG_Z));
+        // A quarter turn about y: −Z becomes −X, and X −Z.
+        let half_root = 0.5f64.sqrt();
+        let (axis, half, emission) = line(json!({"rotation": [0, half_root, 0, half_root]}));
+        let turned = if along == DVec3::X { DVec3::NEG_Z } else { DVec3::Y };
+        assert!((axis - turned).length() < 1e-12 && (half - 1.5).abs() < 1e-12);
+        assert!((emission - DVec3::NEG_X).length() < 1e-12, "{emission}");
+    }
+}
+
 #[test]
 fn lights_that_cannot_be_used_are_refused_by_name() {
     for (node, extras, sentence) in [
@@ -78,15 +115,29 @@ fn lights_that_cannot_be_used_are_refused_by_name() {
             "its area_light is \"disk\"; write \"rectangle\" or \"sun\"",
         ),
         (json!({}), json!({"area_light": 1}), "its area_light is 1; write \"rectangle\""),
-        (json!({}), json!({"width": -2}), "its width is -2; write a number of metres above 0"),
+        (json!({}), json!({"width": -2}), "its width is -2; write a number of metres from 0 up"),
         (json!({}), json!({"height": "NaN"}), "its height is \"NaN\"; write a number"),
         (
             json!({}),
-            json!({"height": 0}),
-            "its height 0 is a line light, which no technique here takes yet",
+            json!({"width": 0, "height": 0.0}),
+            "its width 0 and height 0 are a point, which has no soft shadow; give it a width",
         ),
-        (json!({}), json!({"width": 0.0}), "its width 0 is a line light"),
-        (json!({}), json!({"width": 0, "height": 0}), "its width 0 and height 0 are a point light"),
+        (
+            json!({"scale": [0, 1, 1]}),
+            json!({"height": 0}),
+            "its width with the node's scale is 0 m",
+        ),
+        (
+            json!({"scale": [1, 1e9, 1]}),
+            json!({"width": 0}),
+            "its height with the node's scale is 1000000000 m",
+        ),
+        (
+            json!({"scale": [1, 0, 0]}),
+            json!({"height": 0}),
+            "its light cannot be used: a line must shine into some direction across it",
+        ),
+        (json!({"translation": [0, 1e10, 0]}), json!({"height": 0}), "it lies further than 1e9 m"),
         (
             json!({}),
             json!({"area_light": "sun"}),
