@@ -3,7 +3,9 @@
 use crate::example::root;
 use antumbra::gpu::headless::{HeadlessDevice, Stage, View};
 use antumbra::scene::{Role, Scene, from_gltf};
-use antumbra::truth::{ErrorSummary, Receiver, Sampling, Tracer, visible_fraction_of_quad};
+use antumbra::truth::{
+    ErrorSummary, ExactLine, Receiver, Sampling, Tracer, visible_fraction_of_quad,
+};
 use antumbra::{RectangleLight, Settings};
 use glam::DVec3;
 
@@ -123,15 +125,20 @@ impl<'a> Setup<'a> {
         Self::receivers(stage).iter().map(visible).collect()
     }
 
-    /// The traced visible fractions and their noise.
+    /// The traced visible fractions and their noise; under a line the exact ones, which have none.
     ///
     /// # Panics
     /// If the scene cannot be traced.
     pub fn traced(&self, stage: &Stage, rays: u32) -> (Vec<f32>, f64) {
+        let (light, receivers) = (self.light(), Self::receivers(stage));
+        if light.is_line() {
+            let exact = ExactLine::new(self.scene).unwrap();
+            let visible = exact.visible_fractions(&light, &receivers).unwrap();
+            return (visible.iter().map(|&v| v as f32).collect(), 0.0);
+        }
         let tracer = Tracer::new(self.scene).unwrap();
         let sampling = Sampling::new(rays, 1).unwrap();
-        let traced =
-            tracer.visible_fractions(&self.light(), &Self::receivers(stage), &sampling).unwrap();
+        let traced = tracer.visible_fractions(&light, &receivers, &sampling).unwrap();
         (traced.visible, traced.noise)
     }
 }
