@@ -202,6 +202,16 @@ fn wrong_scenes_are_one_sentence() {
     let scene = write(&there, &range, good);
     refuse("accessor", &scene, &[], "7");
 
+    let mut line = lamp.clone();
+    line["extras"]["height"] = json!(0);
+    let scene = write(&there, &triangle(&json!([mesh, line])), good);
+    refuse("line", &scene, &[], "the light is a line, and soft-shadow-map needs an area");
+    let out = folder("line_hard");
+    let output = run(&scene, &out, &["--size", "32x32", "--technique", "hard"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(files(&out), FILES);
+    fs::remove_dir_all(out).unwrap();
+
     // And the good one renders.
     let scene = write(&there, &triangle(&json!([mesh, lamp])), good);
     let out = folder("good");

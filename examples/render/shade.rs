@@ -15,7 +15,8 @@ const ALBEDO: f64 = 0.8;
 /// Where no surface is.
 const BACKGROUND: [u8; 3] = [46, 50, 56];
 
-/// Irradiance by the light alone, nothing in between: Σ cos θ cos θ′ / r² dA over a grid.
+/// Irradiance by the light alone, nothing in between: Σ cos θ cos θ′ / r² dA over a grid, dA being a piece
+/// of a line's length where the light is one.
 fn irradiance(light: &AreaLight, position: DVec3, normal: DVec3) -> f64 {
     let rectangle = &light.light;
     let [a, b] = rectangle.half_extents();
@@ -33,7 +34,8 @@ fn irradiance(light: &AreaLight, position: DVec3, normal: DVec3) -> f64 {
             sum += received * emitted / (r2 * r2);
         }
     }
-    sum * 4.0 * a * b / (GRID * GRID) as f64
+    let size = if rectangle.is_line() { 2.0 * a } else { 4.0 * a * b };
+    sum * size / (GRID * GRID) as f64
 }
 
 fn srgb(linear: f64) -> u8 {

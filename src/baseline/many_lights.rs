@@ -198,6 +198,11 @@ mod tests {
                 }
             }
         }
+        // On a line they are one row, evenly.
+        for (i, [x, y]) in places([2.0, 0.0], 256, 3).into_iter().enumerate() {
+            let cell = (x / 2.0 + 1.0) * 128.0;
+            assert!(y == 0.0 && (i as f64..=i as f64 + 1.0).contains(&cell), "{i}: {x} {y}");
+        }
         assert_eq!(places([0.5, 0.2], 1, 0), [[0.0, 0.0]], "without a seed the centre");
         assert_ne!(places([0.5, 0.2], 9, 1), places([0.5, 0.2], 9, 2));
     }

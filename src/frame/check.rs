@@ -21,12 +21,33 @@ struct Wanted {
     read: bool,
 }
 
+/// Whether a technique divides by the light's area or works in both of its half-extents, and so has no
+/// meaning for a line.
+fn needs_area(technique: Technique) -> bool {
+    matches!(
+        technique,
+        Technique::Pcss
+            | Technique::BackProjection
+            | Technique::SoftShadowMap
+            | Technique::RayMarch
+            | Technique::OcclusionTextures
+    )
+}
+
 impl Frame<'_> {
     pub(super) fn check(&self, description: &Description) -> Result<(), Error> {
         if self.slot >= description.frames_in_flight {
             return bad(format!(
                 "frame slot {} does not exist; the description has {} frames in flight",
                 self.slot, description.frames_in_flight
+            ));
+        }
+        let technique = description.settings.technique;
+        if self.light.is_line() && needs_area(technique) {
+            return bad(format!(
+                "the light is a line, and {} needs an area; choose linear-light, many-lights or \
+                 hard, or give the light a height",
+                technique.name()
             ));
         }
         if !self.world_from_ndc.is_finite() || self.world_from_ndc.determinant() == 0.0 {
@@ -45,7 +66,7 @@ impl Frame<'_> {
                     "mesh {index}: its transform and bounds must be finite numbers"
                 ));
             }
-            let sliced = description.settings.technique == Technique::OcclusionTextures;
+            let sliced = technique == Technique::OcclusionTextures;
             if sliced && mesh.role.blocks() && matches!(mesh.geometry, Geometry::HostDrawn(_)) {
                 return bad(format!(
                     "mesh {index} is drawn by the host, which cannot sort it into the slices of \
