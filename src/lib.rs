@@ -70,6 +70,7 @@ pub mod frame;
 pub mod gpu;
 pub mod graph;
 pub mod light;
+pub mod linear_light;
 pub mod nbuffer;
 pub mod node;
 pub mod occlusion_textures;

@@ -138,6 +138,13 @@ impl RectangleLight {
         Self { center: self.center + self.axes * DVec3::new(x, y, 0.0), ..*self }
     }
 
+    /// The same light with its x along what was its y.
+    pub(crate) fn quarter_turned(&self) -> Self {
+        let [x, y, z] = [self.axes.x_axis, self.axes.y_axis, self.axes.z_axis];
+        let [a, b] = self.half_extents;
+        Self { axes: DMat3::from_cols(y, -x, z), half_extents: [b, a], ..*self }
+    }
+
     /// Half the light's width and height, in metres.
     pub fn half_extents(&self) -> [f64; 2] {
         self.half_extents

@@ -138,6 +138,18 @@ pub const VISIBILITY_LEVELS: Module = module!("occlusion_textures/visibility_lev
 /// The same by what slices have in common.
 pub const VISIBILITY_LEVELS_CORRELATED: Module =
     module!("occlusion_textures/visibility_levels_correlated.comp");
+/// No skins yet.
+pub const SKIN_START: Module = module!("linear_light/start.comp");
+/// Where occluders end, to skins.
+pub const EDGES: Module = module!("linear_light/edges.comp");
+/// A skin as the neighbouring sample sees it.
+pub const SKINS_VERT: Module = module!("linear_light/skins.vert");
+/// What lies behind it sees of the segment.
+pub const SKINS_FRAG: Module = module!("linear_light/skins.frag");
+/// A segment's maps as pixels ask for them.
+pub const KEEP: Module = module!("linear_light/keep.comp");
+/// The samples' parts of each pixel, summed.
+pub const LINE_VISIBILITY: Module = module!("linear_light/visibility.comp");
 /// The soft shadow map projected onto the G-buffer.
 pub const RESOLVE: Module = module!("visibility/resolve.comp");
 /// Everything lit.
@@ -210,6 +222,12 @@ pub const ALL: &[Module] = &[
     MEANS_NEXT_LEVEL,
     VISIBILITY_LEVELS,
     VISIBILITY_LEVELS_CORRELATED,
+    SKIN_START,
+    EDGES,
+    SKINS_VERT,
+    SKINS_FRAG,
+    KEEP,
+    LINE_VISIBILITY,
     RESOLVE,
     LIT,
     LIT_COLOR,

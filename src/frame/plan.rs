@@ -1,13 +1,14 @@
 //! From one frame to what it records.
 
 use super::accesses::{self, BufferAccess, HostAccess, ImageBarrier, NodeUse};
-use super::rows::{Limits, PLACEHOLDER, Views, build, wanted};
+use super::rows::{Limits, PLACEHOLDER, PLACEHOLDER_WINDOWS, Views, build, wanted};
 use super::{
     BorderBarriers, Description, Frame, Geometry, HostImage, MeshBuffers, MeshInstance, Visibility,
 };
 use crate::baseline::many_lights;
 use crate::depth_layers::{self, HostMapView};
 use crate::graph::{self, Border, MeshList, Need, ResourceId};
+use crate::linear_light;
 use crate::ray_march::{self, Projection};
 use crate::settings::Technique;
 use crate::{Error, scene::Role};
@@ -160,6 +161,11 @@ impl FramePlan {
 /// have, or a frame slot beyond the frames in flight.
 pub fn plan(description: &Description, limits: Limits, frame: &Frame) -> Result<FramePlan, Error> {
     frame.check(description)?;
+    let turned = match description.settings.technique {
+        Technique::LinearLight => linear_light::turned(&frame.light),
+        _ => frame.light,
+    };
+    let frame = &Frame { light: turned, ..*frame };
     let light = &frame.light;
     let of_role = |keep: fn(Role) -> bool| {
         let kept = frame.meshes.iter().filter(move |m| keep(m.role) && has_triangles(m));
@@ -200,9 +206,10 @@ pub fn plan(description: &Description, limits: Limits, frame: &Frame) -> Result<
     let to_light = light.light_from_world();
     let wanted = wanted(&description.settings);
     let occluder_clips: Vec<_> = views.occluder_clips().map(|clip| clip * to_light).collect();
-    let receiver_clip = match (wanted.receiver_map, &views.receivers) {
-        (Some(_), Some(view)) => Some(view.clip_from_light() * to_light),
-        _ => None,
+    let receiver_clips = match (wanted.receiver_map, &views.receivers) {
+        (Some(_), Some(view)) => vec![view.clip_from_light() * to_light],
+        _ if description.settings.technique == Technique::LinearLight => occluder_clips.clone(),
+        _ => Vec::new(),
     };
     Ok(FramePlan {
         accesses: borders.iter().map(|b| access_of(&plan, b, &imports)).collect(),
@@ -212,10 +219,11 @@ pub fn plan(description: &Description, limits: Limits, frame: &Frame) -> Result<
         slot: frame.slot,
         stamp: Stamp::default(),
         occluders: DrawList::new(description, &occluders, &occluder_clips)?,
-        receivers: receiver_clip.map_or_else(
-            || Ok(DrawList::default()),
-            |clip| DrawList::new(description, &receivers, &[clip]),
-        )?,
+        receivers: if receiver_clips.is_empty() {
+            DrawList::default()
+        } else {
+            DrawList::new(description, &receivers, &receiver_clips)?
+        },
     })
 }
 
@@ -286,6 +294,22 @@ fn look(
         }
         _ => Vec::new(),
     };
+    let mut windows = PLACEHOLDER_WINDOWS;
+    let points = match (settings.technique, &need, &receiver_fit) {
+        (Technique::LinearLight, Need::Yes(_), Some(receivers)) => {
+            let lines = linear_light::for_light(&settings.linear_light, light);
+            let boxes = boxes(occluders);
+            let side = settings.map;
+            match linear_light::windows(light, &boxes, &lines, side, 1.0 / receivers.far) {
+                Some((seen, nominal)) => {
+                    windows = seen;
+                    linear_light::samples(light, &seen, &lines, &nominal)
+                }
+                None => points,
+            }
+        }
+        _ => points,
+    };
     // Ray marching and slices look from behind the light.
     let seen = match settings.technique {
         Technique::RayMarch
@@ -301,6 +325,7 @@ fn look(
     let light_from_ndc = light.light_from_world() * frame.world_from_ndc;
     Ok(Views {
         points,
+        windows,
         occluders: seen.or(fit).unwrap_or(PLACEHOLDER),
         host_maps,
         receivers: Some(receiver_fit.unwrap_or(PLACEHOLDER)),

@@ -6,7 +6,7 @@ use crate::depth_layers::{self, Eye, HostMapView, MapView};
 use crate::graph::{Graph, Need, Owner, ResourceId};
 use crate::settings::{Settings, Technique};
 use crate::visibility::{self, GBuffer};
-use crate::{RectangleLight, occlusion_textures, ray_march, soft_shadow_map};
+use crate::{RectangleLight, linear_light, occlusion_textures, ray_march, soft_shadow_map};
 use glam::DMat4;
 
 /// What a device's limits mean to a plan.
@@ -37,11 +37,17 @@ pub(crate) struct FrameGraph {
 pub(super) const PLACEHOLDER: MapView =
     MapView { eye: Eye::Behind(0.0), min: [-1.0; 2], max: [1.0; 2], near: 1.0, far: 2.0, side: 16 };
 
+/// What lines see where they see nothing.
+pub(super) const PLACEHOLDER_WINDOWS: linear_light::Windows =
+    linear_light::Windows { u: [[-1.0, 1.0]; 2], v: [[-1.0, 1.0]; 2] };
+
 /// What the rows depend on, beyond the description.
 pub(super) struct Views {
     pub occluders: MapView,
-    /// Those of many lights; empty for other techniques, and where nothing can be shadowed.
+    /// Those of many lights and of lines; empty for other techniques, and where nothing can be shadowed.
     pub points: Vec<LightPoint>,
+    /// What lines see.
+    pub windows: linear_light::Windows,
     pub host_maps: Option<HostMapView>,
     pub receivers: Option<MapView>,
     pub need: Need,
@@ -68,7 +74,11 @@ pub(super) fn wanted(settings: &Settings) -> depth_layers::Wanted {
         Technique::OcclusionTextures => {
             occlusion_textures::wanted(&settings.occlusion_textures, map)
         }
-        Technique::Hard | Technique::Pcss | Technique::ManyLights | Technique::BackProjection => {
+        Technique::Hard
+        | Technique::Pcss
+        | Technique::ManyLights
+        | Technique::BackProjection
+        | Technique::LinearLight => {
             depth_layers::Wanted { map, back: false, inner: false, receiver_map: None }
         }
     }
@@ -81,11 +91,13 @@ pub(crate) fn nominal(description: &Description, limits: Limits) -> FrameGraph {
     let view = MapView { side, ..PLACEHOLDER };
     let points = match settings.technique {
         Technique::ManyLights => settings.baseline.samples,
+        Technique::LinearLight => settings.linear_light.lines * settings.linear_light.samples,
         _ => 0,
     };
     let views = Views {
         occluders: view,
         points: (0..points).map(|_| LightPoint { at: [0.0; 2], view }).collect(),
+        windows: PLACEHOLDER_WINDOWS,
         host_maps: description.occluder_maps.map(|_| HostMapView {
             view,
             flip: [false; 2],
@@ -203,6 +215,25 @@ pub(super) fn build(
             };
             let settings = &settings.occlusion_textures;
             occlusion_textures::declare(&mut graph, layers.as_ref(), visibility, settings, &inputs);
+        }
+        Technique::LinearLight => {
+            let settings = linear_light::for_light(&settings.linear_light, light);
+            let none = vec![
+                LightPoint { at: [0.0; 2], view: views.occluders };
+                (settings.lines * settings.samples) as usize
+            ];
+            // A frame without shadows has no samples; its rows say so.
+            let samples = if views.points.is_empty() { &none } else { &views.points };
+            let inputs = linear_light::Inputs {
+                light,
+                samples,
+                windows: &views.windows,
+                w_far: views.receivers.map_or(0.0, |r| 1.0 / r.far),
+                gbuffer: &gbuffer,
+                snap,
+                need,
+            };
+            linear_light::declare(&mut graph, visibility, &settings, &inputs);
         }
         Technique::Hard => {
             let front = layers(&mut graph).front;

@@ -106,6 +106,31 @@ pub const KNOBS: &[Knob] = &[
         about: "points on the light, each with a map of its own; any whole number",
     },
     Knob {
+        key: "samples",
+        techniques: &[Technique::LinearLight],
+        unit: "points",
+        range: "2 to 16",
+        default: "4",
+        about: "points on a line, each with maps of its own, between which skins are drawn; any whole number",
+    },
+    Knob {
+        key: "lines",
+        techniques: &[Technique::LinearLight],
+        unit: "lines",
+        range: "1 to 16",
+        default: "4",
+        about: "lines side by side that a rectangle is taken for; a line light is one. Any whole number",
+    },
+    Knob {
+        key: "transition",
+        techniques: &[Technique::LinearLight],
+        unit: "choice",
+        range: "linear, rational",
+        default: "rational",
+        about: "how visibility grows behind a skin: evenly up to the receiver beside the occluder's edge, as \
+                published, or as the receiver's own distance has it, which is exact",
+    },
+    Knob {
         key: "seed",
         techniques: &[Technique::ManyLights, Technique::RayMarch],
         unit: "whole number",

@@ -6,6 +6,7 @@ pub use knobs::{KNOBS, Knob};
 
 use crate::Error;
 use crate::baseline::Settings as Baseline;
+use crate::linear_light::{Settings as LinearLight, Transition};
 use crate::nbuffer;
 use crate::occlusion_textures::{Combine, Placement, Prefilter, Settings as OcclusionTextures};
 use crate::ray_march::{Hash, Layers, Projection, Sampling, Search, Settings as RayMarch};
@@ -31,6 +32,8 @@ pub enum Technique {
     RayMarch,
     /// Prefiltered slices, combined (Eisemann and Décoret 2008).
     OcclusionTextures,
+    /// Visibility channels from warped skins (Heidrich, Brabec and Seidel 2000).
+    LinearLight,
 }
 
 impl Technique {
@@ -43,6 +46,7 @@ impl Technique {
         ("soft-shadow-map", Self::SoftShadowMap),
         ("ray-march", Self::RayMarch),
         ("occlusion-textures", Self::OcclusionTextures),
+        ("linear-light", Self::LinearLight),
     ];
 
     /// The name it has on a command line.
@@ -55,6 +59,7 @@ impl Technique {
             Self::SoftShadowMap => "soft-shadow-map",
             Self::RayMarch => "ray-march",
             Self::OcclusionTextures => "occlusion-textures",
+            Self::LinearLight => "linear-light",
         }
     }
 }
@@ -80,6 +85,8 @@ pub struct Settings {
     pub ray_march: RayMarch,
     /// The other knobs of [`Technique::OcclusionTextures`].
     pub occlusion_textures: OcclusionTextures,
+    /// The other knobs of [`Technique::LinearLight`].
+    pub linear_light: LinearLight,
     /// The other knobs of what users would pick instead.
     pub baseline: Baseline,
 }
@@ -92,6 +99,7 @@ impl Default for Settings {
             soft_shadow_map: SoftShadowMap::default(),
             ray_march: RayMarch::default(),
             occlusion_textures: OcclusionTextures::default(),
+            linear_light: LinearLight::default(),
             baseline: Baseline::default(),
         }
     }
@@ -123,7 +131,12 @@ impl Settings {
             "accumulate" => s.accumulate = choose(key, value, Accumulate::ALL)?,
             "tolerance" => s.tolerance = number(key, value)?,
             "taps" => self.baseline.taps = number(key, value)?,
+            "samples" if technique == Technique::LinearLight => {
+                self.linear_light.samples = number(key, value)?;
+            }
             "samples" => self.baseline.samples = number(key, value)?,
+            "lines" => self.linear_light.lines = number(key, value)?,
+            "transition" => self.linear_light.transition = choose(key, value, Transition::ALL)?,
             "rays" => r.rays = number(key, value)?,
             "layers" => r.layers = choose(key, value, Layers::ALL)?,
             "search" => r.search = choose(key, value, Search::ALL)?,
@@ -162,7 +175,12 @@ impl Settings {
             "accumulate" => name_of(Accumulate::ALL, s.accumulate),
             "tolerance" => s.tolerance.to_string(),
             "taps" => self.baseline.taps.to_string(),
+            "samples" if self.technique == Technique::LinearLight => {
+                self.linear_light.samples.to_string()
+            }
             "samples" => self.baseline.samples.to_string(),
+            "lines" => self.linear_light.lines.to_string(),
+            "transition" => name_of(Transition::ALL, self.linear_light.transition),
             "seed" if self.technique == Technique::RayMarch => r.seed.to_string(),
             "seed" => self.baseline.seed.to_string(),
             "rays" => r.rays.to_string(),
@@ -194,6 +212,7 @@ impl Settings {
             Technique::SoftShadowMap => self.soft_shadow_map.check_agreement(),
             Technique::RayMarch => self.ray_march.check_agreement(self.map),
             Technique::OcclusionTextures => self.occlusion_textures.check_agreement(self.map),
+            Technique::LinearLight => self.linear_light.check_agreement(self.map),
             _ => Ok(()),
         }
     }
@@ -207,6 +226,7 @@ impl Settings {
                     && self.baseline.in_range(key)
                     && self.ray_march.in_range(key)
                     && self.occlusion_textures.in_range(key)
+                    && self.linear_light.in_range(key)
             }
         };
         if good {

@@ -1,0 +1,45 @@
+// Skins: where one sample of the light sees an occluder end, and what the light that lies between it and its
+// neighbour sees of what is behind (Heidrich, Brabec and Seidel 2000, sections 3.1 and 3.2).
+//
+// Samples of a line see a point at one height v, so a skin lies in one row of texels of either map. In inverse
+// distance w it is straight: a ray that leaves the sample at tangent u_e is seen by the neighbour, `apart` metres
+// towards -x from it, at u_e + apart * w.
+
+#ifndef LINEAR_LIGHT_SKIN_GLSL
+#define LINEAR_LIGHT_SKIN_GLSL
+
+struct Skin {
+    float u_edge; // the sample's ray past the occluder's edge, tangent
+    float w_edge; // the edge, 1/m
+    float w_seen; // what the sample sees beside it
+    float row;    // of texels
+};
+
+// Whether an occluder ends between two texels that lie side by side: no surface that goes on falls by more than
+// twice as much from one texel to the next as it does before and behind them. In w planes are straight lines,
+// whichever way they lean; a step that goes the other way says nothing of this one.
+bool is_edge(float w_before, float w_near, float w_seen, float w_behind)
+{
+    float step = w_near - w_seen;
+    float before = max(w_before - w_near, 0.0);
+    float behind = max(w_seen - w_behind, 0.0);
+    // Rounding of the four.
+    return step > 2.0 * min(before, behind) + 1.0e-6 * w_near;
+}
+
+// The ray's w where the neighbour sees it at tangent u.
+float crossing_of(Skin s, float u, float apart)
+{
+    return (u - s.u_edge) / apart;
+}
+
+// What a point behind the skin sees of the light between the two samples, seen at w_crossing by the neighbour: 0 at
+// the occluder, 1 at the receiver. With the w of the receiver beside the edge it grows evenly (section 3.2); with
+// the point's own it is the rational function of eq. 1, exact on receivers of any slope.
+float transition(float w_edge, float w_crossing, float w_receiver)
+{
+    float whole = w_edge - w_receiver;
+    return whole > 0.0 ? clamp((w_edge - w_crossing) / whole, 0.0, 1.0) : 1.0;
+}
+
+#endif

@@ -1,0 +1,71 @@
+//! The knobs.
+
+use crate::Error;
+
+/// Of the segments' maps.
+const MOST_BYTES: u64 = 1 << 28;
+
+/// By which receiver a skin goes from hidden to seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Transition {
+    /// The one that lies beside the occluder's edge: it grows evenly, as published.
+    Linear,
+    /// The one that is behind the skin: exact on receivers of any slope (eq. 1).
+    #[default]
+    Rational,
+}
+
+impl Transition {
+    /// Every choice and its name.
+    pub const ALL: &[(&str, Self)] = &[("linear", Self::Linear), ("rational", Self::Rational)];
+}
+
+/// Every knob of linear lights but the maps' side, which all techniques share.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// Samples on a line, 2 to 16; 4 by default.
+    pub samples: u32,
+    /// Lines that a rectangle is taken for, 1 to 16; 4 by default. A line light is one.
+    pub lines: u32,
+    /// How visibility goes from 0 to 1.
+    pub transition: Transition,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { samples: 4, lines: 4, transition: Transition::default() }
+    }
+}
+
+impl Settings {
+    /// Whether the knob with this key is within its range; keys of other techniques pass.
+    pub(crate) fn in_range(&self, key: &str) -> bool {
+        match key {
+            "samples" => (2..=16).contains(&self.samples),
+            "lines" => (1..=16).contains(&self.lines),
+            _ => true,
+        }
+    }
+
+    /// Segments of all lines.
+    pub fn segments(&self) -> u32 {
+        self.lines * (self.samples - 1)
+    }
+
+    /// Checks the knobs that must agree with the maps' side.
+    pub(crate) fn check_agreement(&self, map: u32) -> Result<(), Error> {
+        let fits = |map: u32| 16 * u64::from(map).pow(2) * u64::from(self.segments()) <= MOST_BYTES;
+        if fits(map) {
+            return Ok(());
+        }
+        let most = (16..map).rev().find(|&m| fits(m)).unwrap_or(16);
+        Err(Error::Setting {
+            key: "map".into(),
+            problem: format!(
+                "{} lines of {} samples with maps of {map} texels a side take more than the 256 MiB that they \
+                 may have; set map={most}, fewer lines or fewer samples",
+                self.lines, self.samples
+            ),
+        })
+    }
+}
