@@ -12,7 +12,7 @@ layout(set = 0, binding = 0) uniform texture2D occluders_0;
 layout(set = 0, binding = 1) uniform texture2D receivers_0;
 layout(set = 0, binding = 2) uniform texture2D occluders_1;
 layout(set = 0, binding = 3) uniform texture2D receivers_1;
-layout(set = 0, binding = 4, std430) writeonly buffer Skins { vec4 skins[]; };
+layout(set = 0, binding = 4, std430) buffer Skins { vec4 skins[]; };
 layout(set = 0, binding = 5, std430) buffer Draw { uint draw[4]; };
 
 #include "linear_light/slots.glsl"

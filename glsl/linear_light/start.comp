@@ -4,8 +4,8 @@
 
 layout(local_size_x = 1) in;
 
-layout(set = 0, binding = 0, std430) writeonly buffer Left { uint left_draw[4]; };
-layout(set = 0, binding = 1, std430) writeonly buffer Right { uint right_draw[4]; };
+layout(set = 0, binding = 0, std430) buffer Left { uint left_draw[4]; };
+layout(set = 0, binding = 1, std430) buffer Right { uint right_draw[4]; };
 
 void main()
 {

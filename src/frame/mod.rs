@@ -114,6 +114,13 @@ impl Description {
                     .into(),
             ));
         }
+        if self.occluder_maps.is_some() && self.settings.technique == Technique::LinearLight {
+            return Err(Error::Frame(
+                "linear-light sees the occluders from points all along the light, and occluder maps from \
+                 its centre alone; lend meshes, or choose another technique"
+                    .into(),
+            ));
+        }
         if self.occluder_maps.is_some() && self.settings.technique == Technique::OcclusionTextures {
             return Err(Error::Frame(
                 "occlusion-textures sorts every face of the occluders into slices, and occluder maps hold \

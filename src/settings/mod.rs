@@ -262,10 +262,12 @@ fn choose<T: Copy>(key: &str, value: &str, all: &[(&str, T)]) -> Result<T, Error
 
 /// The legal values of a knob, as part of a sentence.
 fn legal(key: &str) -> String {
-    KNOBS
-        .iter()
-        .find(|k| k.key == key)
-        .map_or_else(String::new, |k| format!("give {} ({})", k.range, k.unit))
+    let knobs: Vec<_> = KNOBS.iter().filter(|k| k.key == key).collect();
+    if let [k] = knobs[..] {
+        return format!("give {} ({})", k.range, k.unit);
+    }
+    let of = |k: &&Knob| format!("{} ({}) with {}", k.range, k.unit, k.techniques());
+    format!("give {}", knobs.iter().map(of).collect::<Vec<_>>().join(", "))
 }
 
 #[cfg(test)]
@@ -282,7 +284,7 @@ mod tests {
                     settings.set(knob.key, knob.default).unwrap();
                     assert_eq!(settings, plain, "{name}: {}", knob.key);
                     assert_eq!(settings.get(knob.key).as_deref(), Some(knob.default));
-                } else {
+                } else if !KNOBS.iter().any(|k| k.key == knob.key && k.serves(technique)) {
                     assert!(settings.set(knob.key, knob.default).is_err());
                     assert_eq!(settings.get(knob.key), None);
                 }
