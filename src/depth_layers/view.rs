@@ -16,6 +16,9 @@ const MIN_NEAR: f64 = 1e-4;
 /// stays under 1.
 const NEAR_MARGIN: f64 = 1e-3;
 
+/// What is seen is at least this share of the furthest distance deep: floats tell a thousand steps of it apart.
+const LEAST_SPAN: f64 = 1e-3;
+
 /// And what the roundings of a vertex may come to: 64 of f32, as a share of what is added up.
 const ROUNDING: f64 = 64.0 * 5.960_464_477_539_063e-8;
 
@@ -230,7 +233,8 @@ fn boxes_of(
         summed = summed.max(row.dot(DVec3::from_array(most).extend(1.0)));
     }
     let (least, far) = distances(&boxes)?;
-    let margin = NEAR_MARGIN * (far - least) + ROUNDING * summed;
+    let span = far - least;
+    let margin = (NEAR_MARGIN * span + ROUNDING * summed).max(LEAST_SPAN * far - span);
     let near = (least - margin).max(far * MIN_NEAR);
     Some((boxes, near, far))
 }

@@ -23,8 +23,15 @@
 //!
 //! **Rectangles** are a few lines side by side (`lines`), along their longer side.
 //!
+//! **Measured** (lavapipe, 256² maps, a line of 1 m, mean error in percent over shadow and penumbra against the exact
+//! visible fraction; 2, 4, 8 and 16 samples): card 0.3, 0.2, 0.3, 0.2; tall box 0.4, 0.7, 0.3, 0.2; stacked cards 2.2,
+//! 0.6, 0.4, 0.3; spheres 5.0, 1.6, 1.0, 0.9; bunny 3.4, 1.0, 0.5, 0.3; leaves 23, 14, 5.7, 2.1; the bunny as its own
+//! occluder 4.3, 2.5, 2.0, 1.9. Many lights with as many points: bunny 15, 7.1, 4.2, 2.2; with 24, 48 and 96 of them 1.5,
+//! 0.9 and 0.6. The linear transition is off by 0.1 points more on grounds, and by 0.2 to 1.4 on the bunny's own surface.
+//!
 //! **Limits.** What the middle of a segment sees and neither of its ends does is in umbra (section 3.3): more samples.
-//! A receiver that does not block hides others from the channels.
+//! A receiver that does not block hides others from the channels. An edge between two surfaces that both fall steeply
+//! is taken for a slope, and light leaks there in lines a texel wide.
 
 mod passes;
 pub mod push;
