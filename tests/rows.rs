@@ -34,6 +34,8 @@ fn descriptions() -> Vec<(String, Description)> {
         "technique=occlusion-textures map=65 slices=32 prefilter=n-buffer placement=uniform",
         "technique=occlusion-textures map=1024 slices=17 combine=product prefilter=mip fill=on",
         "technique=occlusion-textures map=100 slices=4 combine=sum",
+        "technique=linear-light",
+        "technique=linear-light map=65 samples=2 lines=1 transition=linear",
     ] {
         let textures: &[Option<bool>] =
             if words.contains("ray-march") { &[None, Some(false), Some(true)] } else { &[None] };
@@ -43,7 +45,7 @@ fn descriptions() -> Vec<(String, Description)> {
                 .flat_map(|formats| textures.iter().map(move |t| (formats, *t)))
         {
             let format = vk::Format::R8G8B8A8_UNORM;
-            let draws_all = ["many-lights", "occlusion-textures"];
+            let draws_all = ["many-lights", "occlusion-textures", "linear-light"];
             if occluder_maps.is_some() && draws_all.iter().any(|t| words.contains(t)) {
                 continue;
             }
