@@ -23,7 +23,7 @@
 use super::{Inputs, Settings, push};
 use crate::RectangleLight;
 use crate::depth_layers::{self, MapView, MeshBounds};
-use crate::graph::{Access, Draw, Graph, Layer, Owner, Pass, Push, ResourceId, Target, Use, Work};
+use crate::graph::{Access, Graph, Layer, Owner, Pass, Push, ResourceId, Use};
 use crate::shaders;
 use crate::visibility::grid;
 use ash::vk;
@@ -126,20 +126,7 @@ pub fn declare(graph: &mut Graph, visibility: ResourceId, points: &[LightPoint],
     let none = [LightPoint { at: [0.0; 2], view: *inputs.occluders }];
     let points = if points.is_empty() { &none } else { points };
     for (nth, point) in points.iter().enumerate() {
-        let depth_layers::Raster { cull, clear, compare } = depth_layers::raster_of(Layer::Front);
-        graph.push(Pass {
-            name: "baseline.point_depth",
-            uses: vec![Use::fixed(depth, Access::DepthTarget)],
-            push: Push::NONE,
-            work: Work::Raster {
-                vertex: shaders::DEPTH_VERT,
-                fragment: None,
-                cull,
-                target: Target::Depth { clear, compare },
-                draw: Draw::Layer { layer: Layer::Front, view: nth as u32 },
-            },
-            need: need.clone(),
-        });
+        depth_layers::draw(graph, "baseline.point_depth", depth, Layer::Front, nth as u32, need);
         graph.push(Pass::compute(
             "baseline.add_point",
             shaders::ADD_POINT,

@@ -112,8 +112,10 @@ pub(crate) fn declare(
     let map = wanted.map;
     let (front, back) = match occluders {
         Occluders::Meshes => {
-            let front = drawn(graph, Layer::Front, map, need);
-            (front, wanted.back.then(|| drawn(graph, Layer::Back, map, need)))
+            let names = [FRONT, "depth_layers.front"];
+            let front = drawn(graph, Layer::Front, names, map, need);
+            let names = [BACK, "depth_layers.back"];
+            (front, wanted.back.then(|| drawn(graph, Layer::Back, names, map, need)))
         }
         Occluders::Maps { front, back, camera } => {
             let front = taken(graph, *front, map, camera, Layer::Front, need);
@@ -121,9 +123,15 @@ pub(crate) fn declare(
             (front, back.map(|b| taken(graph, b, map, camera, Layer::Back, need)))
         }
     };
-    let inner = (wanted.inner && matches!(occluders, Occluders::Meshes))
-        .then(|| [Layer::NearBack, Layer::FarFront].map(|layer| drawn(graph, layer, map, need)));
-    let receivers = wanted.receiver_map.map(|side| drawn(graph, Layer::Receivers, side, need));
+    let inner = (wanted.inner && matches!(occluders, Occluders::Meshes)).then(|| {
+        let names = ["depth_layers.near_back_depth", "depth_layers.near_back"];
+        let near_back = drawn(graph, Layer::NearBack, names, map, need);
+        let names = ["depth_layers.far_front_depth", "depth_layers.far_front"];
+        [near_back, drawn(graph, Layer::FarFront, names, map, need)]
+    });
+    let names = ["depth_layers.receiver_depth", "depth_layers.receivers"];
+    let receivers =
+        wanted.receiver_map.map(|side| drawn(graph, Layer::Receivers, names, side, need));
     DepthLayers { front, back, inner, receivers }
 }
 
@@ -155,27 +163,32 @@ pub fn raster_of(layer: Layer) -> Raster {
     }
 }
 
-/// A layer's image and the pass that draws it.
-fn names_of(layer: Layer) -> (&'static str, &'static str) {
-    match layer {
-        // Never asked for: slices are drawn by their own room.
-        Layer::Slices | Layer::FrontSlices | Layer::BackSlices | Layer::Front => {
-            (FRONT, "depth_layers.front")
-        }
-        Layer::Back => (BACK, "depth_layers.back"),
-        Layer::NearBack => ("depth_layers.near_back_depth", "depth_layers.near_back"),
-        Layer::FarFront => ("depth_layers.far_front_depth", "depth_layers.far_front"),
-        Layer::Receivers => ("depth_layers.receiver_depth", "depth_layers.receivers"),
-    }
-}
-
 const FRONT: &str = "depth_layers.front_depth";
 const BACK: &str = "depth_layers.back_depth";
 
-fn drawn(graph: &mut Graph, layer: Layer, side: u32, need: &Need) -> ResourceId {
-    let Raster { cull, clear, compare } = raster_of(layer);
-    let (image, name) = names_of(layer);
+/// Adds a layer as the light's centre sees it, by the names of its image and of its pass.
+fn drawn(
+    graph: &mut Graph,
+    layer: Layer,
+    [image, pass]: [&'static str; 2],
+    side: u32,
+    need: &Need,
+) -> ResourceId {
     let image = graph.image(image, FORMAT, [side, side], Owner::Transient);
+    draw(graph, pass, image, layer, 0, need);
+    image
+}
+
+/// Adds the row that draws a layer into a depth image, as one of the frame's views has it.
+pub(crate) fn draw(
+    graph: &mut Graph,
+    name: &'static str,
+    image: ResourceId,
+    layer: Layer,
+    view: u32,
+    need: &Need,
+) {
+    let Raster { cull, clear, compare } = raster_of(layer);
     graph.push(Pass {
         name,
         uses: vec![Use::fixed(image, Access::DepthTarget)],
@@ -185,11 +198,10 @@ fn drawn(graph: &mut Graph, layer: Layer, side: u32, need: &Need) -> ResourceId 
             fragment: None,
             cull,
             target: Target::Depth { clear, compare },
-            draw: Draw::Layer { layer, view: 0 },
+            draw: Draw::Layer { layer, view },
         },
         need: need.clone(),
     });
-    image
 }
 
 fn taken(
