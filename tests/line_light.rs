@@ -4,26 +4,11 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
 use antumbra::gpu::headless::View;
-use antumbra::scene::{Scene, generate};
+use antumbra::scene::generate;
 use antumbra::truth::ExactLine;
 use antumbra::{RectangleLight, Technique};
 use antumbra_tests::device;
-use antumbra_tests::measure::{Setup, model, percent, summary};
-use glam::DVec3;
-
-/// One metre, turned out of the map's rows.
-fn metre() -> RectangleLight {
-    generate::line_light(1.0, 0.4).unwrap()
-}
-
-/// The bunny under the middle line of its own light, a metre long.
-fn bunny() -> Scene {
-    let mut scene = model("bunny");
-    let light = &mut scene.lights[0].light;
-    let half = light.world_from_light().transform_vector3(DVec3::X * 0.5);
-    *light = RectangleLight::line(light.center(), half, light.emission()).unwrap();
-    scene
-}
+use antumbra_tests::measure::{Setup, bunny_under_a_line, metre_line, percent, summary};
 
 /// The mean error in percent on the card, the spheres and the bunny, as measured on lavapipe. On a line many
 /// lights have one point in each of n parts of its length, which leaves an end of a shadow off by no more
@@ -42,7 +27,8 @@ const ROOM: f64 = 0.3;
 #[test]
 fn errors_are_what_they_were_measured_to_be() {
     let device = device();
-    let scenes = [generate::card(metre()), generate::spheres(metre()), bunny()];
+    let scenes =
+        [generate::card(metre_line()), generate::spheres(metre_line()), bunny_under_a_line()];
     let mut problems = Vec::new();
     for (n, (scene, name)) in scenes.iter().zip(["card", "spheres", "bunny"]).enumerate() {
         let setup = if name == "bunny" {
@@ -80,7 +66,7 @@ fn errors_are_what_they_were_measured_to_be() {
 #[test]
 fn a_wrong_line_is_noticed() {
     let device = device();
-    let scene = generate::card(metre());
+    let scene = generate::card(metre_line());
     let setup = Setup::ground(&scene, 2.2, 160);
     let mut stage = setup.stage(&device, "technique=many-lights samples=256 map=1024");
     let image = setup.visibility(&mut stage);
@@ -90,7 +76,7 @@ fn a_wrong_line_is_noticed() {
         let truth = exact.visible_fractions(light, &receivers).unwrap();
         percent(&truth.iter().map(|&v| v as f32).collect::<Vec<_>>(), &image)
     };
-    let right = error(&metre());
+    let right = error(&metre_line());
     let longer = error(&generate::line_light(1.05, 0.4).unwrap());
     let turned = error(&generate::line_light(1.0, 0.45).unwrap());
     println!("{right:.3} %; too long {longer:.3} %, turned {turned:.3} %");
@@ -117,7 +103,7 @@ fn a_hard_shadow_is_that_of_a_rectangle() {
 #[test]
 fn what_needs_an_area_says_so() {
     let device = device();
-    let scene = generate::card(metre());
+    let scene = generate::card(metre_line());
     let setup = Setup::ground(&scene, 2.2, 32);
     for technique in [Technique::Pcss, Technique::SoftShadowMap, Technique::RayMarch] {
         let mut stage = setup.stage(&device, &format!("technique={}", technique.name()));

@@ -2,7 +2,7 @@
 
 use crate::example::root;
 use antumbra::gpu::headless::{HeadlessDevice, Stage, View};
-use antumbra::scene::{Role, Scene, from_gltf};
+use antumbra::scene::{Role, Scene, from_gltf, generate};
 use antumbra::truth::{
     ErrorSummary, ExactLine, Receiver, Sampling, Tracer, visible_fraction_of_quad,
 };
@@ -157,4 +157,24 @@ pub fn percent(truth: &[f32], image: &[f32]) -> f64 {
 /// If the images cannot be compared.
 pub fn summary(truth: &[f32], image: &[f32]) -> ErrorSummary {
     ErrorSummary::between(truth, image, None).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// A line of one metre, turned out of the maps' rows.
+///
+/// # Panics
+/// Never: the numbers are legal.
+pub fn metre_line() -> RectangleLight {
+    generate::line_light(1.0, 0.4).unwrap()
+}
+
+/// The bunny under the middle line of its own light, a metre long.
+///
+/// # Panics
+/// If the model has no light.
+pub fn bunny_under_a_line() -> Scene {
+    let mut scene = model("bunny");
+    let light = &mut scene.lights[0].light;
+    let half = light.world_from_light().transform_vector3(DVec3::X * 0.5);
+    *light = RectangleLight::line(light.center(), half, light.emission()).unwrap();
+    scene
 }
