@@ -5,29 +5,17 @@
 
 use antumbra::ash::vk;
 use antumbra::gpu::headless::{HeadlessDevice, View};
+use antumbra::graph::Shape;
 use antumbra::linear_light::twin::{crossing_of, is_edge, transition};
 use antumbra::scene::{Scene, generate};
-use antumbra::{Description, RectangleLight, Settings, Technique};
+use antumbra::{Description, Settings, Technique};
 use antumbra_tests::compare::Tolerance;
-use antumbra_tests::measure::{Setup, model, percent, settings, summary};
+use antumbra_tests::measure::{
+    Setup, bunny_under_a_line, metre_line, model, percent, settings, summary,
+};
 use antumbra_tests::{Function, device};
-use glam::DVec3;
 use num_traits::Float;
 use proptest::prelude::Strategy;
-
-/// One metre, turned out of the maps' rows.
-fn metre() -> RectangleLight {
-    generate::line_light(1.0, 0.4).unwrap()
-}
-
-/// The bunny under the middle line of its own light, a metre long.
-fn bunny() -> Scene {
-    let mut scene = model("bunny");
-    let light = &mut scene.lights[0].light;
-    let half = light.world_from_light().transform_vector3(DVec3::X * 0.5);
-    *light = RectangleLight::line(light.center(), half, light.emission()).unwrap();
-    scene
-}
 
 fn setup_of<'a>(name: &str, scene: &'a Scene) -> Setup<'a> {
     if name.contains("both") {
@@ -55,13 +43,13 @@ const ROOM: f64 = 0.3;
 
 fn scenes() -> [(&'static str, Scene); 7] {
     [
-        ("card", generate::card(metre())),
-        ("stacked cards", generate::stacked_cards(metre())),
-        ("tall box", generate::tall_box(metre())),
-        ("spheres", generate::spheres(metre())),
-        ("bunny", generate::normalized(&model("bunny"), metre()).unwrap()),
-        ("foliage", generate::foliage(metre(), 300, 7)),
-        ("bunny, both", bunny()),
+        ("card", generate::card(metre_line())),
+        ("stacked cards", generate::stacked_cards(metre_line())),
+        ("tall box", generate::tall_box(metre_line())),
+        ("spheres", generate::spheres(metre_line())),
+        ("bunny", generate::normalized(&model("bunny"), metre_line()).unwrap()),
+        ("foliage", generate::foliage(metre_line(), 300, 7)),
+        ("bunny, both", bunny_under_a_line()),
     ]
 }
 
@@ -191,6 +179,25 @@ fn the_rational_transition_is_where_the_ray_past_the_edge_meets_the_light() {
     }
 }
 
+/// Distances that fall by more and more end an occluder at every texel of a row: as many skins as texels, and no
+/// room for fewer.
+#[test]
+fn every_texel_may_end_an_occluder() {
+    let w: Vec<f64> = (0..13).map(|i| 2.0 - 1e-5 * 2.5f64.powi(i)).collect();
+    assert!(w.windows(4).all(|w| is_edge([w[0], w[1], w[2], w[3]])));
+    let graph = antumbra::frame::full_graph(&Description {
+        settings: settings("technique=linear-light map=100"),
+        ..Description::new([64, 64])
+    });
+    let bytes = |name: &str| {
+        let buffers = graph.resources().iter().filter(|r| r.name == name);
+        buffers.map(|r| r.shape).next().unwrap()
+    };
+    for name in ["linear_light.left_skins", "linear_light.right_skins"] {
+        assert_eq!(bytes(name), Shape::Buffer { bytes: 16 * 100 * 100 });
+    }
+}
+
 #[test]
 fn bad_input_is_refused_with_a_sentence() {
     let refuse = |words: &str| {
@@ -209,6 +216,8 @@ fn bad_input_is_refused_with_a_sentence() {
     assert!(refuse("transition=cubic").contains("linear, rational"));
     let error = refuse("map=2048 samples=16 lines=16");
     assert!(error.contains("fewer lines"), "{error}");
+    let error = refuse("map=4096 samples=2 lines=1");
+    assert!(error.contains("set map=2896,"), "{error}");
     let mut description =
         Description { settings: settings("technique=linear-light"), ..Description::new([64, 64]) };
     assert!(description.check().is_ok());

@@ -27,6 +27,12 @@ bool is_edge(float w_before, float w_near, float w_seen, float w_behind)
     return step > 2.0 * min(before, behind) + 1.0e-6 * w_near;
 }
 
+// The receiver beside the edge; where the map shows none, as far as the furthest there is.
+float w_beside(Skin s, float w_far)
+{
+    return max(s.w_seen, w_far);
+}
+
 // The ray's w where the neighbour sees it at tangent u.
 float crossing_of(Skin s, float u, float apart)
 {

@@ -27,6 +27,6 @@ void main()
     if (w_receiver >= w_crossing) {
         discard;
     }
-    float seen = transition(s.w_edge, w_crossing, push.rational != 0 ? w_receiver : s.w_seen);
+    float seen = transition(s.w_edge, w_crossing, push.rational != 0 ? w_receiver : w_beside(s, push.w_far));
     gl_FragDepth = 0.5 * seen;
 }

@@ -15,7 +15,7 @@ void main()
 {
     skin = skins[gl_VertexIndex / 6];
     Skin s = Skin(skin.x, skin.y, skin.z, skin.w);
-    float w_end = push.rational != 0 ? push.w_far : max(s.w_seen, push.w_far);
+    float w_end = push.rational != 0 ? push.w_far : w_beside(s, push.w_far);
     float at_edge = (s.u_edge + push.apart * s.w_edge) * push.texels_per_u + push.first;
     float at_end = (s.u_edge + push.apart * w_end) * push.texels_per_u + push.first;
     int corner = gl_VertexIndex % 6;

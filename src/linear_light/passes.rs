@@ -1,7 +1,7 @@
 //! The rows: two samples' maps → skins → channels, segment by segment; pixels → visible fractions.
 
 use super::push;
-use super::settings::{Settings, Transition};
+use super::settings::{Settings, Transition, skin_bytes};
 use super::view::Windows;
 use crate::RectangleLight;
 use crate::baseline::many_lights::LightPoint;
@@ -50,6 +50,14 @@ struct Side {
     channel: ResourceId,
 }
 
+/// What a segment is made in, and what is made of all of them.
+struct Made {
+    slots: Slots,
+    left: Side,
+    right: Side,
+    maps: ResourceId,
+}
+
 /// Adds the rows that turn the meshes, as the samples see them, into `visibility`.
 pub fn declare(graph: &mut Graph, visibility: ResourceId, settings: &Settings, inputs: &Inputs) {
     let side = inputs.samples.first().map_or(16, |s| s.view.side);
@@ -62,8 +70,7 @@ pub fn declare(graph: &mut Graph, visibility: ResourceId, settings: &Settings, i
         receivers: ["linear_light.receivers_0", "linear_light.receivers_1"]
             .map(|n| depth(graph, n)),
     };
-    // At most every other texel of a row ends an occluder on one side.
-    let bytes = 16 * u64::from(side) * u64::from(side.div_ceil(2));
+    let bytes = skin_bytes(side);
     let left = Side {
         edges: "linear_light.left_edges",
         draw: "linear_light.left_skins",
@@ -82,16 +89,17 @@ pub fn declare(graph: &mut Graph, visibility: ResourceId, settings: &Settings, i
     };
     let format = vk::Format::R32G32B32A32_SFLOAT;
     let maps = graph.image_array("linear_light.maps", format, [side; 2], settings.segments());
+    let made = Made { slots, left, right, maps };
     let samples = settings.samples as usize;
     for (line, of_line) in inputs.samples.chunks(samples).enumerate() {
         for (nth, sample) in of_line.iter().enumerate() {
             let view = (line * samples + nth) as u32;
-            draw_maps(graph, &slots, nth % 2, view, inputs);
+            draw_maps(graph, &made.slots, nth % 2, view, inputs);
             let Some(before) = nth.checked_sub(1).and_then(|b| of_line.get(b)) else { continue };
             let segment = (line * (samples - 1) + nth - 1) as i32;
             // The first sample's neighbour sees what ends towards it, and the other way round.
             let ends = [(before, (nth - 1) % 2), (sample, nth % 2)];
-            declare_segment(graph, &slots, [&left, &right], &ends, segment, maps, settings, inputs);
+            declare_segment(graph, &made, &ends, segment, settings, inputs);
         }
     }
     let gbuffer = inputs.gbuffer;
@@ -130,32 +138,16 @@ const DRAWN: [(Layer, [&str; 2]); 2] = [
 /// Adds the rows that draw what a sample sees.
 fn draw_maps(graph: &mut Graph, slots: &Slots, slot: usize, view: u32, inputs: &Inputs) {
     for ((layer, names), images) in DRAWN.into_iter().zip([slots.occluders, slots.receivers]) {
-        let depth_layers::Raster { cull, clear, compare } = depth_layers::raster_of(layer);
-        graph.push(Pass {
-            name: names[slot],
-            uses: vec![Use::fixed(images[slot], Access::DepthTarget)],
-            push: Push::NONE,
-            work: Work::Raster {
-                vertex: shaders::DEPTH_VERT,
-                fragment: None,
-                cull,
-                target: Target::Depth { clear, compare },
-                draw: Draw::Layer { layer, view },
-            },
-            need: inputs.need.clone(),
-        });
+        depth_layers::draw(graph, names[slot], images[slot], layer, view, inputs.need);
     }
 }
 
 /// Adds the rows that make a segment's channels of the maps of its ends, of which each is in a slot.
-#[allow(clippy::too_many_arguments)]
 fn declare_segment(
     graph: &mut Graph,
-    slots: &Slots,
-    [left, right]: [&Side; 2],
+    Made { slots, left, right, maps }: &Made,
     ends: &[(&LightPoint, usize); 2],
     segment: i32,
-    maps: ResourceId,
     settings: &Settings,
     inputs: &Inputs,
 ) {
@@ -189,7 +181,7 @@ fn declare_segment(
             Use::bound(1, slots.occluders[1], Access::SampledCompute),
             Use::bound(2, left.channel, Access::SampledCompute),
             Use::bound(3, right.channel, Access::SampledCompute),
-            Use::bound(4, maps, Access::ImageWrite),
+            Use::bound(4, *maps, Access::ImageWrite),
         ],
         inputs.need,
     ));

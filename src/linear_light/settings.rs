@@ -1,9 +1,15 @@
 //! The knobs.
 
 use crate::Error;
+use crate::graph::STORAGE_BYTES;
 
 /// Of the segments' maps.
 const MOST_BYTES: u64 = 1 << 28;
+
+/// Of one side's skins: any texel may end an occluder.
+pub(super) fn skin_bytes(map: u32) -> u64 {
+    16 * u64::from(map).pow(2)
+}
 
 /// By which receiver a skin goes from hidden to seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -54,7 +60,10 @@ impl Settings {
 
     /// Checks the knobs that must agree with the maps' side.
     pub(crate) fn check_agreement(&self, map: u32) -> Result<(), Error> {
-        let fits = |map: u32| 16 * u64::from(map).pow(2) * u64::from(self.segments()) <= MOST_BYTES;
+        let fits = |map: u32| {
+            let maps = 16 * u64::from(map).pow(2) * u64::from(self.segments());
+            maps <= MOST_BYTES && skin_bytes(map) <= STORAGE_BYTES
+        };
         if fits(map) {
             return Ok(());
         }
@@ -63,7 +72,8 @@ impl Settings {
             key: "map".into(),
             problem: format!(
                 "{} lines of {} samples with maps of {map} texels a side take more than the 256 MiB that they \
-                 may have; set map={most}, fewer lines or fewer samples",
+                 may have, or one's skins more than the 128 MiB that every device can bind; set map={most}, \
+                 fewer lines or fewer samples",
                 self.lines, self.samples
             ),
         })
