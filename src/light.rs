@@ -3,6 +3,8 @@
 use crate::Error;
 use glam::{DMat3, DMat4, DVec3};
 
+pub(crate) mod outline;
+
 /// How far from perpendicular two half-axes may be (cosine of the angle between them).
 const MAX_SKEW: f64 = 1e-4;
 
