@@ -8,7 +8,8 @@
 //!          ● pixel
 //! ```
 //! The light is cut into n cells of one area and no very different sides, whatever n is, with a point at
-//! a random place in each (Cook 1986). A map is fitted to the occluders as its point sees them, and one
+//! a random place in each (Cook 1986); a light of another outline than its rectangle's is cut in the same
+//! way. A map is fitted to the occluders as its point sees them, and one
 //! texel is compared with the pixel's plane: no filter, because the mean over the points is one.
 //!
 //! As n and the maps grow the result is the truth, up to what the G-buffer's depth tells of the pixel's
@@ -19,6 +20,9 @@
 //! other push constants; a plan shows them once, with their number.
 //!
 //! **Limits.** Shadows band where few points are asked for. A frame draws the occluders n times.
+
+mod places;
+pub use places::{places, places_within};
 
 use super::{Inputs, Settings, push};
 use crate::RectangleLight;
@@ -46,42 +50,21 @@ impl LightPoint {
     }
 }
 
-/// Uniform in [0, 1): the finalizer of MurmurHash3 over seed, point and axis.
-fn uniform(seed: u32, point: u32, axis: u32) -> f64 {
-    let mut h = (seed.wrapping_mul(0x9e37_79b9) ^ (2 * point + axis)).wrapping_mul(0xcc9e_2d51);
-    h = (h ^ (h >> 16)).wrapping_mul(0x85eb_ca6b);
-    h = (h ^ (h >> 13)).wrapping_mul(0xc2b2_ae35);
-    f64::from(h ^ (h >> 16)) / 2f64.powi(32)
-}
-
-/// A point in each of n cells of one area of a light with these half-extents, metres from its centre:
-/// rows of cells, as many and as high as makes the cells square where they can be.
-pub fn places(half: [f64; 2], n: u32, seed: u32) -> Vec<[f64; 2]> {
-    let rows = (f64::from(n) * half[1] / half[0]).sqrt().round().clamp(1.0, f64::from(n)) as u32;
-    let start = |row: u32| (u64::from(row) * u64::from(n) / u64::from(rows)) as u32;
-    (0..rows)
-        .flat_map(|row| (start(row)..start(row + 1)).map(move |point| (row, point)))
-        .map(|(row, point)| {
-            let (first, end) = (start(row), start(row + 1));
-            let [x, y] =
-                [0, 1].map(|axis| if seed == 0 { 0.5 } else { uniform(seed, point, axis) });
-            let cells = f64::from(end - first);
-            let across = (f64::from(point - first) + x) / cells;
-            let down = (f64::from(first) + cells * y) / f64::from(n);
-            [(2.0 * across - 1.0) * half[0], (2.0 * down - 1.0) * half[1]]
-        })
-        .collect()
-}
-
 /// The points of a frame, each with a map of `side` texels fitted to the occluders; where a point sees
 /// none of them, as its maps have it that see nothing.
 pub(crate) fn points(
     light: &RectangleLight,
+    outline: Option<&[[f64; 2]]>,
     occluders: &[(MeshBounds, DMat4)],
     settings: &Settings,
     centre: &MapView,
 ) -> Vec<LightPoint> {
-    places(light.half_extents(), settings.samples, settings.seed)
+    let Settings { samples, seed, .. } = *settings;
+    let places = match outline {
+        Some(corners) => places_within(corners, samples, seed),
+        None => places(light.half_extents(), samples, seed),
+    };
+    places
         .into_iter()
         .map(|at| {
             let moved = light.moved(at);
@@ -160,37 +143,4 @@ pub fn declare(graph: &mut Graph, visibility: ResourceId, points: &[LightPoint],
         ],
         need,
     ));
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Every cell has one area, so the mean of the points' places is the light's centre, and no strip
-    /// of the light has more points than its area says, but for the cells that the strip cuts.
-    #[test]
-    fn points_are_spread_evenly_for_any_number_and_shape() {
-        for half in [[0.5, 0.5], [2.0, 0.25], [0.1, 0.4]] {
-            for n in [1_u32, 2, 3, 7, 16, 61, 256, 1000, 4096] {
-                let points = places(half, n, 3);
-                assert_eq!(points.len(), n as usize);
-                for axis in 0..2 {
-                    assert!(points.iter().all(|p| p[axis].abs() <= half[axis]));
-                    let below = points.iter().filter(|p| p[axis] < 0.3 * half[axis]).count();
-                    let share = below as f64 / f64::from(n);
-                    // The cut crosses a row or a column of cells: at most about √(n · aspect) of them.
-                    let cells = (f64::from(n) * half[1 - axis] / half[axis]).sqrt() + 2.0;
-                    let allowed = cells / f64::from(n);
-                    assert!((share - 0.65).abs() <= allowed, "{half:?} {n} {axis}: {share}");
-                }
-            }
-        }
-        // On a line they are one row, evenly.
-        for (i, [x, y]) in places([2.0, 0.0], 256, 3).into_iter().enumerate() {
-            let cell = (x / 2.0 + 1.0) * 128.0;
-            assert!(y == 0.0 && (i as f64..=i as f64 + 1.0).contains(&cell), "{i}: {x} {y}");
-        }
-        assert_eq!(places([0.5, 0.2], 1, 0), [[0.0, 0.0]], "without a seed the centre");
-        assert_ne!(places([0.5, 0.2], 9, 1), places([0.5, 0.2], 9, 2));
-    }
 }

@@ -3,6 +3,7 @@
 use super::rows::wanted;
 use super::{Description, Frame, Geometry, HostImage, Visibility};
 use crate::graph::is_depth_format;
+use crate::light::outline;
 use crate::settings::Technique;
 use crate::{Error, visibility};
 use ash::vk::{self, ImageLayout as Layout, ImageUsageFlags as Usage};
@@ -34,6 +35,11 @@ fn needs_area(technique: Technique) -> bool {
     )
 }
 
+/// Whether a technique looks at the light's outline, and not at its rectangle alone.
+fn takes_outlines(technique: Technique) -> bool {
+    matches!(technique, Technique::LinearLight | Technique::ManyLights)
+}
+
 impl Frame<'_> {
     pub(super) fn check(&self, description: &Description) -> Result<(), Error> {
         if self.slot >= description.frames_in_flight {
@@ -50,6 +56,7 @@ impl Frame<'_> {
                 technique.name()
             ));
         }
+        self.check_outline(technique)?;
         if !self.world_from_ndc.is_finite() || self.world_from_ndc.determinant() == 0.0 {
             return bad("world_from_ndc must be finite and invertible");
         }
@@ -75,6 +82,24 @@ impl Frame<'_> {
             }
         }
         self.check_images(description)
+    }
+
+    fn check_outline(&self, technique: Technique) -> Result<(), Error> {
+        let Some(corners) = self.outline else { return Ok(()) };
+        if !takes_outlines(technique) {
+            return bad(format!(
+                "the light is a polygon, and {} knows rectangles alone; choose linear-light or \
+                 many-lights, or leave outline out",
+                technique.name()
+            ));
+        }
+        if self.light.is_line() {
+            return bad("the light is a line, which has no outline; leave outline out");
+        }
+        match outline::problem(corners, self.light.half_extents()) {
+            Some(problem) => bad(format!("the light's outline: {problem}")),
+            None => Ok(()),
+        }
     }
 
     fn check_images(&self, description: &Description) -> Result<(), Error> {

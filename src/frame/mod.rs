@@ -167,6 +167,12 @@ impl Description {
 pub struct Frame<'a> {
     /// The light.
     pub light: RectangleLight,
+    /// The polygon that the light has instead of its rectangle: 3 to 16 corners in light space, as x and y in
+    /// metres from the rectangle's centre, within it, counter-clockwise as seen from the side that the light
+    /// shines to. It need not be convex, and neither touches nor crosses itself.
+    /// [`RectangleLight::around`] makes both of a polygon in the world. None: the whole rectangle.
+    /// `linear-light` and `many-lights` take one.
+    pub outline: Option<&'a [[f64; 2]]>,
     /// Normalized device coordinates and depth to world space: the inverse of view and projection.
     ///
     /// The first row of pixels lies at y = −1, as Vulkan has it; where a host's y runs up (wgpu, or a
@@ -207,7 +213,7 @@ pub struct Frame<'a> {
 }
 
 impl<'a> Frame<'a> {
-    /// A frame with reversed depth, no mask, the node's own visibility image sampled by fragment and
+    /// A frame with the whole rectangle, reversed depth, no mask, the node's own visibility image sampled by fragment and
     /// compute shaders, a fitted window, slot 0, and barriers placed by the node.
     pub fn new(
         light: RectangleLight,
@@ -221,6 +227,7 @@ impl<'a> Frame<'a> {
         };
         Self {
             light,
+            outline: None,
             world_from_ndc,
             background: 0.0,
             meshes,

@@ -165,7 +165,12 @@ pub fn plan(description: &Description, limits: Limits, frame: &Frame) -> Result<
         Technique::LinearLight => linear_light::turned(&frame.light),
         _ => frame.light,
     };
-    let frame = &Frame { light: turned, ..*frame };
+    // A quarter turn of its axes is one of its outline's coordinates.
+    let quarter = turned != frame.light;
+    let outline: Option<Vec<[f64; 2]>> = frame.outline.map(|corners| {
+        corners.iter().map(|&[x, y]| if quarter { [y, -x] } else { [x, y] }).collect()
+    });
+    let frame = &Frame { light: turned, outline: outline.as_deref(), ..*frame };
     let light = &frame.light;
     let of_role = |keep: fn(Role) -> bool| {
         let kept = frame.meshes.iter().filter(move |m| keep(m.role) && has_triangles(m));
@@ -290,7 +295,8 @@ fn look(
     let points = match settings.technique {
         Technique::ManyLights if matches!(need, Need::Yes(_)) => {
             let centre = fit.as_ref().unwrap_or(&PLACEHOLDER);
-            many_lights::points(light, &boxes(occluders), &settings.baseline, centre)
+            let boxes = boxes(occluders);
+            many_lights::points(light, frame.outline, &boxes, &settings.baseline, centre)
         }
         _ => Vec::new(),
     };

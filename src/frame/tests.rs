@@ -5,6 +5,8 @@ use crate::scene::{Role, generate};
 use ash::vk::Handle;
 use glam::DVec3;
 
+mod lights;
+
 fn image(format: vk::Format, extent: [u32; 2], usage: vk::ImageUsageFlags) -> HostImage {
     HostImage {
         image: vk::Image::from_raw(1),
@@ -145,25 +147,6 @@ fn every_bad_frame_is_one_sentence() {
     let mut bounds = good.clone();
     bounds[1].bounds[0][1] = f32::NAN;
     assert!(refuse(&frame(&bounds)).contains("mesh 1"));
-}
-
-/// Those that work in both of a light's half-extents say so of a line; the others plan a whole frame.
-#[test]
-fn a_line_is_refused_by_what_needs_an_area() {
-    let meshes = meshes();
-    let light = generate::line_light(1.0, 0.3).unwrap();
-    for (name, technique) in Technique::ALL {
-        let mut d = description(&[]);
-        d.settings.technique = *technique;
-        let planned = plan(&d, Limits::default(), &Frame { light, ..frame(&meshes) });
-        if ["hard", "many-lights", "linear-light"].contains(name) {
-            assert!(ran(&planned.unwrap()).len() > 1, "{name}");
-        } else {
-            let sentence = planned.unwrap_err().to_string();
-            let start = format!("the light is a line, and {name} needs an area; choose ");
-            assert!(sentence.starts_with(&start), "{sentence}");
-        }
-    }
 }
 
 #[test]

@@ -1,0 +1,59 @@
+//! Lights that a technique cannot work with.
+
+use super::*;
+
+/// Those that work in both of a light's half-extents say so of a line; the others plan a whole frame.
+#[test]
+fn a_line_is_refused_by_what_needs_an_area() {
+    let meshes = meshes();
+    let light = generate::line_light(1.0, 0.3).unwrap();
+    for (name, technique) in Technique::ALL {
+        let mut d = description(&[]);
+        d.settings.technique = *technique;
+        let planned = plan(&d, Limits::default(), &Frame { light, ..frame(&meshes) });
+        if ["hard", "many-lights", "linear-light"].contains(name) {
+            assert!(ran(&planned.unwrap()).len() > 1, "{name}");
+        } else {
+            let sentence = planned.unwrap_err().to_string();
+            let start = format!("the light is a line, and {name} needs an area; choose ");
+            assert!(sentence.starts_with(&start), "{sentence}");
+        }
+    }
+}
+
+/// Of the techniques two look at an outline; the others say which.
+#[test]
+fn an_outline_is_refused_by_what_knows_rectangles_alone() {
+    let meshes = meshes();
+    let corners = [[-0.25, -0.25], [0.25, -0.25], [0.0, 0.25]];
+    let outline = Some(&corners[..]);
+    for (name, technique) in Technique::ALL {
+        let mut d = description(&[]);
+        d.settings.technique = *technique;
+        let planned = plan(&d, Limits::default(), &Frame { outline, ..frame(&meshes) });
+        if ["many-lights", "linear-light"].contains(name) {
+            assert!(ran(&planned.unwrap()).len() > 1, "{name}");
+            let refuse = |corners: &[[f64; 2]], light| {
+                let frame = Frame { light, outline: Some(corners), ..frame(&meshes) };
+                plan(&d, Limits::default(), &frame).map(|p| ran(&p)).unwrap_err().to_string()
+            };
+            let square = generate::square_light(0.5).unwrap();
+            let reversed: Vec<_> = corners.iter().rev().copied().collect();
+            let sentence = refuse(&reversed, square);
+            assert!(
+                sentence.starts_with("the light's outline: its corners must run"),
+                "{sentence}"
+            );
+            assert!(refuse(&corners[..2], square).contains("3 to 16 corners"));
+            let small = generate::square_light(0.4).unwrap();
+            assert!(refuse(&corners, small).contains("lies outside"));
+            let line = generate::line_light(1.0, 0.0).unwrap();
+            assert!(refuse(&corners, line).contains("has no outline"));
+        } else {
+            let sentence = planned.unwrap_err().to_string();
+            let start =
+                format!("the light is a polygon, and {name} knows rectangles alone; choose ");
+            assert!(sentence.starts_with(&start), "{sentence}");
+        }
+    }
+}
