@@ -64,6 +64,23 @@ pub fn line_light(length: f64, turn: f64) -> Result<RectangleLight, Error> {
     RectangleLight::line(LIGHT_CENTER, half, DVec3::NEG_Y)
 }
 
+/// A polygon light at (0, 4, 0), facing straight down, and its outline in light space: `corners` are 3 to 16
+/// points along x and z, in metres from there, whichever way they run. For
+/// [`Scene::with_outline`] of a scene under the light.
+///
+/// # Errors
+/// As [`RectangleLight::around`].
+pub fn polygon_light(corners: &[[f64; 2]]) -> Result<(RectangleLight, Vec<[f64; 2]>), Error> {
+    let mut placed: Vec<DVec3> =
+        corners.iter().map(|&[x, z]| LIGHT_CENTER + DVec3::new(x, 0.0, z)).collect();
+    let found = RectangleLight::around(&placed)?;
+    if found.0.emission().y < 0.0 {
+        return Ok(found);
+    }
+    placed.reverse();
+    RectangleLight::around(&placed)
+}
+
 /// A square card of side 1 at y = 2, parallel to the ground, front side up, double-sided.
 pub fn card(light: RectangleLight) -> Scene {
     let mut scene = stage(light);
@@ -203,13 +220,27 @@ impl Scene {
         }
         self
     }
+
+    /// The same scene with its first light cut to a polygon, as the field [`AreaLight::outline`](field@AreaLight::outline) has it.
+    pub fn with_outline(mut self, outline: Vec<[f64; 2]>) -> Self {
+        if let Some(light) = self.lights.first_mut() {
+            light.outline = outline;
+        }
+        self
+    }
 }
 
 /// The ground and the light alone: all of it is lit.
 pub fn stage(light: RectangleLight) -> Scene {
     let mut scene = Scene::default();
     scene.add("ground", ground(GROUND_SIDE), DMat4::IDENTITY, Role::Receiver);
-    scene.lights.push(AreaLight { name: "light".into(), light, color: [1.0; 3], intensity: 1.0 });
+    scene.lights.push(AreaLight {
+        name: "light".into(),
+        light,
+        outline: Vec::new(),
+        color: [1.0; 3],
+        intensity: 1.0,
+    });
     scene
 }
 

@@ -139,17 +139,26 @@ impl Instance {
     }
 }
 
-/// A rectangle light placed in the world.
+/// A rectangle or polygon light placed in the world.
 #[derive(Clone, Debug)]
 pub struct AreaLight {
     /// The node's name, or `node N` where it has none.
     pub name: String,
     /// Centre and half-axes.
     pub light: RectangleLight,
+    /// The corners of its polygon, as [`crate::Frame::outline`] has them; none: the whole rectangle.
+    pub outline: Vec<[f64; 2]>,
     /// Linear RGB, 1 each by default.
     pub color: [f32; 3],
     /// A factor on the color, 1 by default.
     pub intensity: f32,
+}
+
+impl AreaLight {
+    /// Its polygon for [`crate::Frame::outline`], where it has one.
+    pub fn outline(&self) -> Option<&[[f64; 2]]> {
+        (!self.outline.is_empty()).then_some(self.outline.as_slice())
+    }
 }
 
 /// A perspective camera.
@@ -252,7 +261,8 @@ impl Scene {
         let Some(first) = self.lights.first() else {
             return Err(Error::Scene(
                 "the scene has no area light; give a node the extras \"area_light\": \"rectangle\", \
-                 \"width\" and \"height\", or \"area_light\": \"sun\" and \"angular_size\""
+                 \"width\" and \"height\", \"area_light\": \"polygon\" and \"corners\", or \"area_light\": \"sun\" and \
+                 \"angular_size\""
                     .into(),
             ));
         };

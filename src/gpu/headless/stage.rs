@@ -3,7 +3,7 @@
 use super::gbuffer::MASK;
 use super::{GBuffer, GBufferPainter, HeadlessDevice, ImageSource, SceneBuffers, View, read_image};
 use crate::graph::Scope;
-use crate::scene::{Instance, Scene};
+use crate::scene::{AreaLight, Instance, Scene};
 use crate::{
     Description, Error, Frame, FramePlan, Host, MeshInstance, RectangleLight, Settings, ShadowNode,
     Visibility, visibility,
@@ -140,7 +140,7 @@ impl Stage {
         self.node.as_mut().ok_or_else(|| Error::Frame("the stage has no node".into()))
     }
 
-    /// Plans a frame; `window` fixes the occluder map's tangents.
+    /// Plans a frame under the light's whole rectangle; `window` fixes the occluder map's tangents.
     ///
     /// # Errors
     /// As [`ShadowNode::plan`].
@@ -152,14 +152,29 @@ impl Stage {
         self.plan_with(light, |frame| frame.window = window)
     }
 
+    /// Plans a frame under a scene's light: its polygon, where it has one.
+    ///
+    /// # Errors
+    /// As [`ShadowNode::plan`].
+    pub fn plan_under(
+        &mut self,
+        light: &AreaLight,
+        window: Option<[[f64; 2]; 2]>,
+    ) -> Result<FramePlan, Error> {
+        self.plan_with(&light.light, |frame| {
+            frame.outline = light.outline();
+            frame.window = window;
+        })
+    }
+
     /// Plans what `change` makes of a frame.
     ///
     /// # Errors
     /// As [`ShadowNode::plan`].
-    pub fn plan_with(
-        &mut self,
+    pub fn plan_with<'f>(
+        &'f mut self,
         light: &RectangleLight,
-        change: impl FnOnce(&mut Frame),
+        change: impl FnOnce(&mut Frame<'f>),
     ) -> Result<FramePlan, Error> {
         let world_from_ndc = self.view.clip_from_world.inverse();
         let depth = self.gbuffer.depth_for_node();

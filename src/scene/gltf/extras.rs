@@ -33,17 +33,21 @@ pub(super) fn light(
     let Some(kind) = extras.get("area_light") else { return Ok(None) };
     let sentence = |problem: Problem| format!("{}: {problem}", nodes::label(root, node));
     let light = match kind.as_str() {
-        Some("rectangle") => rectangle(extras, world),
-        Some("sun") => sun(extras, world, all),
-        _ => Err(format!("its area_light is {}; write \"rectangle\" or \"sun\"", shown(kind))),
+        Some("rectangle") => rectangle(extras, world).map(|light| (light, Vec::new())),
+        Some("polygon") => polygon(extras, world),
+        Some("sun") => sun(extras, world, all).map(|light| (light, Vec::new())),
+        _ => Err(format!(
+            "its area_light is {}; write \"rectangle\", \"polygon\" or \"sun\"",
+            shown(kind)
+        )),
     };
-    let light = light.map_err(sentence)?;
+    let (light, outline) = light.map_err(sentence)?;
     let color = color(extras).map_err(sentence)?;
     let intensity = match extras.get("intensity") {
         Some(value) => brightness(value, "intensity").map_err(sentence)?,
         None => 1.0,
     };
-    Ok(Some(AreaLight { name: nodes::name(root, node), light, color, intensity }))
+    Ok(Some(AreaLight { name: nodes::name(root, node), light, outline, color, intensity }))
 }
 
 /// A rectangle in the node's X and Y, or of a side of 0 a line along the other.
@@ -83,10 +87,67 @@ fn rectangle(extras: &Value, world: &DMat4) -> Result<RectangleLight, Problem> {
 
 /// Along the node's −Z, as a rectangle, whatever the node mirrors.
 fn line(center: DVec3, half: DVec3, world: &DMat4) -> Result<RectangleLight, Error> {
+    RectangleLight::line(center, half, emission(world))
+}
+
+/// Where a light that lies in the node's X and Y shines.
+fn emission(world: &DMat4) -> DVec3 {
     let [x, y, z] = [world.x_axis, world.y_axis, world.z_axis].map(|axis| axis.truncate());
     // Flattened along its own normal it is the same light.
-    let emission = if z == DVec3::ZERO { y.cross(x) } else { -z };
-    RectangleLight::line(center, half, emission)
+    if z == DVec3::ZERO { y.cross(x) } else { -z }
+}
+
+/// A polygon in the node's X and Y, whichever way its corners run, and its corners in light space.
+fn polygon(extras: &Value, world: &DMat4) -> Result<(RectangleLight, Vec<[f64; 2]>), Problem> {
+    let mut corners = corners(extras)?
+        .into_iter()
+        .map(|[x, y]| world.transform_point3(DVec3::new(x, y, 0.0)))
+        .collect::<Vec<_>>();
+    if !corners.iter().all(|corner| corner.abs().max_element() <= MAX_COORDINATE) {
+        return Err(format!("it lies further than {MAX_COORDINATE:e} m from the origin"));
+    }
+    let around = |corners: &[DVec3]| match RectangleLight::around(corners) {
+        Ok(light) => Ok(light),
+        Err(Error::Light(problem)) => Err(format!("its light cannot be used: {problem}")),
+        Err(other) => Err(other.to_string()),
+    };
+    let mut found = around(&corners)?;
+    // The side from which they run counter-clockwise is the one that shines.
+    if found.0.emission().dot(emission(world)) < 0.0 {
+        corners.reverse();
+        found = around(&corners)?;
+    }
+    let sides = found.0.half_extents().map(|half| 2.0 * half);
+    if let Some(side) = sides.into_iter().find(|side| !(SIDES[0]..=SIDES[1]).contains(side)) {
+        return Err(format!(
+            "a side of the rectangle around its corners, with the node's scale, is {side} m; it must be \
+             from {:e} to {:e} m",
+            SIDES[0], SIDES[1]
+        ));
+    }
+    Ok(found)
+}
+
+/// In the node's space; how many there must be, the light itself says.
+fn corners(extras: &Value) -> Result<Vec<[f64; 2]>, Problem> {
+    let value = extras.get("corners").ok_or(
+        "its area_light has no corners; give it 3 to 16 in metres, as in \"corners\": [[0, 0], [1, 0], [0, 1]]",
+    )?;
+    let corner = |value: &Value| match value.as_array().map(Vec::as_slice) {
+        Some([x, y]) => Some([x.as_f64()?, y.as_f64()?]),
+        _ => None,
+    };
+    let list = value.as_array().ok_or_else(|| {
+        format!("its corners are {}; write a list of [x, y], in metres", shown(value))
+    })?;
+    list.iter()
+        .enumerate()
+        .map(|(i, value)| {
+            corner(value).ok_or_else(|| {
+                format!("its corner {i} is not two numbers; write [x, y], in metres")
+            })
+        })
+        .collect()
 }
 
 /// Half a side in the world, if the side's length there is one.

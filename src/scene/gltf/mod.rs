@@ -38,8 +38,10 @@ const MAX_COORDINATE: f64 = 1e9;
 /// - Skinned and morphed meshes stand at rest, as their vertices say.
 /// - Area lights and roles come from the nodes' extras: `"area_light": "rectangle"` with `"width"`,
 ///   `"height"` (metres, before the node's scale; a height of 0 is a line along the node's X, a width of 0
-///   one along its Y, and both shine along its −Z), or `"area_light": "sun"` with `"angular_size"` (radians),
-///   wherever the node stands; both optionally with `"color"` and `"intensity"`;
+///   one along its Y, and both shine along its −Z), `"area_light": "polygon"` with `"corners"` (3 to 16 of
+///   `[x, y]` in metres in the node's XY plane, before its transform; whichever way they run, it shines along
+///   the node's −Z), or `"area_light": "sun"` with `"angular_size"` (radians),
+///   wherever the node stands; each optionally with `"color"` and `"intensity"`;
 ///   `"shadow_role": "occluder"`, `"receiver"` or `"both"`. A scene without a light is returned all
 ///   the same: [`Scene::light`] is what refuses it.
 /// - The camera is that of the first node with a perspective one; orthographic ones are passed over.
@@ -50,7 +52,8 @@ const MAX_COORDINATE: f64 = 1e9;
 /// # Errors
 /// [`Error::File`] for a file that cannot be read, is not glTF 2.0, requires an extension that is not
 /// supported (any that changes triangles or transforms), contradicts itself, has coordinates that are
-/// not finite or beyond 10⁹ m, has no triangles, or has an area light that is neither a rectangle nor a sun.
+/// not finite or beyond 10⁹ m, has no triangles, or has an area light that is no rectangle, polygon or
+/// sun.
 pub fn from_gltf(path: &Path) -> Result<Scene, Error> {
     let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
     read(path)

@@ -1,6 +1,7 @@
 //! Thousands of broken files, the same ones each run: none may panic, and what loads must be whole.
 
 use super::*;
+use crate::light::outline;
 use crate::scene::Camera;
 
 /// Marsaglia's xorshift64.
@@ -60,13 +61,15 @@ impl Seed {
         let root = file.root(
             &primitives,
             json!({
-                "scenes": [{"nodes": [0, 3]}],
+                "scenes": [{"nodes": [0, 3, 4]}],
                 "nodes": [
                     {"name": "top", "children": [1, 2], "rotation": [0, 0, 0.6, 0.8]},
                     {"mesh": 0, "scale": [1, -2, 3], "extras": {"shadow_role": "occluder"}},
                     {"name": "lamp", "translation": [0, 4, 0], "extras": light},
                     {"mesh": 0, "camera": 0,
                      "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 4, 5, 6, 1]},
+                    {"name": "panel", "scale": [1, -2, 1],
+                     "extras": {"area_light": "polygon", "corners": [[0, 0], [1, 0], [0.5, 2]]}},
                 ],
                 "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1}}],
                 "materials": [{"doubleSided": true}],
@@ -195,6 +198,9 @@ fn check(scene: &Scene) {
         assert!(light.light.world_from_light().is_finite());
         let [width, height] = light.light.half_extents();
         assert!(width > 0.0 && height >= 0.0);
+        let problem =
+            light.outline().and_then(|corners| outline::problem(corners, [width, height]));
+        assert_eq!(problem, None);
     }
     for camera in [scene.camera.unwrap_or(Camera::framing(scene, 1.5)), Camera::framing(scene, 1.5)]
     {

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::RectangleLight;
+use crate::light::outline;
 
 /// The light of a node with these members beside its extras.
 fn light(node: Value, extras: Value) -> Result<crate::scene::AreaLight, String> {
@@ -106,13 +107,106 @@ fn a_side_of_nothing_makes_a_line() {
     }
 }
 
+/// Whatever a node mirrors, turns, stretches and skews, and whichever way its corners run, a polygon lies where
+/// the node puts them and shines along its −Z.
+#[test]
+fn a_polygon_lies_where_its_node_puts_its_corners() {
+    let l = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 3.0], [0.0, 3.0]];
+    let skew = [2, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 4, 5, 6, 1];
+    for (node, z) in [
+        (json!({}), -1.0),
+        (json!({"translation": [4, 5, 6], "scale": [2, 3, 4]}), -1.0),
+        (json!({"scale": [-1, 1, 1]}), -1.0),
+        (json!({"scale": [1, -1, 1]}), -1.0),
+        (json!({"scale": [1, 1, -1]}), 1.0),
+        (json!({"scale": [-2, -1, -1]}), 1.0),
+        (json!({"scale": [1, 1, 0]}), -1.0),
+        (json!({"matrix": skew}), -1.0),
+    ] {
+        let world = match node.get("matrix") {
+            Some(_) => DMat4::from_cols_array(&skew.map(f64::from)),
+            None => {
+                let vector = |key: &str, other: f64| {
+                    let part = |i| node.get(key).map_or(other, |v| v[i].as_f64().unwrap());
+                    DVec3::new(part(0), part(1), part(2))
+                };
+                DMat4::from_translation(vector("translation", 0.0))
+                    * DMat4::from_scale(vector("scale", 1.0))
+            }
+        };
+        let placed = l.map(|[x, y]| world.transform_point3(DVec3::new(x, y, 0.0)));
+        for reversed in [false, true] {
+            let mut corners = l;
+            if reversed {
+                corners.reverse();
+            }
+            let lamp = light(node.clone(), json!({"area_light": "polygon", "corners": corners}));
+            let lamp = lamp.unwrap();
+            assert_eq!(lamp.light.emission(), DVec3::Z * z, "{node}");
+            let area = outline::doubled_area(&lamp.outline);
+            let scale = world.x_axis.truncate().cross(world.y_axis.truncate()).length();
+            assert!((area - 8.0 * scale).abs() < 1e-12, "{node}: {area}");
+            assert_eq!(outline::problem(lamp.outline().unwrap(), lamp.light.half_extents()), None);
+            for &[x, y] in &lamp.outline {
+                let there = lamp.light.world_from_light().transform_point3(DVec3::new(x, y, 0.0));
+                assert!(placed.iter().any(|p| p.distance(there) < 1e-12), "{node}: {there}");
+            }
+        }
+    }
+    assert!(light(json!({}), json!({})).unwrap().outline().is_none());
+}
+
+#[test]
+fn polygons_that_cannot_be_used_are_refused_by_name() {
+    let square = json!([[0, 0], [1, 0], [1, 1], [0, 1]]);
+    for (node, corners, sentence) in [
+        (json!({}), json!(null), "its corners are null; write a list of [x, y]"),
+        (json!({}), json!("round"), "its corners are \"round\"; write a list of [x, y]"),
+        (json!({}), json!([[0, 0], [1, 0], 3]), "its corner 2 is not two numbers; write [x, y]"),
+        (json!({}), json!([[0, 0], [1, "0"], [0, 1]]), "its corner 1 is not two numbers"),
+        (json!({}), json!([[0, 0, 0], [1, 0, 0], [0, 1, 0]]), "its corner 0 is not two numbers"),
+        (
+            json!({}),
+            json!([[0, 0], [1, 0]]),
+            "its light cannot be used: it must have 3 to 16 corners, and has 2",
+        ),
+        (
+            json!({}),
+            json!([[0, 0], [1, 1], [2, 2]]),
+            "its light cannot be used: its corners must enclose an area",
+        ),
+        (
+            json!({}),
+            json!([[0, 0], [2, 0], [0.5, 1], [1, 1]]),
+            "its light cannot be used: its outline must neither touch nor cross itself",
+        ),
+        (
+            json!({"scale": [1, 0, 1]}),
+            square.clone(),
+            "its light cannot be used: its corners must enclose an area",
+        ),
+        (
+            json!({"scale": [1e9, 1e9, 1]}),
+            square.clone(),
+            "a side of the rectangle around its corners, with the node's scale, is 1000000000 m",
+        ),
+        (json!({"translation": [0, 1e10, 0]}), square, "it lies further than 1e9 m"),
+    ] {
+        let extras = json!({"area_light": "polygon", "corners": corners});
+        let found = light(node, extras).unwrap_err();
+        assert!(found.starts_with(&format!("node \"lamp\": {sentence}")), "{found}");
+    }
+    let found = light(json!({}), json!({"area_light": "polygon"})).unwrap_err();
+    assert!(found.contains("its area_light has no corners; give it 3 to 16"), "{found}");
+}
+
 #[test]
 fn lights_that_cannot_be_used_are_refused_by_name() {
     for (node, extras, sentence) in [
         (
             json!({}),
             json!({"area_light": "disk"}),
-            "its area_light is \"disk\"; write \"rectangle\" or \"sun\"",
+            "its area_light is \"disk\"; write \"rectangle\", \"polygon\" or \"sun\"",
         ),
         (json!({}), json!({"area_light": 1}), "its area_light is 1; write \"rectangle\""),
         (json!({}), json!({"width": -2}), "its width is -2; write a number of metres from 0 up"),
