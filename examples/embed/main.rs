@@ -170,6 +170,7 @@ fn run(options: &Options) -> Outcome<()> {
         let Targets { gbuffer, picture } = &targets;
         let seen = Seen {
             light: &light,
+            outline: world.outline(),
             clip_from_world: &clip_from_world,
             models: &models,
             gbuffer,

@@ -57,6 +57,7 @@ impl Shadows {
         let depth = lend(&seen.gbuffer.depth, DEPTH_DRAWN);
         self.node.plan(&Frame {
             mask: Some(lend(&seen.gbuffer.mask, COLOR_DRAWN)),
+            outline: seen.outline,
             visibility: Visibility::Own { before: COMPOSE_READS, after: COMPOSE_READS },
             slot: seen.slot as u32,
             border_barriers: self.border_barriers,

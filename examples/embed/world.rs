@@ -4,7 +4,7 @@ use crate::Outcome;
 use crate::gbuffer::GBuffer;
 use crate::geometry::Model;
 use antumbra::RectangleLight;
-use antumbra::scene::{Camera, Mesh, Role, Scene, from_gltf, generate};
+use antumbra::scene::{AreaLight, Camera, Mesh, Role, Scene, from_gltf, generate};
 use glam::{DMat3, DMat4, DVec3, DVec4};
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -12,6 +12,7 @@ use std::path::Path;
 /// What a frame shows, and where it is drawn.
 pub struct Seen<'a> {
     pub light: &'a RectangleLight,
+    pub outline: Option<&'a [[f64; 2]]>,
     pub clip_from_world: &'a DMat4,
     pub models: &'a [Model],
     pub gbuffer: &'a GBuffer,
@@ -42,7 +43,7 @@ impl Object {
 pub struct World {
     pub objects: Vec<Object>,
     /// A file's light and camera; without, the light goes round and the camera stands still.
-    fixed: Option<(RectangleLight, Camera)>,
+    fixed: Option<(AreaLight, Camera)>,
 }
 
 impl World {
@@ -54,7 +55,7 @@ impl World {
     /// A glTF scene under its first area light, through its camera or one that frames it.
     pub fn from_file(path: &Path, [width, height]: [u32; 2]) -> Outcome<Self> {
         let scene = from_gltf(path)?;
-        let light = scene.light(None)?.light;
+        let light = scene.light(None)?.clone();
         let aspect = f64::from(width) / f64::from(height);
         let camera = scene.camera.unwrap_or_else(|| Camera::framing(&scene, aspect));
         let Scene { meshes, instances, .. } = scene;
@@ -70,17 +71,22 @@ impl World {
         Ok(Self { objects, fixed: Some((light, camera)) })
     }
 
+    /// The polygon that the light is, where it is one.
+    pub fn outline(&self) -> Option<&[[f64; 2]]> {
+        self.fixed.as_ref()?.0.outline()
+    }
+
     /// The light at a time; to the sky if asked, where it can go there.
     pub fn light(&self, seconds: f64, to_the_sky: bool) -> Outcome<RectangleLight> {
-        match self.fixed {
-            Some((light, _)) => Ok(light),
+        match &self.fixed {
+            Some((light, _)) => Ok(light.light),
             None => Ok(light(seconds, to_the_sky)?),
         }
     }
 
     /// World space to clip space, by a perspective with reversed depth and no far plane.
     pub fn clip_from_world(&self, [width, height]: [u32; 2]) -> DMat4 {
-        let camera = self.fixed.map_or_else(camera, |(_, camera)| camera);
+        let camera = self.fixed.as_ref().map_or_else(camera, |(_, camera)| *camera);
         let aspect = f64::from(width) / f64::from(height);
         let scale = 1.0 / (0.5 * camera.yfov).tan();
         let clip_from_view = DMat4::from_cols(

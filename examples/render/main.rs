@@ -60,7 +60,7 @@ fn render(options: &Options) -> Result<String, Stop> {
     let device =
         HeadlessDevice::new(&HeadlessOptions { validation: options.validate, driver: None })?;
     let mut stage = Stage::new(&device, &scene, &view, options.size, options.settings, |_| true)?;
-    let plan = stage.plan(&light.light, None)?;
+    let plan = stage.plan_under(light, None)?;
     // The first frame warms the driver up and is not timed, unless it is the only one.
     if options.repeat > 1 {
         stage.run(&plan)?;

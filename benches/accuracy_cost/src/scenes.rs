@@ -110,7 +110,13 @@ impl SceneSpec {
             Source::File(path) => {
                 let scene = from_gltf(path).map_err(|e| e.to_string())?;
                 let name = path.display();
-                scene.light(None).map_err(|e| format!("{name}: {e}"))?;
+                let light = scene.light(None).map_err(|e| format!("{name}: {e}"))?;
+                if light.outline().is_some() {
+                    return Err(format!(
+                        "{name}: its light is a polygon, which most of what is compared does not take; \
+                         give it a rectangle"
+                    ));
+                }
                 if scene.triangles() == 0 {
                     return Err(format!(
                         "{name}: the scene has no triangles; at least one mesh node must be drawn"

@@ -62,6 +62,7 @@ impl Shadows {
     pub fn plan(&self, shot: &Shot) -> Outcome<FramePlan> {
         let meshes: Vec<_> = shot.models.iter().map(mesh).collect();
         let frame = Frame {
+            outline: shot.light.outline(),
             mask: Some(lend(&shot.targets.mask)?),
             visibility: Visibility::Lent(lend(&shot.targets.visibility)?),
             slot: shot.slot,

@@ -63,6 +63,7 @@ impl Shadows {
         let Targets { gbuffer, visibility, .. } = seen.targets;
         let depth = lend(&gbuffer.depth, DEPTH_SAMPLED);
         self.node.plan(&Frame {
+            outline: seen.world.light.outline(),
             mask: Some(lend(&gbuffer.mask, Scope::COMPUTE_SAMPLED)),
             visibility: Visibility::Lent(lend(visibility, Scope::COMPUTE_WRITTEN)),
             occluder_maps: seen.maps.map(|maps| OccluderMaps {
