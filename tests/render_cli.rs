@@ -212,6 +212,21 @@ fn wrong_scenes_are_one_sentence() {
     assert_eq!(files(&out), FILES);
     fs::remove_dir_all(out).unwrap();
 
+    let mut polygon = lamp.clone();
+    polygon["extras"] = json!({ "area_light": "polygon", "corners": [[0, 0], [1, 0], [0, 1]] });
+    let scene = write(&there, &triangle(&json!([mesh, polygon])), good);
+    refuse(
+        "polygon",
+        &scene,
+        &[],
+        "the light is a polygon, and soft-shadow-map knows rectangles alone",
+    );
+    let out = folder("polygon_many");
+    let output = run(&scene, &out, &["--size", "32x32", "--technique", "many-lights"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(files(&out), FILES);
+    fs::remove_dir_all(out).unwrap();
+
     // And the good one renders.
     let scene = write(&there, &triangle(&json!([mesh, lamp])), good);
     let out = folder("good");

@@ -1,4 +1,4 @@
-//! A light of any polygonal outline, for the truth alone: the techniques know rectangles.
+//! A light of any polygonal outline, for the truth alone: the techniques have their own.
 
 use super::pyramid::Frame;
 use super::union::{LightOutline, to_grid};

@@ -4,7 +4,8 @@ use crate::example::root;
 use antumbra::gpu::headless::{HeadlessDevice, Stage, View};
 use antumbra::scene::{Role, Scene, from_gltf, generate};
 use antumbra::truth::{
-    ErrorSummary, ExactLine, Receiver, Sampling, Tracer, visible_fraction_of_quad,
+    ErrorSummary, Exact, ExactLine, PolygonLight, Receiver, Sampling, Tracer,
+    visible_fraction_of_quad,
 };
 use antumbra::{RectangleLight, Settings};
 use glam::DVec3;
@@ -90,7 +91,8 @@ impl<'a> Setup<'a> {
     /// # Panics
     /// If the frame fails.
     pub fn visibility(&self, stage: &mut Stage) -> Vec<f32> {
-        let plan = stage.plan(&self.light(), self.window).unwrap_or_else(|e| panic!("{e}"));
+        let light = self.scene.light(None).unwrap();
+        let plan = stage.plan_under(light, self.window).unwrap_or_else(|e| panic!("{e}"));
         stage.run(&plan).unwrap();
         stage.visibility().unwrap()
     }
@@ -125,7 +127,7 @@ impl<'a> Setup<'a> {
         Self::receivers(stage).iter().map(visible).collect()
     }
 
-    /// The traced visible fractions and their noise; under a line the exact ones, which have none.
+    /// The traced visible fractions and their noise; under a line or a polygon the exact ones, which have none.
     ///
     /// # Panics
     /// If the scene cannot be traced.
@@ -135,6 +137,14 @@ impl<'a> Setup<'a> {
             let exact = ExactLine::new(self.scene).unwrap();
             let visible = exact.visible_fractions(&light, &receivers).unwrap();
             return (visible.iter().map(|&v| v as f32).collect(), 0.0);
+        }
+        if let Some(outline) = self.scene.light(None).unwrap().outline() {
+            let frame = light.world_from_light();
+            let place = |&[x, y]: &[f64; 2]| frame.transform_point3(DVec3::new(x, y, 0.0));
+            let polygon =
+                PolygonLight::new(&outline.iter().map(place).collect::<Vec<_>>()).unwrap();
+            let visible = Exact::new(self.scene).unwrap().visible_fractions(&polygon, &receivers);
+            return (visible.unwrap().iter().map(|&v| v as f32).collect(), 0.0);
         }
         let tracer = Tracer::new(self.scene).unwrap();
         let sampling = Sampling::new(rays, 1).unwrap();
