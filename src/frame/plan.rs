@@ -8,6 +8,7 @@ use super::{
 use crate::baseline::many_lights;
 use crate::depth_layers::{self, HostMapView};
 use crate::graph::{self, Border, MeshList, Need, ResourceId};
+use crate::light::outline;
 use crate::linear_light;
 use crate::ray_march::{self, Projection};
 use crate::settings::Technique;
@@ -165,11 +166,10 @@ pub fn plan(description: &Description, limits: Limits, frame: &Frame) -> Result<
         Technique::LinearLight => linear_light::turned(&frame.light),
         _ => frame.light,
     };
-    // A quarter turn of its axes is one of its outline's coordinates.
-    let quarter = turned != frame.light;
-    let outline: Option<Vec<[f64; 2]>> = frame.outline.map(|corners| {
-        corners.iter().map(|&[x, y]| if quarter { [y, -x] } else { [x, y] }).collect()
-    });
+    let outline = match turned == frame.light {
+        true => frame.outline.map(<[_]>::to_vec),
+        false => frame.outline.map(outline::quarter_turned),
+    };
     let frame = &Frame { light: turned, outline: outline.as_deref(), ..*frame };
     let light = &frame.light;
     let of_role = |keep: fn(Role) -> bool| {

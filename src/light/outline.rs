@@ -37,6 +37,11 @@ pub(crate) fn doubled_area(corners: &[[f64; 2]]) -> f64 {
     corners.windows(2).map(|edge| from_first(edge[0]).perp_dot(from_first(edge[1]))).sum()
 }
 
+/// The same corners in the space of the light that [`RectangleLight::quarter_turned`] makes.
+pub(crate) fn quarter_turned(corners: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    corners.iter().map(|&[x, y]| [y, -x]).collect()
+}
+
 /// The longer side of the box around an outline.
 fn size(corners: &[[f64; 2]]) -> f64 {
     let [low, high] = bounds(corners);

@@ -113,3 +113,19 @@ fn an_outline_must_lie_in_its_rectangle_and_run_the_right_way() {
     let bow = [[-1.0, -0.5], [1.0, -0.5], [-0.5, 0.5], [0.5, 0.5]];
     assert!(problem(&bow, half).unwrap().contains("cross itself"));
 }
+
+/// A light and its outline turned are where they were.
+#[test]
+fn a_quarter_turn_leaves_the_polygon_in_its_place() {
+    let (light, outline) = RectangleLight::around(&flat(&L)).unwrap();
+    let places = |light: &RectangleLight, outline: &[[f64; 2]]| {
+        let place = |&[x, y]: &[f64; 2]| DVec3::new(x, y, 0.0);
+        let place = |p| light.world_from_light().transform_point3(place(p));
+        outline.iter().map(place).collect::<Vec<_>>()
+    };
+    let (turned, corners) = (light.quarter_turned(), quarter_turned(&outline));
+    for (there, here) in places(&turned, &corners).into_iter().zip(places(&light, &outline)) {
+        assert!(there.distance(here) < 1e-12, "{there} {here}");
+    }
+    assert_eq!(problem(&corners, turned.half_extents()), None);
+}
