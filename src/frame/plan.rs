@@ -157,9 +157,10 @@ impl FramePlan {
 /// Plans one frame: fits the maps, decides what runs, derives the barriers. Pure: no Vulkan calls.
 ///
 /// # Errors
-/// [`Error::Frame`] for numbers that are not finite, an image of another size, format, usage or
-/// layout than the description and the passes need, images or strides that the description does not
-/// have, or a frame slot beyond the frames in flight.
+/// [`Error::Frame`] for numbers that are not finite, a line or an outline that the technique does not
+/// take, an outline that is not what [`Frame::outline`] asks for, an image of another size, format,
+/// usage or layout than the description and the passes need, images or strides that the description
+/// does not have, or a frame slot beyond the frames in flight.
 pub fn plan(description: &Description, limits: Limits, frame: &Frame) -> Result<FramePlan, Error> {
     frame.check(description)?;
     let turned = match description.settings.technique {
