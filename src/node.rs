@@ -1,6 +1,6 @@
 //! The node: the host's whole view of the crate.
 
-use crate::frame::{self, Description, Frame, FrameGraph, FramePlan, Limits, Stamp};
+use crate::frame::{self, Description, Frame, FrameGraph, FramePlan, Kept, Limits, Stamp};
 use crate::gpu::{Allocator, Host, HostDraw, NodeObjects, Requirements, Retired};
 use crate::graph::{Draw, Layer, Owner, Pass, Shape, Target, Work};
 use crate::settings::Technique;
@@ -8,6 +8,7 @@ use crate::soft_shadow_map::Accumulate;
 use crate::{Error, depth_layers};
 use ash::vk;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Soft shadows as one node of the host's render graph.
 ///
@@ -25,6 +26,8 @@ pub struct ShadowNode {
     kinds: Vec<&'static str>,
     /// What plans for these objects carry.
     stamp: Stamp,
+    /// The revision of light and meshes that the maps are of which recorded frames have left.
+    kept: Mutex<Option<u64>>,
 }
 
 /// The next [`Stamp`]: no two nodes or sizes share one.
@@ -104,7 +107,12 @@ impl ShadowNode {
         let FrameGraph { graph, visibility, .. } = frame::nominal(&description, limits);
         let objects = NodeObjects::new(&host, allocator, &graph, &description)?;
         let kinds = graph.kinds().map(|p| p.name).collect();
-        Ok(Self { host, description, limits, objects, visibility, kinds, stamp: next_stamp() })
+        let kept = Mutex::new(None);
+        Ok(Self { host, description, limits, objects, visibility, kinds, stamp: next_stamp(), kept })
+    }
+
+    fn kept(&self) -> MutexGuard<'_, Option<u64>> {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// What the node was made for.
@@ -117,7 +125,8 @@ impl ShadowNode {
     /// # Errors
     /// See [`frame::plan`].
     pub fn plan(&self, frame: &Frame) -> Result<FramePlan, Error> {
-        let plan = frame::plan(&self.description, self.limits, frame)?;
+        let kept = *self.kept();
+        let plan = frame::plan_with(&self.description, self.limits, frame, kept)?;
         Ok(plan.stamped(self.stamp, self.objects.image(self.visibility).0))
     }
 
@@ -155,6 +164,19 @@ impl ShadowNode {
                     .into(),
             ));
         }
+        let mut kept = self.kept();
+        match plan.kept {
+            Kept::Untouched => {}
+            Kept::Made(revision) => *kept = revision,
+            Kept::Used(revision) if *kept == Some(revision) => {}
+            Kept::Used(revision) => {
+                return Err(Error::Frame(format!(
+                    "this plan uses the maps of revision {revision}, and a frame recorded since has made others; \
+                     plan the frame again"
+                )));
+            }
+        }
+        drop(kept);
         self.objects.record(&self.host, cmd, plan, draw);
         Ok(())
     }
@@ -200,6 +222,7 @@ impl ShadowNode {
         let old = self.objects.resize(&self.host, allocator, &graph, description.inspect)?;
         self.description = description;
         self.stamp = next_stamp();
+        *self.kept() = None;
         Ok(Retired::sized(self.host.clone(), old))
     }
 
@@ -236,7 +259,7 @@ impl ShadowNode {
         };
         (0..graph.resources().len())
             .map(|index| graph.id(index))
-            .filter(|&id| graph.resource(id).owner == Owner::Transient)
+            .filter(|&id| matches!(graph.resource(id).owner, Owner::Transient | Owner::Kept))
             .filter_map(|id| {
                 let resource = graph.resource(id);
                 // A read-back has room for one layer.

@@ -138,7 +138,17 @@ pub const VISIBILITY_LEVELS: Module = module!("occlusion_textures/visibility_lev
 /// The same by what slices have in common.
 pub const VISIBILITY_LEVELS_CORRELATED: Module =
     module!("occlusion_textures/visibility_levels_correlated.comp");
-/// No skins yet.
+/// A line's ends are its samples.
+pub const LINE_BEGIN: Module = module!("linear_light/begin.comp");
+/// Positions to clip space where a sample is looked from.
+pub const SAMPLE_VERT: Module = module!("linear_light/sample.vert");
+/// What a sample sees.
+pub const LINE_TAKE: Module = module!("linear_light/take.comp");
+/// What the samples between others see alone.
+pub const LINE_MEASURE: Module = module!("linear_light/measure.comp");
+/// Which of them stay.
+pub const LINE_CHOOSE: Module = module!("linear_light/choose.comp");
+/// A sample and the segment behind it.
 pub const SKIN_START: Module = module!("linear_light/start.comp");
 /// Where occluders end, to skins.
 pub const EDGES: Module = module!("linear_light/edges.comp");
@@ -146,7 +156,7 @@ pub const EDGES: Module = module!("linear_light/edges.comp");
 pub const SKINS_VERT: Module = module!("linear_light/skins.vert");
 /// What lies behind it sees of the segment.
 pub const SKINS_FRAG: Module = module!("linear_light/skins.frag");
-/// A segment's maps as pixels ask for them.
+/// A sample's map as pixels ask for it.
 pub const KEEP: Module = module!("linear_light/keep.comp");
 /// The samples' parts of each pixel, summed.
 pub const LINE_VISIBILITY: Module = module!("linear_light/visibility.comp");
@@ -222,6 +232,11 @@ pub const ALL: &[Module] = &[
     MEANS_NEXT_LEVEL,
     VISIBILITY_LEVELS,
     VISIBILITY_LEVELS_CORRELATED,
+    LINE_BEGIN,
+    SAMPLE_VERT,
+    LINE_TAKE,
+    LINE_MEASURE,
+    LINE_CHOOSE,
     SKIN_START,
     EDGES,
     SKINS_VERT,

@@ -66,7 +66,7 @@ fn errors_are_what_they_were_measured_to_be() {
         let mut truth = None;
         for (samples, measured) in TABLE {
             for (which, measured) in ["linear", "rational"].iter().zip(measured) {
-                let words = format!("technique=linear-light samples={samples} transition={which}");
+                let words = format!("technique=linear-light samples={samples} error=0 transition={which}");
                 let mut stage = setup.stage(&device, &words);
                 let image = setup.visibility(&mut stage);
                 let (truth, _) = truth.get_or_insert_with(|| setup.traced(&stage, 16));
@@ -115,7 +115,7 @@ fn rectangles_are_lines_side_by_side() {
         let setup = Setup::ground(&scene, 2.2, 96);
         let mut errors = Vec::new();
         for lines in [1, 4, 16] {
-            let words = format!("technique=linear-light samples=2 lines={lines}");
+            let words = format!("technique=linear-light samples=2 lines={lines} error=0");
             let mut stage = setup.stage(&device, &words);
             let image = setup.visibility(&mut stage);
             errors.push(percent(&setup.closed_form_of_card(&stage), &image));
@@ -148,8 +148,7 @@ fn edges_and_transitions() {
     }
     let glue = "float seen(float u_edge, float u, float apart, float w_edge, float w_receiver)
 {
-    Skin s = Skin(u_edge, w_edge, 0.0, 0.0);
-    return transition(w_edge, crossing_of(s, u, apart), w_receiver);
+    return transition(w_edge, crossing_of(u_edge, u, apart), w_receiver);
 }";
     let all = (-1.0..1.0f32, -1.0..1.0f32, 0.05..2.0f32, 0.3..2.0f32, 0.01..0.9f32)
         .prop_map(|(u_edge, u, apart, w_edge, share)| (u_edge, u, apart, w_edge, share * w_edge));
@@ -217,7 +216,7 @@ fn bad_input_is_refused_with_a_sentence() {
     let error = refuse("map=2048 samples=16 lines=16");
     assert!(error.contains("fewer lines"), "{error}");
     let error = refuse("map=4096 samples=2 lines=1");
-    assert!(error.contains("set map=2896,"), "{error}");
+    assert!(error.contains("set map=2048,"), "{error}");
     let mut description =
         Description { settings: settings("technique=linear-light"), ..Description::new([64, 64]) };
     assert!(description.check().is_ok());

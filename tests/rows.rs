@@ -36,6 +36,7 @@ fn descriptions() -> Vec<(String, Description)> {
         "technique=occlusion-textures map=100 slices=4 combine=sum",
         "technique=linear-light",
         "technique=linear-light map=65 samples=2 lines=1 transition=linear",
+        "technique=linear-light map=100 samples=5 lines=2 error=0",
     ] {
         let textures: &[Option<bool>] =
             if words.contains("ray-march") { &[None, Some(false), Some(true)] } else { &[None] };
@@ -88,7 +89,9 @@ fn disagreements(graph: &Graph, pass: &Pass) -> Vec<String> {
     let mut found = Vec::new();
     let mut seen = BTreeSet::new();
     let pushed = match pass.work {
-        Work::Raster { draw: Draw::Layer { .. }, .. } => size_of::<DepthPush>(),
+        Work::Raster { draw: Draw::Layer { .. }, .. } => {
+            pass.push.bytes().len().max(size_of::<DepthPush>())
+        }
         _ => pass.push.bytes().len(),
     };
     for module in modules(pass) {

@@ -2,51 +2,54 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "linear_light/skin.glsl"
+#include "linear_light/segment.glsl"
 
 // Where occluders end in a sample's map, on the side of its neighbour, to skins. Their order differs from frame to
 // frame; what is drawn of them does not.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0, binding = 0) uniform texture2D occluders_0;
-layout(set = 0, binding = 1) uniform texture2D receivers_0;
-layout(set = 0, binding = 2) uniform texture2D occluders_1;
-layout(set = 0, binding = 3) uniform texture2D receivers_1;
-layout(set = 0, binding = 4, std430) buffer Skins { vec4 skins[]; };
-layout(set = 0, binding = 5, std430) buffer Draw { uint draw[4]; };
-
-#include "linear_light/slots.glsl"
+layout(set = 0, binding = 0) uniform texture2DArray seen;
+layout(set = 0, binding = 1, std430) readonly buffer Here { Segment here; };
+layout(set = 0, binding = 2, std430) buffer Skins { vec4 skins[]; };
+layout(set = 0, binding = 3, std430) buffer Draw { uint draw[4]; };
 
 layout(push_constant) uniform Push {
-    float u_first;  // tangent of the map's first texel border
-    float u_step;   // of a texel
-    float inv_near; // 1 over the map's near plane, 1/m
-    int map;        // its side in texels
-    int slot;       // where it is
-    int side;       // -1: occluders that end towards -x; 1: towards +x
+    vec4 u_window; // least and largest u at the line's first end, at its last
+    int map;       // the maps' side in texels
+    int side;      // -1: occluders that end towards -x; 1: towards +x
 } push;
 
-float w_at(int x, int y)
+// Of the nearest occluder, and of the nearest surface of any kind.
+vec2 at(int layer, int x, int y)
 {
-    bool outside = x < 0 || x >= push.map;
-    return outside ? 0.0 : surface_at(push.slot, ivec2(x, y)) * push.inv_near;
+    if (x < 0 || x >= push.map) {
+        return vec2(0.0);
+    }
+    vec2 w = texelFetch(seen, ivec3(x, y, layer), 0).xy;
+    return vec2(w.x, max(w.x, w.y));
 }
 
 void main()
 {
     ivec2 p = ivec2(gl_GlobalInvocationID.xy);
-    if (p.x >= push.map || p.y >= push.map) {
+    int layer = push.side > 0 ? here.first : here.last;
+    if (p.x >= push.map || p.y >= push.map || here.last < 0) {
         return;
     }
-    float w_near = occluder_at(push.slot, p) * push.inv_near;
-    float w_seen = w_at(p.x + push.side, p.y);
+    vec2 near = at(layer, p.x, p.y);
+    float w_seen = at(layer, p.x + push.side, p.y).y;
     // A receiver that lies in front of the occluder ends nothing.
-    if (w_near <= w_seen || w_near < w_at(p.x, p.y)) {
+    if (near.x <= w_seen || near.x < near.y) {
         return;
     }
-    if (is_edge(w_at(p.x - push.side, p.y), w_near, w_seen, w_at(p.x + 2 * push.side, p.y))) {
+    float w_before = at(layer, p.x - push.side, p.y).y;
+    float w_behind = at(layer, p.x + 2 * push.side, p.y).y;
+    if (is_edge(w_before, near.x, w_seen, w_behind)) {
+        vec2 window = window_at(push.u_window, push.side > 0 ? here.along.x : here.along.y);
         float border = float(p.x) + (push.side > 0 ? 1.0 : 0.0);
+        float u = mix(window.x, window.y, border / float(push.map));
         uint vertex = atomicAdd(draw[0], 6u);
-        skins[vertex / 6u] = vec4(push.u_first + border * push.u_step, w_near, w_seen, float(p.y));
+        skins[vertex / 6u] = vec4(u, near.x, w_seen, float(p.y));
     }
 }

@@ -1,23 +1,22 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
+#include "linear_light/segment.glsl"
 
-// A segment's maps as pixels ask for them: of either sample the nearest occluder's w and the channel, the part of
-// the segment that what it sees there sees.
+// A sample's map as pixels ask for it: w of the nearest occluder, and what part of the line the sample adds where it
+// sees past, of both of its segments together (section 3.3); of a texel and of the next one in its row.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0, binding = 0) uniform texture2D occluders_0;
-layout(set = 0, binding = 1) uniform texture2D occluders_1;
-layout(set = 0, binding = 2) uniform texture2D left_skins;
-layout(set = 0, binding = 3) uniform texture2D right_skins;
+layout(set = 0, binding = 0) uniform texture2DArray seen;
+layout(set = 0, binding = 1) uniform texture2D right_channel; // of the segment before
+layout(set = 0, binding = 2) uniform texture2D left_channel;  // of the segment behind
+layout(set = 0, binding = 3, std430) readonly buffer Here { Segment here; };
 layout(set = 0, binding = 4, rgba32f) writeonly uniform image2DArray maps;
 
 layout(push_constant) uniform Push {
-    float inv_near; // 1 over the maps' near plane, 1/m
-    int map;        // their side in texels
-    int slot;       // of the segment's first sample
-    int segment;
+    int map;   // side in texels
+    int layer; // of maps
 } push;
 
 // Lit by both samples is half by each (section 3.2).
@@ -26,15 +25,24 @@ float channel(float drawn)
     return drawn == 1.0 ? 0.5 : 2.0 * drawn;
 }
 
+vec2 told_at(ivec2 p)
+{
+    float part = 0.0;
+    if (here.before > 0.0) {
+        part += here.before * channel(texelFetch(right_channel, p, 0).x);
+    }
+    if (here.last >= 0) {
+        part += (here.along.y - here.along.x) * channel(texelFetch(left_channel, p, 0).x);
+    }
+    return vec2(texelFetch(seen, ivec3(p, here.first), 0).x, part);
+}
+
 void main()
 {
     ivec2 p = ivec2(gl_GlobalInvocationID.xy);
-    if (p.x >= push.map || p.y >= push.map) {
+    if (p.x >= push.map || p.y >= push.map || here.first < 0) {
         return;
     }
-    vec2 stored = vec2(texelFetch(occluders_0, p, 0).x, texelFetch(occluders_1, p, 0).x);
-    vec2 w = (push.slot == 0 ? stored : stored.yx) * push.inv_near;
-    float left = channel(texelFetch(left_skins, p, 0).x);
-    float right = channel(texelFetch(right_skins, p, 0).x);
-    imageStore(maps, ivec3(p, push.segment), vec4(w.x, left, w.y, right));
+    vec2 next = told_at(ivec2(min(p.x + 1, push.map - 1), p.y));
+    imageStore(maps, ivec3(p, push.layer), vec4(told_at(p), next));
 }

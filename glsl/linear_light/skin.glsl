@@ -33,10 +33,11 @@ float w_beside(Skin s, float w_far)
     return max(s.w_seen, w_far);
 }
 
-// The ray's w where the neighbour sees it at tangent u.
-float crossing_of(Skin s, float u, float apart)
+// The ray's w where the neighbour sees it at u, in tangents or in texels: it is at `ray` for w = 0 and moves by `step`
+// with w.
+float crossing_of(float ray, float u, float step)
 {
-    return (u - s.u_edge) / apart;
+    return (u - ray) / step;
 }
 
 // What a point behind the skin sees of the light between the two samples, seen at w_crossing by the neighbour: 0 at

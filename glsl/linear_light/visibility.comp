@@ -9,77 +9,65 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0) uniform texture2D gbuffer_depth;
 layout(set = 0, binding = 1) uniform texture2D gbuffer_mask;
 layout(set = 0, binding = 2) uniform texture2DArray maps;
-layout(set = 0, binding = 3, r32f) writeonly uniform image2D visibility;
+layout(set = 0, binding = 3) uniform texture2D places;
+layout(set = 0, binding = 4, r32f) writeonly uniform image2D visibility;
 
 #include "common/gbuffer.glsl"
 #include "common/light.glsl"
 #include "baseline/compare.glsl"
+#include "linear_light/places.glsl"
+#include "linear_light/segment.glsl"
 
 layout(push_constant) uniform Push {
     mat4 light_from_ndc;
-    vec4 u_window;   // least and largest u at the line's first end, at its last
-    vec4 v_window;   // least and largest v at the light's least y, at its largest
-    vec2 half_light; // half the light's width and height, m
-    ivec2 extent;    // of the G-buffer
+    ivec2 extent; // of the G-buffer
     float background;
-    float snap;      // how far a raster moves a vertex, in texels
-    int map;         // the maps' side in texels
-    int flags;       // samples a line; from bit 8 on lines; bit 16: masked
+    float snap;   // how far a raster moves a vertex, in texels
+    int map;      // the maps' side in texels
+    int most;     // samples that a line may have: layers of maps
+    int lines;
+    int masked;
 } push;
 
-int samples() { return push.flags & 255; }
-int lines() { return push.flags >> 8 & 255; }
-bool is_masked() { return (push.flags & 1 << 16) != 0; }
+// What a line of the light is to a pixel.
+struct Line {
+    vec4 u_window;
+    vec2 v_window;
+    float span;
+    int row;
+};
 
-// Of a sample's two segments, what a texel of its map says: w, and the parts that it adds of each.
-vec2 told_at(ivec2 texel, int sample_nth, int first_segment)
+// The part of a line that one of its samples adds: the mean of four texels of which the receiver is behind none.
+// `position` and `normal` are the line's, from its middle.
+float part_of(Line line, int nth, vec3 position, vec3 normal, bool blocks)
 {
-    float w = 0.0;
-    float part = 0.0;
-    if (sample_nth > 0) {
-        vec4 before = texelFetch(maps, ivec3(texel, first_segment + sample_nth - 1), 0);
-        w = before.z;
-        part += before.w;
-    }
-    if (sample_nth + 1 < samples()) {
-        vec4 after = texelFetch(maps, ivec3(texel, first_segment + sample_nth), 0);
-        w = after.x;
-        part += after.y;
-    }
-    return vec2(w, part);
-}
-
-// The parts of a sample's segments that a receiver sees: the mean of four texels of which it is behind none.
-float part_of(Receiver r, int sample_nth, int line)
-{
-    float along = float(sample_nth) / float(samples() - 1);
-    float across = (float(line) + 0.5) / float(lines());
-    vec2 place = (2.0 * vec2(along, across) - 1.0) * push.half_light;
-    vec3 p = r.position - vec3(place, 0.0);
-    vec3 normal = r.normal;
+    vec2 place = texelFetch(places, ivec2(SAMPLES_AT + nth, line.row), 0).xy;
+    vec3 p = position - vec3((place.x - 0.5) * line.span, 0.0, 0.0);
     if (dot(normal, p) >= 0.0) {
         // The sample is below the pixel's plane, whose other side is seen where it does not block.
-        if (r.blocks) {
+        if (blocks) {
             return 0.0;
         }
         normal = -normal;
     }
-    vec2 u = mix(push.u_window.xy, push.u_window.zw, along);
-    vec2 v = mix(push.v_window.xy, push.v_window.zw, across);
+    vec2 u = window_at(line.u_window, place.x);
+    vec2 v = line.v_window;
     vec2 per_uv = float(push.map) / vec2(u.y - u.x, v.y - v.x);
     MapPlane m = map_plane(p, normal, per_uv, -vec2(u.x, v.x) * per_uv, push.snap, 0.0);
-    // Where nothing blocks, both ends of a segment see half of it.
-    float free = sample_nth == 0 || sample_nth + 1 == samples() ? 0.5 : 1.0;
     vec2 corner = floor(m.t - 0.5);
+    // Nothing is in the outermost texels of a map, nor beyond.
+    if (any(lessThan(corner, vec2(0.0))) || any(greaterThanEqual(corner, vec2(push.map - 1)))) {
+        return place.y;
+    }
     vec2 f = m.t - 0.5 - corner;
     float sum = 0.0;
-    for (int i = 0; i < 4; ++i) {
-        ivec2 q = ivec2(i & 1, i >> 1);
-        ivec2 texel = ivec2(corner) + q;
-        float weight = (q.x == 1 ? f.x : 1.0 - f.x) * (q.y == 1 ? f.y : 1.0 - f.y);
-        bool outside = any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(push.map)));
-        vec2 told = outside ? vec2(0.0, free) : told_at(texel, sample_nth, line * (samples() - 1));
-        sum += in_front_of_filter(m, vec2(texel) + 0.5, told.x) ? 0.0 : weight * told.y;
+    for (int row = 0; row < 2; ++row) {
+        ivec2 texel = ivec2(corner) + ivec2(0, row);
+        vec4 told = texelFetch(maps, ivec3(texel, line.row * push.most + nth), 0);
+        float weight = row == 1 ? f.y : 1.0 - f.y;
+        vec2 at = vec2(texel) + 0.5;
+        sum += in_front_of_filter(m, at, told.x) ? 0.0 : weight * (1.0 - f.x) * told.y;
+        sum += in_front_of_filter(m, at + vec2(1.0, 0.0), told.z) ? 0.0 : weight * f.x * told.w;
     }
     return sum;
 }
@@ -90,22 +78,34 @@ void main()
     if (p.x >= push.extent.x || p.y >= push.extent.y) {
         return;
     }
-    GBuffer g = GBuffer(push.light_from_ndc, push.extent, push.background, is_masked());
+    GBuffer g = GBuffer(push.light_from_ndc, push.extent, push.background, push.masked != 0);
     Receiver r = receiver_at(g, p);
     float v = 1.0;
     // Behind the light's plane there is nothing to hide.
     if (r.receives && r.position.z > 0.0) {
-        float sum = 0.0;
-        for (int line = 0; line < lines(); ++line) {
-            for (int i = 0; i < samples(); ++i) {
-                sum += part_of(r, i, line);
+        v = 0.0;
+        for (int row = 0; row < push.lines; ++row) {
+            vec4 turn = texelFetch(places, ivec2(0, row), 0);
+            vec4 of_line = texelFetch(places, ivec2(2, row), 0);
+            int count = int(texelFetch(places, ivec2(3, row), 0).x);
+            Line line = Line(texelFetch(places, ivec2(1, row), 0), of_line.xy, of_line.z, row);
+            // The line's own x and y.
+            mat2 turned = mat2(turn.x, -turn.y, turn.y, turn.x);
+            vec3 position = vec3(turned * (r.position.xy - turn.zw), r.position.z);
+            vec3 normal = vec3(turned * r.normal.xy, r.normal.z);
+            float sum = 0.0;
+            for (int nth = 0; nth < count; ++nth) {
+                sum += part_of(line, nth, position, normal, r.blocks);
             }
+            sum = min(sum, 1.0);
+            if (r.blocks) {
+                // The part of the line above the pixel's own plane.
+                vec2 slope = vec2(normal.x * 0.5 * line.span, 0.0);
+                sum = min(sum, fraction_above(slope, dot(normal, position)));
+            }
+            v += of_line.w * sum;
         }
-        v = min(sum / float(lines() * (samples() - 1)), 1.0);
-        if (r.blocks) {
-            // The part of the light above the pixel's own plane.
-            v = min(v, fraction_above(r.normal.xy * push.half_light, dot(r.normal, r.position)));
-        }
+        v = min(v, 1.0);
     }
     imageStore(visibility, p, vec4(v));
 }

@@ -12,7 +12,7 @@ pub use accesses::{BufferAccess, HostAccess, ImageBarrier, NodeUse};
 pub use host::{
     BorderBarriers, Geometry, HostImage, MeshBuffers, MeshInstance, OccluderMaps, Visibility,
 };
-pub(crate) use plan::Stamp;
+pub(crate) use plan::{Kept, Stamp, plan_with};
 pub use plan::{Faces, FramePlan, MeshDraw, plan};
 pub(crate) use rows::{FrameGraph, nominal};
 pub use rows::{Limits, full_graph};
@@ -205,6 +205,10 @@ pub struct Frame<'a> {
     /// Moves the noise of `ray-march`: added to the technique's seed. A number that is another one each
     /// frame lets what is behind average over frames; 0 keeps the noise where it is.
     pub noise: u32,
+    /// The host's number for the state of the light and of the meshes, geometry, transforms and roles: as long as
+    /// it gives the same one, maps of them that the node keeps are not made anew. None: everything may have
+    /// changed. `linear-light` keeps its maps; the pixels are looked at in every frame.
+    pub revision: Option<u64>,
     /// Which of the frames in flight this is, 0 and up. The frame that last had the same number
     /// must be done before this one is recorded.
     pub slot: u32,
@@ -238,6 +242,7 @@ impl<'a> Frame<'a> {
             light_texture: None,
             window: None,
             noise: 0,
+            revision: None,
             slot: 0,
             border_barriers: BorderBarriers::Node,
         }

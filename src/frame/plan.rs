@@ -1,7 +1,7 @@
 //! From one frame to what it records.
 
 use super::accesses::{self, BufferAccess, HostAccess, ImageBarrier, NodeUse};
-use super::rows::{Limits, PLACEHOLDER, PLACEHOLDER_WINDOWS, Views, build, wanted};
+use super::rows::{Limits, PLACEHOLDER, Views, build, wanted};
 use super::{
     BorderBarriers, Description, Frame, Geometry, HostImage, MeshBuffers, MeshInstance, Visibility,
 };
@@ -69,6 +69,18 @@ impl DrawList {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Stamp(pub u64);
 
+/// What a frame does with the maps that a node keeps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Kept {
+    /// Nothing.
+    #[default]
+    Untouched,
+    /// It makes those of a revision; of none, where the host says none.
+    Made(Option<u64>),
+    /// It uses those of a revision.
+    Used(u64),
+}
+
 /// What one frame records.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FramePlan {
@@ -81,6 +93,7 @@ pub struct FramePlan {
     /// The frame in flight.
     pub slot: u32,
     pub(crate) stamp: Stamp,
+    pub(crate) kept: Kept,
     accesses: Vec<HostAccess>,
     occluders: DrawList,
     receivers: DrawList,
@@ -162,6 +175,16 @@ impl FramePlan {
 /// usage or layout than the description and the passes need, images or strides that the description
 /// does not have, or a frame slot beyond the frames in flight.
 pub fn plan(description: &Description, limits: Limits, frame: &Frame) -> Result<FramePlan, Error> {
+    plan_with(description, limits, frame, None)
+}
+
+/// As [`plan`], for a node that keeps maps of a revision.
+pub(crate) fn plan_with(
+    description: &Description,
+    limits: Limits,
+    frame: &Frame,
+    kept: Option<u64>,
+) -> Result<FramePlan, Error> {
     frame.check(description)?;
     let turned = match description.settings.technique {
         Technique::LinearLight => linear_light::turned(&frame.light),
@@ -179,7 +202,14 @@ pub fn plan(description: &Description, limits: Limits, frame: &Frame) -> Result<
     };
     let receivers = of_role(Role::receives);
     let mut occluders = of_role(Role::blocks);
-    let views = look(description, frame, &mut occluders, &receivers)?;
+    let mut views = look(description, frame, &mut occluders, &receivers)?;
+    views.kept = kept.filter(|_| kept == frame.revision);
+    let keeps = description.settings.technique == Technique::LinearLight;
+    let kept = match (&views.need, views.kept) {
+        (Need::Yes(_), Some(revision)) if keeps => Kept::Used(revision),
+        (Need::Yes(_), None) if keeps => Kept::Made(frame.revision),
+        _ => Kept::Untouched,
+    };
     let built = build(description, limits, light, &views);
 
     let lent = |id: Option<ResourceId>, image: Option<HostImage>| id.zip(image);
@@ -211,7 +241,8 @@ pub fn plan(description: &Description, limits: Limits, frame: &Frame) -> Result<
 
     let to_light = light.light_from_world();
     let wanted = wanted(&description.settings);
-    let occluder_clips: Vec<_> = views.occluder_clips().map(|clip| clip * to_light).collect();
+    let clips = views.occluder_clips(&description.settings);
+    let occluder_clips: Vec<_> = clips.into_iter().map(|clip| clip * to_light).collect();
     let receiver_clips = match (wanted.receiver_map, &views.receivers) {
         (Some(_), Some(view)) => vec![view.clip_from_light() * to_light],
         _ if description.settings.technique == Technique::LinearLight => occluder_clips.clone(),
@@ -224,6 +255,7 @@ pub fn plan(description: &Description, limits: Limits, frame: &Frame) -> Result<
         visibility: built.visibility,
         slot: frame.slot,
         stamp: Stamp::default(),
+        kept,
         occluders: DrawList::new(description, &occluders, &occluder_clips)?,
         receivers: if receiver_clips.is_empty() {
             DrawList::default()
@@ -301,21 +333,15 @@ fn look(
         }
         _ => Vec::new(),
     };
-    let mut windows = PLACEHOLDER_WINDOWS;
-    let points = match (settings.technique, &need, &receiver_fit) {
-        (Technique::LinearLight, Need::Yes(_), Some(receivers)) => {
-            let lines = linear_light::for_light(&settings.linear_light, light);
-            let boxes = boxes(occluders);
-            let side = settings.map;
-            match linear_light::windows(light, &boxes, &lines, side, 1.0 / receivers.far) {
-                Some((seen, nominal)) => {
-                    windows = seen;
-                    linear_light::samples(light, &seen, &lines, &nominal)
-                }
-                None => points,
-            }
-        }
-        _ => points,
+    let lines = match (settings.technique, &need, &receiver_fit) {
+        (Technique::LinearLight, Need::Yes(_), Some(receivers)) => linear_light::lines(
+            light,
+            &boxes(occluders),
+            &settings.linear_light,
+            settings.map,
+            1.0 / receivers.far,
+        ),
+        _ => Vec::new(),
     };
     // Ray marching and slices look from behind the light.
     let seen = match settings.technique {
@@ -332,7 +358,8 @@ fn look(
     let light_from_ndc = light.light_from_world() * frame.world_from_ndc;
     Ok(Views {
         points,
-        windows,
+        lines,
+        kept: None,
         occluders: seen.or(fit).unwrap_or(PLACEHOLDER),
         host_maps,
         receivers: Some(receiver_fit.unwrap_or(PLACEHOLDER)),

@@ -37,17 +37,15 @@ pub(crate) struct FrameGraph {
 pub(super) const PLACEHOLDER: MapView =
     MapView { eye: Eye::Behind(0.0), min: [-1.0; 2], max: [1.0; 2], near: 1.0, far: 2.0, side: 16 };
 
-/// What lines see where they see nothing.
-pub(super) const PLACEHOLDER_WINDOWS: linear_light::Windows =
-    linear_light::Windows { u: [[-1.0, 1.0]; 2], v: [[-1.0, 1.0]; 2] };
-
 /// What the rows depend on, beyond the description.
 pub(super) struct Views {
     pub occluders: MapView,
-    /// Those of many lights and of lines; empty for other techniques, and where nothing can be shadowed.
+    /// Those of many lights; empty for other techniques, and where nothing can be shadowed.
     pub points: Vec<LightPoint>,
-    /// What lines see.
-    pub windows: linear_light::Windows,
+    /// Those of linear lights, as `points`.
+    pub lines: Vec<linear_light::Line>,
+    /// The revision of light and meshes that the maps which the node keeps are of, where they are this frame's.
+    pub kept: Option<u64>,
     pub host_maps: Option<HostMapView>,
     pub receivers: Option<MapView>,
     pub need: Need,
@@ -59,9 +57,19 @@ pub(super) struct Views {
 
 impl Views {
     /// Light space to the clip space of each view of the occluders.
-    pub fn occluder_clips(&self) -> impl Iterator<Item = DMat4> {
-        let centre = self.points.is_empty().then(|| self.occluders.clip_from_light());
-        centre.into_iter().chain(self.points.iter().map(LightPoint::clip_from_light))
+    pub fn occluder_clips(&self, settings: &Settings) -> Vec<DMat4> {
+        if !self.lines.is_empty() {
+            let nodes = settings.linear_light.nodes();
+            let of = |line: &linear_light::Line| {
+                let line = *line;
+                nodes.iter().map(move |&at| line.clip_from_light(at, settings.map))
+            };
+            self.lines.iter().flat_map(of).collect()
+        } else if !self.points.is_empty() {
+            self.points.iter().map(LightPoint::clip_from_light).collect()
+        } else {
+            vec![self.occluders.clip_from_light()]
+        }
     }
 }
 
@@ -91,13 +99,17 @@ pub(crate) fn nominal(description: &Description, limits: Limits) -> FrameGraph {
     let view = MapView { side, ..PLACEHOLDER };
     let points = match settings.technique {
         Technique::ManyLights => settings.baseline.samples,
-        Technique::LinearLight => settings.linear_light.lines * settings.linear_light.samples,
+        _ => 0,
+    };
+    let lines = match settings.technique {
+        Technique::LinearLight => settings.linear_light.lines,
         _ => 0,
     };
     let views = Views {
         occluders: view,
         points: (0..points).map(|_| LightPoint { at: [0.0; 2], view }).collect(),
-        windows: PLACEHOLDER_WINDOWS,
+        lines: vec![linear_light::Line::NONE; lines as usize],
+        kept: None,
         host_maps: description.occluder_maps.map(|_| HostMapView {
             view,
             flip: [false; 2],
@@ -217,23 +229,21 @@ pub(super) fn build(
             occlusion_textures::declare(&mut graph, layers.as_ref(), visibility, settings, &inputs);
         }
         Technique::LinearLight => {
-            let settings = linear_light::for_light(&settings.linear_light, light);
-            let none = vec![
-                LightPoint { at: [0.0; 2], view: views.occluders };
-                (settings.lines * settings.samples) as usize
-            ];
-            // A frame without shadows has no samples; its rows say so.
-            let samples = if views.points.is_empty() { &none } else { &views.points };
+            let kept = |revision| Need::No(format!("the maps of revision {revision} are kept").into());
+            let make = match (need, views.kept) {
+                (Need::Yes(_), Some(revision)) => &kept(revision),
+                _ => need,
+            };
             let inputs = linear_light::Inputs {
-                light,
-                samples,
-                windows: &views.windows,
+                lines: &views.lines,
+                side: settings.map,
                 w_far: views.receivers.map_or(0.0, |r| 1.0 / r.far),
                 gbuffer: &gbuffer,
                 snap,
                 need,
+                make,
             };
-            linear_light::declare(&mut graph, visibility, &settings, &inputs);
+            linear_light::declare(&mut graph, visibility, &settings.linear_light, &inputs);
         }
         Technique::Hard => {
             let front = layers(&mut graph).front;

@@ -81,7 +81,8 @@ impl RowPipeline {
                 (vk::ShaderStageFlags::COMPUTE, pass.push.bytes().len())
             }
             Work::Raster { draw: Draw::Layer { .. }, .. } => {
-                (vk::ShaderStageFlags::VERTEX, size_of::<DepthPush>())
+                // The matrix that each mesh pushes, and what the row says behind it.
+                (vk::ShaderStageFlags::VERTEX, pass.push.bytes().len().max(size_of::<DepthPush>()))
             }
             Work::Raster { .. } => (
                 vk::ShaderStageFlags::VERTEX | vk::ShaderStageFlags::FRAGMENT,

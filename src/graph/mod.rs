@@ -77,6 +77,13 @@ impl Graph {
         self.add(Resource { name, shape: Shape::Buffer { bytes }, owner: Owner::Transient })
     }
 
+    /// Makes what one frame wrote into a transient stay for the next ones.
+    pub fn keep(&mut self, id: ResourceId) {
+        if let Some(resource) = self.resources.get_mut(id.index()) {
+            resource.owner = Owner::Kept;
+        }
+    }
+
     fn add(&mut self, resource: Resource) -> ResourceId {
         // A graph has tens of resources; the id would wrap at 65536.
         let id = ResourceId(self.resources.len() as u16);

@@ -97,7 +97,10 @@ pub fn compile(graph: Graph, borders: &[Border], place_borders: bool) -> Result<
     for (index, resource) in graph.resources().iter().enumerate() {
         let id = ResourceId(index as u16);
         let touched = kept.iter().any(|&p| graph.passes()[p].uses.iter().any(|u| u.resource == id));
+        let written = kept.iter().any(|&p| graph.passes()[p].writes().any(|r| r == id));
         states.push(match resource.owner {
+            Owner::Kept if !written => State::left_in(readers(&graph, id)),
+            Owner::Kept => State::forgotten(everything(&graph, id)),
             Owner::Transient => State::forgotten(everything(&graph, id)),
             Owner::Imported | Owner::Exported | Owner::Lent => {
                 let border = borders.iter().find(|b| b.resource == id);
@@ -124,7 +127,7 @@ pub fn compile(graph: Graph, borders: &[Border], place_borders: bool) -> Result<
             let resource = graph.resource(u.resource);
             let border = borders.iter().find(|b| b.resource == u.resource);
             let scope = scope_at(u.access, border.filter(|_| resource.owner == Owner::Imported));
-            let host_owned = resource.owner != Owner::Transient;
+            let host_owned = !matches!(resource.owner, Owner::Transient | Owner::Kept);
             let first = host_owned && !boundary.iter().any(|b| b.resource == u.resource);
             if first {
                 let entry = if resource.owner == Owner::Imported {
@@ -174,6 +177,15 @@ pub fn compile(graph: Graph, borders: &[Border], place_borders: bool) -> Result<
         b.exit = states[b.resource.index()].scope();
     }
     let mut handover = Vec::new();
+    // What is kept is left as its readers find it.
+    for (index, resource) in graph.resources().iter().enumerate() {
+        let (id, state) = (ResourceId(index as u16), &mut states[index]);
+        let written = kept.iter().any(|&p| graph.passes()[p].writes().any(|r| r == id));
+        if resource.owner == Owner::Kept && written {
+            let barrier = state.touch(readers(&graph, id), false);
+            handover.extend(barrier.map(|barrier| ResourceBarrier { resource: id, barrier }));
+        }
+    }
     if place_borders {
         // What no row of this frame touches is handed over too: its next user counts on it.
         for &Border { resource, after, .. } in borders {
@@ -191,7 +203,7 @@ pub fn compile(graph: Graph, borders: &[Border], place_borders: bool) -> Result<
 /// The rows that run, and those that do not; checks that nothing is read before it is written.
 fn select(graph: &Graph) -> Result<(Vec<usize>, Vec<Skipped>), Error> {
     let mut written: Vec<bool> =
-        graph.resources().iter().map(|r| r.owner == Owner::Imported).collect();
+        graph.resources().iter().map(|r| matches!(r.owner, Owner::Imported | Owner::Kept)).collect();
     let mut wanted: Vec<bool> = graph.resources().iter().map(|r| r.owner.is_result()).collect();
     let mut skipped = Vec::new();
     let mut candidates = Vec::new();
@@ -253,6 +265,16 @@ fn everything(graph: &Graph, id: ResourceId) -> Scope {
         stage: all.stage | one.stage,
         access: all.access | one.access,
         ..none
+    })
+}
+
+/// Every stage and access that reads a resource, in the layout of the last of them.
+fn readers(graph: &Graph, id: ResourceId) -> Scope {
+    let reads = graph.uses_of(id).filter(|access| !access.writes()).map(Access::scope);
+    reads.fold(Scope::UNUSED, |all, one| Scope {
+        stage: if all == Scope::UNUSED { one.stage } else { all.stage | one.stage },
+        access: all.access | one.access,
+        layout: one.layout,
     })
 }
 

@@ -18,6 +18,8 @@ impl ResourceId {
 pub enum Owner {
     /// The node's; written before it is read in every frame.
     Transient,
+    /// The node's; what a frame wrote stays until one writes it again.
+    Kept,
     /// The host's; written before the frame's first pass.
     Imported,
     /// The node's; read by the host after the frame's last pass.

@@ -35,10 +35,15 @@
 
 mod passes;
 pub mod push;
+mod samples;
+mod segments;
 mod settings;
 pub mod twin;
 mod view;
 
 pub use passes::{Inputs, declare};
 pub use settings::{Settings, Transition};
-pub use view::{Windows, for_light, samples, turned, windows};
+pub use view::{Line, lines, turned};
+
+/// Of `glsl/linear_light/tree.glsl`.
+const TREE_NODES: u64 = 17;

@@ -2,20 +2,88 @@
 
 use bytemuck::{Pod, Zeroable};
 
-/// `edges.comp`
+/// `sample.vert`
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub struct Edges {
-    /// Tangent of the map's first texel border.
-    pub u_first: f32,
-    /// Of a texel.
-    pub u_step: f32,
+pub struct Sample {
+    /// By column; each mesh pushes its own.
+    pub clip_from_mesh: [f32; 16],
+    /// Of the tree.
+    pub node: i32,
+}
+
+/// `take.comp`
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Take {
     /// 1 over the map's near plane, 1/m.
     pub inv_near: f32,
     /// Its side in texels.
     pub map: i32,
-    /// Where it is.
-    pub slot: i32,
+    /// Where it goes.
+    pub layer: i32,
+}
+
+/// `measure.comp`
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Measure {
+    /// Least and largest u at the line's first end, at its last.
+    pub u_window: [f32; 4],
+    /// Its length, m.
+    pub line: f32,
+    /// The maps' side in texels.
+    pub map: i32,
+    /// From 1 on.
+    pub round: i32,
+}
+
+/// `choose.comp`
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Choose {
+    /// Asked for, as a share of the light.
+    pub error: f32,
+    /// Samples.
+    pub most: i32,
+    /// From 1 on.
+    pub round: i32,
+    /// How many there are.
+    pub rounds: i32,
+}
+
+/// `start.comp`
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Start {
+    /// The line's x along the light's x and y; its middle, m.
+    pub turn: [f32; 4],
+    /// Least and largest u at its first end, at its last.
+    pub u_window: [f32; 4],
+    /// Least and largest v.
+    pub v_window: [f32; 2],
+    /// Its length, m.
+    pub line: f32,
+    /// Its share of the light.
+    pub weight: f32,
+    /// Which sample, and the segment behind it.
+    pub nth: i32,
+    /// Of the image of places.
+    pub row: i32,
+    /// So many samples evenly; 0: as the tree has them.
+    pub even: i32,
+    /// Of the tree.
+    pub rounds: i32,
+}
+
+/// `edges.comp`
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Edges {
+    /// Least and largest u at the line's first end, at its last.
+    pub u_window: [f32; 4],
+    /// The maps' side in texels.
+    pub map: i32,
     /// -1: occluders that end towards -x; 1: towards +x.
     pub side: i32,
 }
@@ -24,20 +92,16 @@ pub struct Edges {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Skins {
-    /// Of the map that is drawn into.
-    pub texels_per_u: f32,
-    /// Texel coordinate of u = 0.
-    pub first: f32,
-    /// From its sample to the one that saw the skins, m along x.
-    pub apart: f32,
+    /// Least and largest u at the line's first end, at its last.
+    pub u_window: [f32; 4],
+    /// Its length, m.
+    pub line: f32,
     /// No receiver is further than 1/w_far.
     pub w_far: f32,
-    /// 1 over the map's near plane, 1/m.
-    pub inv_near: f32,
-    /// Its side in texels.
+    /// The maps' side in texels.
     pub map: i32,
-    /// Where it is.
-    pub slot: i32,
+    /// -1: skins that the last sample saw, as the first one sees them; 1: the other way round.
+    pub side: i32,
     /// 1: by the w of what is behind; 0: by that of what lies beside the edge.
     pub rational: i32,
 }
@@ -46,14 +110,10 @@ pub struct Skins {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Keep {
-    /// 1 over the maps' near plane, 1/m.
-    pub inv_near: f32,
-    /// Their side in texels.
+    /// The maps' side in texels.
     pub map: i32,
-    /// Of the segment's first sample.
-    pub slot: i32,
-    /// Which.
-    pub segment: i32,
+    /// Where the sample's goes.
+    pub layer: i32,
 }
 
 /// `visibility.comp`
@@ -62,12 +122,6 @@ pub struct Keep {
 pub struct Visibility {
     /// The G-buffer's NDC to light space, by column.
     pub light_from_ndc: [f32; 16],
-    /// Least and largest u at the line's first end, at its last.
-    pub u_window: [f32; 4],
-    /// Least and largest v at the light's least y, at its largest.
-    pub v_window: [f32; 4],
-    /// Half the light's width and height, m.
-    pub half_light: [f32; 2],
     /// Of the G-buffer.
     pub extent: [i32; 2],
     /// The depth of a pixel that shows no surface.
@@ -76,6 +130,10 @@ pub struct Visibility {
     pub snap: f32,
     /// The maps' side in texels.
     pub map: i32,
-    /// Samples, lines and what is switched on, see `visibility.comp`.
-    pub flags: i32,
+    /// Samples that a line may have.
+    pub most: i32,
+    /// How many there are.
+    pub lines: i32,
+    /// 1: the mask holds the receivers' roles.
+    pub masked: i32,
 }

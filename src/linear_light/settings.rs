@@ -1,7 +1,7 @@
 //! The knobs.
 
-use crate::Error;
 use crate::graph::STORAGE_BYTES;
+use crate::{Error, RectangleLight};
 
 /// Of the segments' maps.
 const MOST_BYTES: u64 = 1 << 28;
@@ -27,19 +27,23 @@ impl Transition {
 }
 
 /// Every knob of linear lights but the maps' side, which all techniques share.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Samples on a line, 2 to 16; 4 by default.
+    /// The most samples on a line, 2 to 16; 8 by default.
     pub samples: u32,
-    /// Lines that a rectangle is taken for, 1 to 16; 4 by default. A line light is one.
+    /// The most lines that a rectangle is taken for, 1 to 16; 4 by default. A line light is one.
     pub lines: u32,
+    /// The error asked for, as a share of the light, 0 to 1; 0.005 by default. Samples are added where their
+    /// neighbours leave receivers unseen, until what is left costs no more than this. 0: as many samples and lines as
+    /// there may be, evenly.
+    pub error: f32,
     /// How visibility goes from 0 to 1.
     pub transition: Transition,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { samples: 4, lines: 4, transition: Transition::default() }
+        Self { samples: 8, lines: 4, error: 0.005, transition: Transition::default() }
     }
 }
 
@@ -49,20 +53,54 @@ impl Settings {
         match key {
             "samples" => (2..=16).contains(&self.samples),
             "lines" => (1..=16).contains(&self.lines),
+            "error" => (0.0..=1.0).contains(&self.error),
             _ => true,
         }
     }
 
-    /// Segments of all lines.
-    pub fn segments(&self) -> u32 {
-        self.lines * (self.samples - 1)
+    /// Whether samples are evenly spaced, whatever they see.
+    pub fn is_even(&self) -> bool {
+        self.error == 0.0 || self.samples == 2
+    }
+
+    /// How often a line's parts are halved, at most.
+    pub fn rounds(&self) -> u32 {
+        if self.is_even() { 0 } else { (self.samples - 1).next_power_of_two().trailing_zeros() }
+    }
+
+    /// Where samples may be, from 0 at the line's first end to 1 at its last: the nodes of
+    /// `glsl/linear_light/tree.glsl`.
+    pub fn nodes(&self) -> Vec<f64> {
+        if self.is_even() {
+            return (0..self.samples).map(|n| f64::from(n) / f64::from(self.samples - 1)).collect();
+        }
+        let in_round = |round: u32| {
+            let parts = f64::from(1 << round);
+            (0..1 << (round - 1)).map(move |i| f64::from(2 * i + 1) / parts)
+        };
+        [0.0, 1.0].into_iter().chain((1..=self.rounds()).flat_map(in_round)).collect()
+    }
+
+    /// The fewest samples that a line may have.
+    pub(super) fn fewest(&self) -> u32 {
+        if self.is_even() { self.samples } else { 2 }
+    }
+
+    /// The lines of a light.
+    pub fn lines_of(&self, light: &RectangleLight) -> u32 {
+        if light.is_line() { 1 } else { self.lines }
+    }
+
+    /// The layers of maps that are needed at once: even samples take turns.
+    pub(super) fn layers(&self) -> u32 {
+        if self.is_even() { 2 } else { (1 << self.rounds()) + 1 }
     }
 
     /// Checks the knobs that must agree with the maps' side.
     pub(crate) fn check_agreement(&self, map: u32) -> Result<(), Error> {
+        let layers = u64::from(self.lines * self.samples + self.layers());
         let fits = |map: u32| {
-            let maps = 16 * u64::from(map).pow(2) * u64::from(self.segments());
-            maps <= MOST_BYTES && skin_bytes(map) <= STORAGE_BYTES
+            16 * u64::from(map).pow(2) * layers <= MOST_BYTES && skin_bytes(map) <= STORAGE_BYTES
         };
         if fits(map) {
             return Ok(());

@@ -11,9 +11,9 @@ pub fn is_edge<T: Float>([before, near, seen, behind]: [T; 4]) -> bool {
     near - seen > least + least + rounding * near
 }
 
-/// The w where a neighbour `apart` metres towards −x sees a sample's ray at tangent `u`.
-pub fn crossing_of<T: Float>(u_edge: T, u: T, apart: T) -> T {
-    (u - u_edge) / apart
+/// The w where a ray is at `u`: at `ray` for w = 0, and moving by `step` with w.
+pub fn crossing_of<T: Float>(ray: T, u: T, step: T) -> T {
+    (u - ray) / step
 }
 
 /// What a point behind a skin sees of the light between two samples (eq. 1).

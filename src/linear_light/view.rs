@@ -1,19 +1,70 @@
-//! Where the samples are, and what each of them sees.
+//! Which lines a light is, where samples may be on them, and what each of those sees.
 
 use super::Settings;
 use crate::RectangleLight;
-use crate::baseline::many_lights::LightPoint;
 use crate::depth_layers::{Eye, MapView, MeshBounds, fit_occluders};
-use glam::DMat4;
+use glam::{DMat4, DVec3};
 
-/// The windows of all samples. What bounds boxes' tangents from below is a concave function of the sample's place,
-/// and from above a convex one, so between two ends a straight line holds them all.
+/// A line of a light. Its own space is light space turned about the light's axis, its middle the origin.
+///
+/// What bounds boxes' tangents from below is a concave function of a sample's place, and from above a convex one, so
+/// between two ends a straight line holds them all.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Windows {
-    /// Least and largest u at the first end of a line and at its last.
+pub struct Line {
+    /// Its x along the light's x and y: a unit vector.
+    pub along: [f64; 2],
+    /// Its middle, metres from the light's centre.
+    pub middle: [f64; 2],
+    /// Half its length, metres.
+    pub half: f64,
+    /// Its share of the light, 0 to 1.
+    pub weight: f64,
+    /// Least and largest u at its first end and at its last.
     pub u: [[f64; 2]; 2],
-    /// Least and largest v at the light's least y and at its largest.
-    pub v: [[f64; 2]; 2],
+    /// Least and largest v.
+    pub v: [f64; 2],
+    /// Distance of its maps' near plane, metres.
+    pub near: f64,
+}
+
+impl Line {
+    /// What stands where a frame has no line.
+    pub const NONE: Self = Self {
+        along: [1.0, 0.0],
+        middle: [0.0; 2],
+        half: 0.5,
+        weight: 1.0,
+        u: [[-1.0, 1.0]; 2],
+        v: [-1.0, 1.0],
+        near: 1.0,
+    };
+
+    /// Least and largest u at its first end, at its last.
+    pub(super) fn u_window(&self) -> [f32; 4] {
+        let [[a, b], [c, d]] = self.u;
+        [a, b, c, d].map(|x| x as f32)
+    }
+
+    /// Light space to the clip space of the map of the sample at `at`, 0 at the first end and 1 at the last.
+    pub fn clip_from_light(&self, at: f64, side: u32) -> DMat4 {
+        let [c, s] = self.along;
+        let [x, y] = self.middle;
+        let window = |i: usize| self.u[0][i] + at * (self.u[1][i] - self.u[0][i]);
+        let view = MapView {
+            eye: Eye::Behind(0.0),
+            min: [window(0), self.v[0]],
+            max: [window(1), self.v[1]],
+            near: self.near,
+            far: 2.0 * self.near,
+            side,
+        };
+        let turn = DMat4::from_rotation_z(-s.atan2(c));
+        let sample = DVec3::new((2.0 * at - 1.0) * self.half, 0.0, 0.0);
+        view.clip_from_light()
+            * DMat4::from_translation(-sample)
+            * turn
+            * DMat4::from_translation(DVec3::new(-x, -y, 0.0))
+    }
 }
 
 /// A light that is as long along x as its longer side: lines run along x.
@@ -22,56 +73,67 @@ pub fn turned(light: &RectangleLight) -> RectangleLight {
     if b > a { light.quarter_turned() } else { *light }
 }
 
-/// A line has no width to be cut across.
-pub fn for_light(settings: &Settings, light: &RectangleLight) -> Settings {
-    let lines = if light.is_line() { 1 } else { settings.lines };
-    Settings { lines, ..*settings }
-}
-
-/// What the samples see; none where no occluder is in front of the light. `w_far` is that of the furthest receiver.
-pub fn windows(
+/// The lines of a light and what their samples see; empty where no occluder is in front of it. `w_far` is that of the
+/// furthest receiver.
+pub fn lines(
     light: &RectangleLight,
     occluders: &[(MeshBounds, DMat4)],
     settings: &Settings,
     side: u32,
     w_far: f64,
-) -> Option<(Windows, MapView)> {
+) -> Vec<Line> {
     let [a, b] = light.half_extents();
-    let from = |x, y| fit_occluders(&light.moved([x, y]), occluders, None, side);
-    let (first, last) = (from(-a, 0.0)?, from(a, 0.0)?);
-    let (low, high) = (from(0.0, -b)?, from(0.0, b)?);
-    // A skin is seen as far from its edge as its samples lie apart (section 3.2).
-    let apart = 2.0 * a / f64::from(settings.samples - 1);
-    let more = apart * (1.0 / first.near - w_far).max(0.0);
-    let u = [first, last].map(|v| {
-        let texel = (v.max[0] - v.min[0] + 2.0 * more) / f64::from(side);
-        [v.min[0] - more - texel, v.max[0] + more + texel]
-    });
-    let v = [low, high].map(|v| [v.min[1], v.max[1]]);
-    Some((Windows { u, v }, first))
+    let count = settings.lines_of(light);
+    stacked(light, occluders, settings, side, w_far, [a, b], count).unwrap_or_default()
 }
 
-/// The samples of all lines, line by line, with their maps.
-pub fn samples(
+/// Lines side by side along x.
+fn stacked(
     light: &RectangleLight,
-    windows: &Windows,
+    occluders: &[(MeshBounds, DMat4)],
     settings: &Settings,
-    nominal: &MapView,
-) -> Vec<LightPoint> {
-    let half = light.half_extents();
-    let mix = |ends: &[[f64; 2]; 2], t: f64, i: usize| ends[0][i] + t * (ends[1][i] - ends[0][i]);
-    let lines = settings.lines;
-    (0..lines)
-        .flat_map(|line| (0..settings.samples).map(move |nth| (line, nth)))
-        .map(|(line, nth)| {
-            let along = f64::from(nth) / f64::from(settings.samples - 1);
-            let across = (f64::from(line) + 0.5) / f64::from(lines);
-            let [min, max] =
-                [0, 1].map(|i| [mix(&windows.u, along, i), mix(&windows.v, across, i)]);
-            LightPoint {
-                at: [(2.0 * along - 1.0) * half[0], (2.0 * across - 1.0) * half[1]],
-                view: MapView { eye: Eye::Behind(0.0), min, max, ..*nominal },
-            }
-        })
-        .collect()
+    side: u32,
+    w_far: f64,
+    [a, b]: [f64; 2],
+    count: u32,
+) -> Option<Vec<Line>> {
+    let from = |x, y| fit_occluders(&light.moved([x, y]), occluders, None, side);
+    let ends = [from(-a, 0.0)?, from(a, 0.0)?];
+    let (low, high) = (from(0.0, -b)?, from(0.0, b)?);
+    let u = widened(&ends, a, settings, side, w_far);
+    let mix = |t: f64, [a, b]: [f64; 2]| a + t * (b - a);
+    let of = |line: u32| {
+        let across = (f64::from(line) + 0.5) / f64::from(count);
+        Line {
+            along: [1.0, 0.0],
+            middle: [0.0, (2.0 * across - 1.0) * b],
+            half: a,
+            weight: 1.0 / f64::from(count),
+            u,
+            v: [
+                mix(across, [low.min[1], high.min[1]]),
+                mix(across, [low.max[1], high.max[1]]),
+            ],
+            near: ends[0].near,
+        }
+    };
+    Some((0..count).map(of).collect())
+}
+
+/// The tangents of a line's ends, and as far beside them as skins are seen: samples see each other's as far from
+/// their edges as they lie apart (section 3.2).
+fn widened(
+    ends: &[MapView; 2],
+    half: f64,
+    settings: &Settings,
+    side: u32,
+    w_far: f64,
+) -> [[f64; 2]; 2] {
+    let apart = 2.0 * half / f64::from(settings.fewest() - 1);
+    let more = apart * (1.0 / ends[0].near - w_far).max(0.0);
+    [0, 1].map(|i| {
+        let (min, max) = (ends[i].min[0], ends[i].max[0]);
+        let texel = (max - min + 2.0 * more) / f64::from(side);
+        [min - more - texel, max + more + texel]
+    })
 }

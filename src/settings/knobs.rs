@@ -110,8 +110,8 @@ pub const KNOBS: &[Knob] = &[
         techniques: &[Technique::LinearLight],
         unit: "points",
         range: "2 to 16",
-        default: "4",
-        about: "points on a line, each with maps of its own, between which skins are drawn; any whole number",
+        default: "8",
+        about: "most points on a line, each with maps of its own, between which skins are drawn; any whole number",
     },
     Knob {
         key: "lines",
@@ -119,7 +119,16 @@ pub const KNOBS: &[Knob] = &[
         unit: "lines",
         range: "1 to 16",
         default: "4",
-        about: "lines side by side that a rectangle is taken for; a line light is one. Any whole number",
+        about: "most lines side by side that a rectangle is taken for; a line light is one. Any whole number",
+    },
+    Knob {
+        key: "error",
+        techniques: &[Technique::LinearLight],
+        unit: "visible fraction",
+        range: "0 to 1",
+        default: "0.005",
+        about: "mean error asked for: points are added where others leave receivers unseen, and lines to a \
+                rectangle, until what is missed costs no more; 0 uses as many as there may be, evenly",
     },
     Knob {
         key: "transition",

@@ -136,6 +136,7 @@ impl Settings {
             }
             "samples" => self.baseline.samples = number(key, value)?,
             "lines" => self.linear_light.lines = number(key, value)?,
+            "error" => self.linear_light.error = number(key, value)?,
             "transition" => self.linear_light.transition = choose(key, value, Transition::ALL)?,
             "rays" => r.rays = number(key, value)?,
             "layers" => r.layers = choose(key, value, Layers::ALL)?,
@@ -180,6 +181,7 @@ impl Settings {
             }
             "samples" => self.baseline.samples.to_string(),
             "lines" => self.linear_light.lines.to_string(),
+            "error" => self.linear_light.error.to_string(),
             "transition" => name_of(Transition::ALL, self.linear_light.transition),
             "seed" if self.technique == Technique::RayMarch => r.seed.to_string(),
             "seed" => self.baseline.seed.to_string(),

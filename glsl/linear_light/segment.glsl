@@ -1,0 +1,23 @@
+// Two neighbouring samples of a line, the segment between them, and the maps' windows.
+
+#ifndef LINEAR_LIGHT_SEGMENT_GLSL
+#define LINEAR_LIGHT_SEGMENT_GLSL
+
+struct Segment {
+    vec2 along; // of its two samples, 0 to 1
+    int first;  // the first one's layer; -1 where there is no such sample
+    int last;   // the last one's; -1 where there is no such segment
+    float before; // the share of the line that is the segment before, 0 where there is none
+    float pad_0;
+    float pad_1;
+    float pad_2;
+};
+
+// Least and largest tangent of the map of a sample, from those at the line's ends: what bounds boxes' tangents from
+// below is a concave function of the sample's place, and from above a convex one, so a straight line holds them all.
+vec2 window_at(vec4 u_window, float along)
+{
+    return mix(u_window.xy, u_window.zw, along);
+}
+
+#endif

@@ -1,0 +1,167 @@
+//! The rows that make channels of a line's samples, segment by segment.
+
+use super::passes::{Inputs, Made};
+use super::push;
+use super::settings::{Settings, Transition};
+use super::view::Line;
+use crate::graph::{Access, Draw, Graph, Pass, Push, ResourceId, Target, Use, Work};
+use crate::shaders;
+use crate::visibility::grid;
+use ash::vk;
+
+/// What one sample of a segment makes of the other's occluders.
+pub(super) struct Skins {
+    pub edges: &'static str,
+    pub draw: &'static str,
+    /// Which ends of occluders are seen past: -1, those towards −x.
+    pub side: i32,
+    pub skins: ResourceId,
+    pub arguments: ResourceId,
+    pub channel: ResourceId,
+}
+
+/// Adds the rows of a sample and of the segment behind it.
+pub(super) fn declare(
+    graph: &mut Graph,
+    made: &Made,
+    settings: &Settings,
+    at: (usize, u32),
+    line: &Line,
+    inputs: &Inputs,
+) {
+    start(graph, made, settings, at, line, inputs);
+    // The first one's neighbour sees what ends towards it. Only then is what the segment before drew into the first
+    // one's other channel done with.
+    skins(graph, made, &made.left, settings, line, inputs);
+    keep(graph, made, settings, at, inputs);
+    skins(graph, made, &made.right, settings, line, inputs);
+}
+
+/// Adds the rows of a line's last sample.
+pub(super) fn finish(
+    graph: &mut Graph,
+    made: &Made,
+    settings: &Settings,
+    at: (usize, u32),
+    line: &Line,
+    inputs: &Inputs,
+) {
+    start(graph, made, settings, at, line, inputs);
+    keep(graph, made, settings, at, inputs);
+}
+
+fn start(
+    graph: &mut Graph,
+    made: &Made,
+    settings: &Settings,
+    (row, nth): (usize, u32),
+    line: &Line,
+    inputs: &Inputs,
+) {
+    let [c, s] = line.along;
+    let [x, y] = line.middle;
+    graph.push(Pass::compute(
+        "linear_light.start",
+        shaders::SKIN_START,
+        [1, 1, 1],
+        Push::new(&push::Start {
+            turn: [c, s, x, y].map(|x| x as f32),
+            u_window: line.u_window(),
+            v_window: line.v.map(|v| v as f32),
+            line: (2.0 * line.half) as f32,
+            weight: line.weight as f32,
+            nth: nth as i32,
+            row: row as i32,
+            even: if settings.is_even() { settings.samples as i32 } else { 0 },
+            rounds: settings.rounds() as i32,
+        }),
+        vec![
+            Use::bound(0, made.layers.tree, Access::BufferReadCompute),
+            Use::bound(1, made.here, Access::BufferWriteCompute),
+            Use::bound(2, made.left.arguments, Access::BufferWriteCompute),
+            Use::bound(3, made.right.arguments, Access::BufferWriteCompute),
+            Use::bound(4, made.places, Access::ImageWrite),
+        ],
+        inputs.make,
+    ));
+}
+
+/// Adds the rows that find where occluders end as one sample sees them, and draw that into the other's channel.
+fn skins(
+    graph: &mut Graph,
+    made: &Made,
+    skins: &Skins,
+    settings: &Settings,
+    line: &Line,
+    inputs: &Inputs,
+) {
+    let map = inputs.side as i32;
+    graph.push(Pass::compute(
+        skins.edges,
+        shaders::EDGES,
+        grid([inputs.side; 2]),
+        Push::new(&push::Edges { u_window: line.u_window(), map, side: skins.side }),
+        vec![
+            Use::bound(0, made.layers.seen, Access::SampledCompute),
+            Use::bound(1, made.here, Access::BufferReadCompute),
+            Use::bound(2, skins.skins, Access::BufferWriteCompute),
+            Use::bound(3, skins.arguments, Access::BufferUpdate),
+        ],
+        inputs.make,
+    ));
+    graph.push(Pass {
+        name: skins.draw,
+        uses: vec![
+            Use::fixed(skins.channel, Access::DepthTarget),
+            Use::fixed(skins.arguments, Access::Indirect),
+            Use::bound(0, skins.skins, Access::BufferReadVertex),
+            Use::bound(1, made.here, Access::BufferReadVertex),
+            Use::bound(2, made.layers.seen, Access::SampledFragment),
+        ],
+        push: Push::new(&push::Skins {
+            u_window: line.u_window(),
+            line: (2.0 * line.half) as f32,
+            w_far: inputs.w_far as f32,
+            map,
+            side: skins.side,
+            rational: i32::from(settings.transition == Transition::Rational),
+        }),
+        work: Work::Raster {
+            vertex: shaders::SKINS_VERT,
+            fragment: Some(shaders::SKINS_FRAG),
+            cull: vk::CullModeFlags::NONE,
+            target: Target::Depth { clear: 1.0, compare: vk::CompareOp::LESS },
+            draw: Draw::Indirect { arguments: skins.arguments },
+        },
+        need: inputs.make.clone(),
+    });
+}
+
+fn keep(
+    graph: &mut Graph,
+    made: &Made,
+    settings: &Settings,
+    (row, nth): (usize, u32),
+    inputs: &Inputs,
+) {
+    let layer = row as u32 * settings.samples + nth;
+    // Nothing was drawn for a segment before the first sample.
+    let (name, before) = match nth {
+        0 => ("linear_light.keep_first", made.left.channel),
+        _ => ("linear_light.keep", made.right.channel),
+    };
+    graph.push(Pass::compute(
+        name,
+        shaders::KEEP,
+        grid([inputs.side; 2]),
+        Push::new(&push::Keep { map: inputs.side as i32, layer: layer as i32 }),
+        vec![
+            Use::bound(0, made.layers.seen, Access::SampledCompute),
+            Use::bound(1, before, Access::SampledCompute),
+            Use::bound(2, made.left.channel, Access::SampledCompute),
+            Use::bound(3, made.here, Access::BufferReadCompute),
+            Use::bound(4, made.maps, Access::ImageWrite),
+        ],
+        inputs.make,
+    ));
+}
