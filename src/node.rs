@@ -108,7 +108,16 @@ impl ShadowNode {
         let objects = NodeObjects::new(&host, allocator, &graph, &description)?;
         let kinds = graph.kinds().map(|p| p.name).collect();
         let kept = Mutex::new(None);
-        Ok(Self { host, description, limits, objects, visibility, kinds, stamp: next_stamp(), kept })
+        Ok(Self {
+            host,
+            description,
+            limits,
+            objects,
+            visibility,
+            kinds,
+            stamp: next_stamp(),
+            kept,
+        })
     }
 
     fn kept(&self) -> MutexGuard<'_, Option<u64>> {

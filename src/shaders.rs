@@ -138,17 +138,19 @@ pub const VISIBILITY_LEVELS: Module = module!("occlusion_textures/visibility_lev
 /// The same by what slices have in common.
 pub const VISIBILITY_LEVELS_CORRELATED: Module =
     module!("occlusion_textures/visibility_levels_correlated.comp");
-/// A line's ends are its samples.
-pub const LINE_BEGIN: Module = module!("linear_light/begin.comp");
-/// Positions to clip space where a sample is looked from.
+/// Samples evenly along a line.
+pub const LINE_SPREAD: Module = module!("linear_light/spread.comp");
+/// Positions as a line's middle sees them.
+pub const MIDDLE_VERT: Module = module!("linear_light/middle.vert");
+/// Positions as a sample sees them.
 pub const SAMPLE_VERT: Module = module!("linear_light/sample.vert");
-/// What a sample sees.
+/// What it sees, into a layer.
 pub const LINE_TAKE: Module = module!("linear_light/take.comp");
-/// What the samples between others see alone.
-pub const LINE_MEASURE: Module = module!("linear_light/measure.comp");
-/// Which of them stay.
-pub const LINE_CHOOSE: Module = module!("linear_light/choose.comp");
-/// A sample and the segment behind it.
+/// What receivers see of a line.
+pub const LINE_MASK: Module = module!("linear_light/mask.comp");
+/// Samples where light is lost.
+pub const LINE_PLACE: Module = module!("linear_light/place.comp");
+/// A sample and the segment before it.
 pub const SKIN_START: Module = module!("linear_light/start.comp");
 /// Where occluders end, to skins.
 pub const EDGES: Module = module!("linear_light/edges.comp");
@@ -232,11 +234,12 @@ pub const ALL: &[Module] = &[
     MEANS_NEXT_LEVEL,
     VISIBILITY_LEVELS,
     VISIBILITY_LEVELS_CORRELATED,
-    LINE_BEGIN,
+    LINE_SPREAD,
+    MIDDLE_VERT,
     SAMPLE_VERT,
     LINE_TAKE,
-    LINE_MEASURE,
-    LINE_CHOOSE,
+    LINE_MASK,
+    LINE_PLACE,
     SKIN_START,
     EDGES,
     SKINS_VERT,

@@ -66,7 +66,8 @@ fn errors_are_what_they_were_measured_to_be() {
         let mut truth = None;
         for (samples, measured) in TABLE {
             for (which, measured) in ["linear", "rational"].iter().zip(measured) {
-                let words = format!("technique=linear-light samples={samples} error=0 transition={which}");
+                let words =
+                    format!("technique=linear-light samples={samples} error=0 transition={which}");
                 let mut stage = setup.stage(&device, &words);
                 let image = setup.visibility(&mut stage);
                 let (truth, _) = truth.get_or_insert_with(|| setup.traced(&stage, 16));

@@ -2,7 +2,7 @@
 
 use antumbra::gpu::headless::{FrameTimes, HeadlessDevice, HeadlessOptions, Stage, View};
 use antumbra::scene::{Instance, Role, Scene, from_gltf, generate};
-use antumbra::truth::{ErrorSummary, Receiver, Sampling, Tracer};
+use antumbra::truth::{ErrorSummary, ExactLine, Receiver, Sampling, Tracer};
 use antumbra::{FramePlan, RectangleLight, Settings, Technique};
 use glam::DVec3;
 use std::path::Path;
@@ -49,9 +49,16 @@ pub fn make_tables(studies: &[Study], full: Options, quick: Options) {
 }
 
 /// A model under a light of a width in metres, or one of the generated scenes.
+#[allow(dead_code, reason = "lines have lights of their own")]
 pub fn scene(name: &str, side: f64) -> Scene {
-    let light = generate::square_light(side).unwrap();
+    scene_under(name, generate::square_light(side).unwrap())
+}
+
+/// The same under any light.
+pub fn scene_under(name: &str, light: RectangleLight) -> Scene {
     match name {
+        "card" => generate::card(light),
+        "spheres" => generate::spheres(light),
         "stacked" => generate::stacked_cards(light),
         "box" => generate::tall_box(light),
         "slats" => generate::slats(light, 24),
@@ -91,6 +98,21 @@ impl Ready {
         Self { stage, plan, light }
     }
 
+    /// From now on the maps of the frame that was run last are kept, where the technique keeps them.
+    pub fn keep(&mut self) {
+        let planned = |stage: &mut Stage, light: &RectangleLight| {
+            stage.plan_with(light, |frame| frame.revision = Some(1)).unwrap()
+        };
+        let first = planned(&mut self.stage, &self.light);
+        self.stage.run(&first).unwrap();
+        self.plan = planned(&mut self.stage, &self.light);
+    }
+
+    /// One of the node's own images behind the frame that was run last.
+    pub fn inspect<T: bytemuck::AnyBitPattern>(&mut self, name: &str) -> (Vec<T>, [u32; 2]) {
+        self.stage.inspect(&self.plan, name).unwrap()
+    }
+
     pub fn run(&mut self) -> FrameTimes {
         self.stage.run(&self.plan).unwrap()
     }
@@ -104,7 +126,7 @@ impl Ready {
         100.0 * ErrorSummary::between(truth, &self.visibility(), None).unwrap().mean_abs_error
     }
 
-    /// Of 256 rays a pixel.
+    /// Of 256 rays a pixel; exact under a line.
     pub fn truth(&self, scene: &Scene) -> Vec<f32> {
         let wide = |a: &[f32; 4]| DVec3::new(a[0].into(), a[1].into(), a[2].into());
         let gbuffer = self.stage.gbuffer();
@@ -114,6 +136,11 @@ impl Ready {
             .zip(&normals)
             .map(|(p, n)| Receiver { position: wide(p), normal: wide(n) })
             .collect();
+        if self.light.is_line() {
+            let exact = ExactLine::new(scene).unwrap();
+            let visible = exact.visible_fractions(&self.light, &receivers).unwrap();
+            return visible.iter().map(|&v| v as f32).collect();
+        }
         let sampling = Sampling::new(256, 1).unwrap();
         let tracer = Tracer::new(scene).unwrap();
         tracer.visible_fractions(&self.light, &receivers, &sampling).unwrap().visible

@@ -12,7 +12,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0) uniform texture2DArray seen;
 layout(set = 0, binding = 1, std430) readonly buffer Here { Segment here; };
 layout(set = 0, binding = 2, std430) buffer Skins { vec4 skins[]; };
-layout(set = 0, binding = 3, std430) buffer Draw { uint draw[4]; };
+layout(set = 0, binding = 3, std430) buffer Draws { uint draws[8]; }; // left, right
 
 layout(push_constant) uniform Push {
     vec4 u_window; // least and largest u at the line's first end, at its last
@@ -34,7 +34,7 @@ void main()
 {
     ivec2 p = ivec2(gl_GlobalInvocationID.xy);
     int layer = push.side > 0 ? here.first : here.last;
-    if (p.x >= push.map || p.y >= push.map || here.last < 0) {
+    if (p.x >= push.map || p.y >= push.map) {
         return;
     }
     vec2 near = at(layer, p.x, p.y);
@@ -49,7 +49,7 @@ void main()
         vec2 window = window_at(push.u_window, push.side > 0 ? here.along.x : here.along.y);
         float border = float(p.x) + (push.side > 0 ? 1.0 : 0.0);
         float u = mix(window.x, window.y, border / float(push.map));
-        uint vertex = atomicAdd(draw[0], 6u);
+        uint vertex = atomicAdd(draws[push.side > 0 ? 4 : 0], 6u);
         skins[vertex / 6u] = vec4(u, near.x, w_seen, float(p.y));
     }
 }

@@ -31,8 +31,8 @@ vec2 told_at(ivec2 p)
     if (here.before > 0.0) {
         part += here.before * channel(texelFetch(right_channel, p, 0).x);
     }
-    if (here.last >= 0) {
-        part += (here.along.y - here.along.x) * channel(texelFetch(left_channel, p, 0).x);
+    if (here.behind > 0.0) {
+        part += here.behind * channel(texelFetch(left_channel, p, 0).x);
     }
     return vec2(texelFetch(seen, ivec3(p, here.first), 0).x, part);
 }
@@ -40,7 +40,7 @@ vec2 told_at(ivec2 p)
 void main()
 {
     ivec2 p = ivec2(gl_GlobalInvocationID.xy);
-    if (p.x >= push.map || p.y >= push.map || here.first < 0) {
+    if (p.x >= push.map || p.y >= push.map) {
         return;
     }
     vec2 next = told_at(ivec2(min(p.x + 1, push.map - 1), p.y));

@@ -1,23 +1,19 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "linear_light/tree.glsl"
+#include "linear_light/places.glsl"
+#include "linear_light/samples.glsl"
 #include "linear_light/segment.glsl"
 
-// The nth sample of a line and the segment behind it: what the passes that follow and the pixels must know of them.
-// No skins yet: the arguments of two draws.
+// The nth sample of a line and the segment before it: what the passes that follow and the pixels must know of them,
+// and which of those passes there are. No skins yet: the arguments of two draws.
 
 layout(local_size_x = 1) in;
 
-layout(set = 0, binding = 0, std430) readonly buffer Tree {
-    float left;
-    Node nodes[NODES];
-};
+layout(set = 0, binding = 0, std430) readonly buffer Of { Samples of; };
 layout(set = 0, binding = 1, std430) buffer Here { Segment here; };
-layout(set = 0, binding = 2, std430) buffer Left { uint left_draw[4]; };
-layout(set = 0, binding = 3, std430) buffer Right { uint right_draw[4]; };
+layout(set = 0, binding = 2, std430) buffer Draws { uint draws[8]; };    // left, right
+layout(set = 0, binding = 3, std430) buffer Groups { uint groups[12]; }; // of the sample, segment, sample before
 layout(set = 0, binding = 4, rgba32f) writeonly uniform image2D places;
-
-#include "linear_light/places.glsl"
 
 layout(push_constant) uniform Push {
     vec4 turn;     // the line's x along the light's x and y; its middle, m
@@ -27,68 +23,44 @@ layout(push_constant) uniform Push {
     float weight;  // its share of the light
     int nth;       // sample
     int row;       // of places
-    int even;      // so many samples evenly; 0: as the tree has them
-    int rounds;
+    int groups;    // along a side of a map
 } push;
-
-// The layer of the nth sample, its place and how many there are.
-int find(int nth, out float along, out int count)
-{
-    along = 0.0;
-    if (push.even > 0) {
-        count = push.even;
-        along = float(nth) / float(count - 1);
-        // Samples that lie side by side take turns in two layers.
-        return nth >= 0 && nth < count ? nth & 1 : -1;
-    }
-    int found = -1;
-    count = 0;
-    for (int i = 0; i <= 1 << push.rounds; ++i) {
-        int node = node_at(i, push.rounds);
-        if (nodes[node].taken != 0u) {
-            if (count == nth) {
-                found = node;
-                along = along_of(node);
-            }
-            count += 1;
-        }
-    }
-    return found;
-}
 
 void main()
 {
-    left_draw[0] = 0u;
-    left_draw[1] = 1u;
-    left_draw[2] = 0u;
-    left_draw[3] = 0u;
-    right_draw[0] = 0u;
-    right_draw[1] = 1u;
-    right_draw[2] = 0u;
-    right_draw[3] = 0u;
-    int count;
-    float at;
-    float next;
-    float previous;
-    int first = find(push.nth, at, count);
-    int last = find(push.nth + 1, next, count);
-    int before = find(push.nth - 1, previous, count);
+    int nth = push.nth;
+    bool here_is = nth < of.count;
+    bool before_is = nth > 0 && nth - 1 < of.count;
+    
+    for (int i = 0; i < 4; ++i) {
+        draws[i] = i == 1 ? 1u : 0u;
+        draws[4 + i] = i == 1 ? 1u : 0u;
+        uint many = i < 2 ? uint(push.groups) : 1u;
+        groups[i] = here_is ? many : 0u;
+        groups[4 + i] = here_is && before_is ? many : 0u;
+        groups[8 + i] = before_is ? many : 0u;
+    }
+    float at = here_is ? of.at[nth] : 0.0;
+    float previous = before_is ? of.at[nth - 1] : 0.0;
+    // Samples that lie side by side take turns in two layers.
     Segment s;
-    s.along = vec2(at, next);
-    s.first = first;
-    s.last = last;
-    s.before = before < 0 || first < 0 ? 0.0 : at - previous;
+    s.along = vec2(previous, at);
+    s.first = (nth - 1) & 1;
+    s.last = nth & 1;
+    s.before = before_is && nth > 1 ? previous - of.at[nth - 2] : 0.0;
+    s.behind = before_is && here_is ? at - previous : 0.0;
     s.pad_0 = 0.0;
     s.pad_1 = 0.0;
-    s.pad_2 = 0.0;
     here = s;
-    if (push.nth == 0) {
+    if (nth == 0) {
         imageStore(places, ivec2(0, push.row), push.turn);
         imageStore(places, ivec2(1, push.row), push.u_window);
         imageStore(places, ivec2(2, push.row), vec4(push.v_window, push.line, push.weight));
-        imageStore(places, ivec2(3, push.row), vec4(float(count), 0.0, 0.0, 0.0));
+        imageStore(places, ivec2(3, push.row), vec4(float(of.count), 0.0, 0.0, 0.0));
     }
-    // Where nothing blocks, both ends of a segment see half of it.
-    float free = 0.5 * (s.before + (last < 0 ? 0.0 : next - at));
-    imageStore(places, ivec2(SAMPLES_AT + push.nth, push.row), vec4(at, free, 0.0, 0.0));
+    if (before_is) {
+        // Where nothing blocks, both ends of a segment see half of it.
+        float free = 0.5 * (s.before + s.behind);
+        imageStore(places, ivec2(SAMPLES_AT + nth - 1, push.row), vec4(previous, free, 0.0, 0.0));
+    }
 }

@@ -12,8 +12,8 @@ pub use accesses::{BufferAccess, HostAccess, ImageBarrier, NodeUse};
 pub use host::{
     BorderBarriers, Geometry, HostImage, MeshBuffers, MeshInstance, OccluderMaps, Visibility,
 };
-pub(crate) use plan::{Kept, Stamp, plan_with};
 pub use plan::{Faces, FramePlan, MeshDraw, plan};
+pub(crate) use plan::{Kept, Stamp, plan_with};
 pub(crate) use rows::{FrameGraph, nominal};
 pub use rows::{Limits, full_graph};
 

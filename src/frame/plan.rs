@@ -241,8 +241,8 @@ pub(crate) fn plan_with(
 
     let to_light = light.light_from_world();
     let wanted = wanted(&description.settings);
-    let clips = views.occluder_clips(&description.settings);
-    let occluder_clips: Vec<_> = clips.into_iter().map(|clip| clip * to_light).collect();
+    let occluder_clips: Vec<_> =
+        views.occluder_clips().into_iter().map(|clip| clip * to_light).collect();
     let receiver_clips = match (wanted.receiver_map, &views.receivers) {
         (Some(_), Some(view)) => vec![view.clip_from_light() * to_light],
         _ if description.settings.technique == Technique::LinearLight => occluder_clips.clone(),

@@ -57,14 +57,9 @@ pub(super) struct Views {
 
 impl Views {
     /// Light space to the clip space of each view of the occluders.
-    pub fn occluder_clips(&self, settings: &Settings) -> Vec<DMat4> {
+    pub fn occluder_clips(&self) -> Vec<DMat4> {
         if !self.lines.is_empty() {
-            let nodes = settings.linear_light.nodes();
-            let of = |line: &linear_light::Line| {
-                let line = *line;
-                nodes.iter().map(move |&at| line.clip_from_light(at, settings.map))
-            };
-            self.lines.iter().flat_map(of).collect()
+            self.lines.iter().map(linear_light::Line::line_from_light).collect()
         } else if !self.points.is_empty() {
             self.points.iter().map(LightPoint::clip_from_light).collect()
         } else {
@@ -229,7 +224,8 @@ pub(super) fn build(
             occlusion_textures::declare(&mut graph, layers.as_ref(), visibility, settings, &inputs);
         }
         Technique::LinearLight => {
-            let kept = |revision| Need::No(format!("the maps of revision {revision} are kept").into());
+            let kept =
+                |revision| Need::No(format!("the maps of revision {revision} are kept").into());
             let make = match (need, views.kept) {
                 (Need::Yes(_), Some(revision)) => &kept(revision),
                 _ => need,

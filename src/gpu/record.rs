@@ -96,13 +96,13 @@ impl Recorder<'_> {
                 // that its accesses need were recorded before it.
                 unsafe { device.cmd_dispatch(cmd, x, y, z) };
             }
-            Work::Indirect { arguments, .. } => {
+            Work::Indirect { arguments, offset, .. } => {
                 let Object::Buffer(buffer) = objects.get(arguments) else { return };
                 // SAFETY: as for the other grids; the buffer holds one VkDispatchIndirectCommand,
                 // which an earlier row wrote.
                 unsafe { device.cmd_bind_pipeline(cmd, point, row.pipelines[0]) };
                 // SAFETY: as above.
-                unsafe { device.cmd_dispatch_indirect(cmd, buffer, 0) };
+                unsafe { device.cmd_dispatch_indirect(cmd, buffer, offset) };
             }
             Work::Raster { target, draw, .. } => {
                 self.begin_render_pass(row, target);
@@ -121,7 +121,9 @@ impl Recorder<'_> {
                             }
                         }
                     }
-                    Draw::Indirect { arguments } => self.indirect(row, arguments),
+                    Draw::Indirect { arguments, offset } => {
+                        self.indirect(row, arguments, offset);
+                    }
                 }
                 // SAFETY: the render pass was begun above.
                 unsafe { device.cmd_end_render_pass(cmd) };
@@ -174,14 +176,14 @@ impl Recorder<'_> {
         }
     }
 
-    fn indirect(&self, row: &RowPipeline, arguments: ResourceId) {
+    fn indirect(&self, row: &RowPipeline, arguments: ResourceId, offset: u64) {
         let Object::Buffer(buffer) = self.objects.get(arguments) else { return };
         let (device, cmd) = (&self.host.device, self.cmd);
         let point = vk::PipelineBindPoint::GRAPHICS;
         // SAFETY: inside the row's render pass, with a pipeline made for it.
         unsafe { device.cmd_bind_pipeline(cmd, point, row.pipelines[0]) };
         // SAFETY: the buffer holds one VkDrawIndirectCommand, which an earlier row wrote.
-        unsafe { device.cmd_draw_indirect(cmd, buffer, 0, 1, 0) };
+        unsafe { device.cmd_draw_indirect(cmd, buffer, offset, 1, 0) };
     }
 
     fn barriers(&self, frame: &FramePlan, barriers: &[ResourceBarrier]) {

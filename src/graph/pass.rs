@@ -88,8 +88,10 @@ pub enum Draw {
     },
     /// Vertices without a vertex buffer, their count read from a `VkDrawIndirectCommand`.
     Indirect {
-        /// The buffer that holds the command, at offset 0.
+        /// The buffer that holds the command.
         arguments: ResourceId,
+        /// Where in it, in bytes: a multiple of 4.
+        offset: u64,
     },
 }
 
@@ -153,8 +155,10 @@ pub enum Work {
     Indirect {
         /// The compute shader.
         shader: Module,
-        /// The buffer that holds a `VkDispatchIndirectCommand`, at offset 0.
+        /// The buffer that holds a `VkDispatchIndirectCommand`.
         arguments: ResourceId,
+        /// Where in it, in bytes: a multiple of 4.
+        offset: u64,
     },
     /// A draw into one attachment.
     Raster {

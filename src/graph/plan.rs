@@ -202,8 +202,11 @@ pub fn compile(graph: Graph, borders: &[Border], place_borders: bool) -> Result<
 
 /// The rows that run, and those that do not; checks that nothing is read before it is written.
 fn select(graph: &Graph) -> Result<(Vec<usize>, Vec<Skipped>), Error> {
-    let mut written: Vec<bool> =
-        graph.resources().iter().map(|r| matches!(r.owner, Owner::Imported | Owner::Kept)).collect();
+    let mut written: Vec<bool> = graph
+        .resources()
+        .iter()
+        .map(|r| matches!(r.owner, Owner::Imported | Owner::Kept))
+        .collect();
     let mut wanted: Vec<bool> = graph.resources().iter().map(|r| r.owner.is_result()).collect();
     let mut skipped = Vec::new();
     let mut candidates = Vec::new();

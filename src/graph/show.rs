@@ -103,7 +103,7 @@ fn work_of(graph: &Graph, work: &Work) -> String {
         Work::Raster { draw: super::Draw::Layer { layer, .. }, .. } => {
             format!("draw {:?}", layer.meshes()).to_lowercase()
         }
-        Work::Raster { draw: super::Draw::Indirect { arguments }, .. } => {
+        Work::Raster { draw: super::Draw::Indirect { arguments, .. }, .. } => {
             format!("draw by {}", graph.resource(*arguments).name)
         }
     }

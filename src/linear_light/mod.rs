@@ -44,6 +44,3 @@ mod view;
 pub use passes::{Inputs, declare};
 pub use settings::{Settings, Transition};
 pub use view::{Line, lines, turned};
-
-/// Of `glsl/linear_light/tree.glsl`.
-const TREE_NODES: u64 = 17;

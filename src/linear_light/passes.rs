@@ -1,10 +1,10 @@
 //! The rows: samples' maps → which of them count → skins → channels, line by line; pixels → visible fractions.
 
+use super::push;
 use super::samples::{self, Layers};
 use super::segments::{self, Skins};
 use super::settings::{Settings, skin_bytes};
 use super::view::Line;
-use super::{TREE_NODES, push};
 use crate::depth_layers;
 use crate::graph::{Access, Graph, Need, Owner, Pass, Push, ResourceId, Use};
 use crate::shaders;
@@ -40,6 +40,10 @@ pub(super) struct Made {
     pub right: Skins,
     /// What of the segment that is being made its rows must know.
     pub here: ResourceId,
+    /// How large the grids of its rows are.
+    pub groups: ResourceId,
+    /// The arguments of the draws of its skins.
+    pub draws: ResourceId,
     /// A layer a sample, line by line: what pixels ask for.
     pub maps: ResourceId,
     /// A row a line.
@@ -56,8 +60,9 @@ pub fn declare(graph: &mut Graph, visibility: ResourceId, settings: &Settings, i
     let layers = Layers {
         occluders: depth(graph, "linear_light.occluders"),
         receivers: depth(graph, "linear_light.receivers"),
-        seen: graph.image_array("linear_light.seen", format, [side; 2], settings.layers()),
-        tree: graph.buffer("linear_light.tree", 16 + 16 * TREE_NODES),
+        of: graph.buffer("linear_light.samples", 4 + 4 * 16),
+        seen: graph.image_array("linear_light.seen", format, [side; 2], 2),
+        masks: graph.buffer("linear_light.masks", 4 * u64::from(samples::RECEIVERS).pow(2)),
     };
     let bytes = skin_bytes(side);
     let left = Skins {
@@ -65,7 +70,7 @@ pub fn declare(graph: &mut Graph, visibility: ResourceId, settings: &Settings, i
         draw: "linear_light.left_skins",
         side: -1,
         skins: graph.buffer("linear_light.left_skins", bytes),
-        arguments: graph.buffer("linear_light.left_draw", 16),
+        offset: 0,
         channel: depth(graph, "linear_light.left_channel"),
     };
     let right = Skins {
@@ -73,7 +78,7 @@ pub fn declare(graph: &mut Graph, visibility: ResourceId, settings: &Settings, i
         draw: "linear_light.right_skins",
         side: 1,
         skins: graph.buffer("linear_light.right_skins", bytes),
-        arguments: graph.buffer("linear_light.right_draw", 16),
+        offset: 16,
         channel: depth(graph, "linear_light.right_channel"),
     };
     let kept = settings.lines * settings.samples;
@@ -81,27 +86,32 @@ pub fn declare(graph: &mut Graph, visibility: ResourceId, settings: &Settings, i
     let size = [SAMPLES_AT + settings.samples, settings.lines];
     let places = graph.image("linear_light.places", format, size, Owner::Kept);
     graph.keep(maps);
-    let here = graph.buffer("linear_light.segment", 32);
-    let made = Made { layers, left, right, here, maps, places };
+    let made = Made {
+        layers,
+        left,
+        right,
+        here: graph.buffer("linear_light.segment", 32),
+        groups: graph.buffer("linear_light.groups", 48),
+        draws: graph.buffer("linear_light.draws", 32),
+        maps,
+        places,
+    };
 
     let none = [Line::NONE];
     let lines = if inputs.lines.is_empty() { &none } else { inputs.lines };
-    for (nth, line) in lines.iter().enumerate() {
-        samples::begin(graph, &made, inputs);
-        if settings.is_even() {
-            for sample in 0..settings.samples {
-                samples::draw(graph, &made, settings, (nth, sample), sample % 2, line, inputs);
-                if let Some(before) = sample.checked_sub(1) {
-                    segments::declare(graph, &made, settings, (nth, before), line, inputs);
-                }
-            }
-        } else {
-            samples::declare_tree(graph, &made, settings, nth, line, inputs);
-            for sample in 0..settings.samples - 1 {
-                segments::declare(graph, &made, settings, (nth, sample), line, inputs);
+    for (row, line) in lines.iter().enumerate() {
+        let row = row as u32;
+        samples::place(graph, &made, settings, row, line, inputs);
+        for nth in 0..settings.samples {
+            samples::look(graph, &made, nth, row, line, inputs);
+            segments::start(graph, &made, (row, nth), line, inputs);
+            graph.push(samples::take(&made, nth % 2, line, inputs));
+            if nth > 0 {
+                segments::declare(graph, &made, settings, (row, nth), line, inputs);
             }
         }
-        segments::finish(graph, &made, settings, (nth, settings.samples - 1), line, inputs);
+        segments::start(graph, &made, (row, settings.samples), line, inputs);
+        segments::keep(graph, &made, settings, (row, settings.samples), inputs);
     }
 
     let gbuffer = inputs.gbuffer;

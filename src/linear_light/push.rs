@@ -2,14 +2,18 @@
 
 use bytemuck::{Pod, Zeroable};
 
-/// `sample.vert`
+/// `view.glsl`
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Sample {
     /// By column; each mesh pushes its own.
-    pub clip_from_mesh: [f32; 16],
-    /// Of the tree.
-    pub node: i32,
+    pub line_from_mesh: [f32; 16],
+    /// Least and largest u at the line's first end, at its last.
+    pub u_window: [f32; 4],
+    /// Its length, m.
+    pub line: f32,
+    /// Which sample.
+    pub nth: i32,
 }
 
 /// `take.comp`
@@ -24,32 +28,34 @@ pub struct Take {
     pub layer: i32,
 }
 
-/// `measure.comp`
+/// `mask.comp`
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub struct Measure {
+pub struct Mask {
     /// Least and largest u at the line's first end, at its last.
     pub u_window: [f32; 4],
     /// Its length, m.
     pub line: f32,
     /// The maps' side in texels.
     pub map: i32,
-    /// From 1 on.
-    pub round: i32,
 }
 
-/// `choose.comp`
+/// `place.comp`
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub struct Choose {
-    /// Asked for, as a share of the light.
+pub struct Place {
+    /// Asked for, as a share of the line.
     pub error: f32,
     /// Samples.
     pub most: i32,
-    /// From 1 on.
-    pub round: i32,
-    /// How many there are.
-    pub rounds: i32,
+}
+
+/// `spread.comp`
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Spread {
+    /// Samples.
+    pub count: i32,
 }
 
 /// `start.comp`
@@ -66,14 +72,12 @@ pub struct Start {
     pub line: f32,
     /// Its share of the light.
     pub weight: f32,
-    /// Which sample, and the segment behind it.
+    /// Which sample, and the segment before it.
     pub nth: i32,
     /// Of the image of places.
     pub row: i32,
-    /// So many samples evenly; 0: as the tree has them.
-    pub even: i32,
-    /// Of the tree.
-    pub rounds: i32,
+    /// Workgroups along a side of a map.
+    pub groups: i32,
 }
 
 /// `edges.comp`

@@ -1,140 +1,164 @@
-//! The rows that draw what samples see, and those that say which samples a line needs.
+//! The rows that say where a line's samples are, and those that draw what they see.
 
 use super::passes::{Inputs, Made};
+use super::push;
 use super::settings::Settings;
 use super::view::Line;
-use super::push;
-use crate::depth_layers;
+use crate::depth_layers::{self, Raster};
 use crate::graph::{Access, Draw, Graph, Layer, Pass, Push, ResourceId, Target, Use, Work};
 use crate::shaders;
 use crate::visibility::grid;
 
+/// Receivers along a side of `mask.comp`'s grid.
+pub(super) const RECEIVERS: u32 = 64;
+
 /// What samples see.
 pub(super) struct Layers {
+    /// Where they are.
+    pub of: ResourceId,
     /// The nearest occluders and receivers as one of them sees them: drawn into, and taken from.
     pub occluders: ResourceId,
     pub receivers: ResourceId,
-    /// A layer each.
+    /// Two that lie side by side.
     pub seen: ResourceId,
-    /// Which of them there are.
-    pub tree: ResourceId,
+    /// What receivers see of the line.
+    pub masks: ResourceId,
 }
 
-/// Adds the row that starts a line.
-pub(super) fn begin(graph: &mut Graph, made: &Made, inputs: &Inputs) {
-    graph.push(Pass::compute(
-        "linear_light.begin",
-        shaders::LINE_BEGIN,
-        [1, 1, 1],
-        Push::NONE,
-        vec![Use::bound(0, made.layers.tree, Access::BufferWriteCompute)],
-        inputs.make,
-    ));
-}
-
-/// Adds the rows that draw what a node of a line sees, and take it into a layer.
-pub(super) fn draw(
+/// Adds the rows that place a line's samples: evenly, or where its middle tells that light is lost.
+pub(super) fn place(
     graph: &mut Graph,
     made: &Made,
     settings: &Settings,
-    (nth, node): (usize, u32),
-    layer: u32,
+    view: u32,
     line: &Line,
     inputs: &Inputs,
 ) {
     let layers = &made.layers;
-    let view = nth as u32 * settings.nodes().len() as u32 + node;
-    for (name, image, kind) in [
-        ("linear_light.occluders", layers.occluders, Layer::Front),
-        ("linear_light.receivers", layers.receivers, Layer::Receivers),
-    ] {
-        if settings.is_even() {
-            depth_layers::draw(graph, name, image, kind, view, inputs.make);
-            continue;
-        }
-        let depth_layers::Raster { cull, clear, compare } = depth_layers::raster_of(kind);
-        graph.push(Pass {
-            name,
-            uses: vec![
-                Use::fixed(image, Access::DepthTarget),
-                Use::bound(0, layers.tree, Access::BufferReadVertex),
-            ],
-            push: Push::new(&push::Sample { clip_from_mesh: [0.0; 16], node: node as i32 }),
-            work: Work::Raster {
-                vertex: shaders::SAMPLE_VERT,
-                fragment: None,
-                cull,
-                target: Target::Depth { clear, compare },
-                draw: Draw::Layer { layer: kind, view },
-            },
-            need: inputs.make.clone(),
-        });
+    if settings.is_even() {
+        graph.push(Pass::compute(
+            "linear_light.spread",
+            shaders::LINE_SPREAD,
+            [1, 1, 1],
+            Push::new(&push::Spread { count: settings.samples as i32 }),
+            vec![Use::bound(0, layers.of, Access::BufferWriteCompute)],
+            inputs.make,
+        ));
+        return;
     }
+    let middle = |kind| match kind {
+        Layer::Front => ("linear_light.middle_occluders", layers.occluders),
+        _ => ("linear_light.middle_receivers", layers.receivers),
+    };
+    for kind in [Layer::Front, Layer::Receivers] {
+        let (name, image) = middle(kind);
+        let uses = vec![Use::fixed(image, Access::DepthTarget)];
+        draw(graph, name, uses, shaders::MIDDLE_VERT, kind, -1, view, line, inputs);
+    }
+    let side = inputs.side;
+    let taken = take(made, 0, line, inputs);
+    graph.push(Pass {
+        name: "linear_light.middle_take",
+        uses: taken.uses.iter().copied().filter(|u| u.access != Access::Indirect).collect(),
+        work: Work::Dispatch { shader: shaders::LINE_TAKE, groups: grid([side; 2]) },
+        ..taken
+    });
     graph.push(Pass::compute(
-        "linear_light.take",
-        shaders::LINE_TAKE,
-        grid([inputs.side; 2]),
-        Push::new(&push::Take {
-            inv_near: (1.0 / line.near) as f32,
-            map: inputs.side as i32,
-            layer: layer as i32,
-        }),
+        "linear_light.mask",
+        shaders::LINE_MASK,
+        grid([RECEIVERS; 2]),
+        Push::new(&push::Mask { u_window: line.u_window(), line: line.length(), map: side as i32 }),
         vec![
-            Use::bound(0, layers.occluders, Access::SampledCompute),
-            Use::bound(1, layers.receivers, Access::SampledCompute),
-            Use::bound(2, layers.seen, Access::ImageWrite),
+            Use::bound(0, layers.seen, Access::SampledCompute),
+            Use::bound(1, layers.masks, Access::BufferWriteCompute),
+        ],
+        inputs.make,
+    ));
+    graph.push(Pass::compute(
+        "linear_light.place",
+        shaders::LINE_PLACE,
+        [1, 1, 1],
+        Push::new(&push::Place { error: settings.error, most: settings.samples as i32 }),
+        vec![
+            Use::bound(0, layers.masks, Access::BufferReadCompute),
+            Use::bound(1, layers.of, Access::BufferWriteCompute),
         ],
         inputs.make,
     ));
 }
 
-/// Adds the rows that find a line's samples: the ends, and round by round what lies between two of them.
-pub(super) fn declare_tree(
+/// Adds the rows that draw what a sample sees.
+pub(super) fn look(
     graph: &mut Graph,
     made: &Made,
-    settings: &Settings,
-    nth: usize,
+    nth: u32,
+    view: u32,
     line: &Line,
     inputs: &Inputs,
 ) {
     let layers = &made.layers;
-    for end in 0..2 {
-        draw(graph, made, settings, (nth, end), end, line, inputs);
+    for (name, image, kind) in [
+        ("linear_light.occluders", layers.occluders, Layer::Front),
+        ("linear_light.receivers", layers.receivers, Layer::Receivers),
+    ] {
+        let uses = vec![
+            Use::fixed(image, Access::DepthTarget),
+            Use::bound(0, layers.of, Access::BufferReadVertex),
+        ];
+        draw(graph, name, uses, shaders::SAMPLE_VERT, kind, nth as i32, view, line, inputs);
     }
-    for round in 1..=settings.rounds() {
-        let (first, count) = ((1 << (round - 1)) + 1, 1 << (round - 1));
-        for node in first..first + count {
-            draw(graph, made, settings, (nth, node), node, line, inputs);
-        }
-        let [x, y, _] = grid([inputs.side; 2]);
-        graph.push(Pass::compute(
-            "linear_light.measure",
-            shaders::LINE_MEASURE,
-            [x, y, count],
-            Push::new(&push::Measure {
-                u_window: line.u_window(),
-                line: (2.0 * line.half) as f32,
-                map: inputs.side as i32,
-                round: round as i32,
-            }),
-            vec![
-                Use::bound(0, layers.seen, Access::SampledCompute),
-                Use::bound(1, layers.tree, Access::BufferUpdate),
-            ],
-            inputs.make,
-        ));
-        graph.push(Pass::compute(
-            "linear_light.choose",
-            shaders::LINE_CHOOSE,
-            [1, 1, 1],
-            Push::new(&push::Choose {
-                error: settings.error,
-                most: settings.samples as i32,
-                round: round as i32,
-                rounds: settings.rounds() as i32,
-            }),
-            vec![Use::bound(0, layers.tree, Access::BufferUpdate)],
-            inputs.make,
-        ));
+}
+
+#[allow(clippy::too_many_arguments, reason = "a row has as many columns")]
+fn draw(
+    graph: &mut Graph,
+    name: &'static str,
+    uses: Vec<Use>,
+    vertex: shaders::Module,
+    layer: Layer,
+    nth: i32,
+    view: u32,
+    line: &Line,
+    inputs: &Inputs,
+) {
+    let Raster { cull, clear, compare } = depth_layers::raster_of(layer);
+    graph.push(Pass {
+        name,
+        uses,
+        push: Push::new(&push::Sample {
+            line_from_mesh: [0.0; 16],
+            u_window: line.u_window(),
+            line: line.length(),
+            nth,
+        }),
+        work: Work::Raster {
+            vertex,
+            fragment: None,
+            cull,
+            target: Target::Depth { clear, compare },
+            draw: Draw::Layer { layer, view },
+        },
+        need: inputs.make.clone(),
+    });
+}
+
+/// The row that takes what was drawn into a layer.
+pub(super) fn take(made: &Made, layer: u32, line: &Line, inputs: &Inputs) -> Pass {
+    let layers = &made.layers;
+    Pass {
+        name: "linear_light.take",
+        uses: vec![
+            Use::fixed(made.groups, Access::Indirect),
+            Use::bound(0, layers.occluders, Access::SampledCompute),
+            Use::bound(1, layers.receivers, Access::SampledCompute),
+            Use::bound(2, layers.seen, Access::ImageWrite),
+        ],
+        push: Push::new(&push::Take {
+            inv_near: (1.0 / line.near) as f32,
+            map: inputs.side as i32,
+            layer: layer as i32,
+        }),
+        work: Work::Indirect { shader: shaders::LINE_TAKE, arguments: made.groups, offset: 0 },
+        need: inputs.make.clone(),
     }
 }

@@ -9,6 +9,10 @@ use crate::shaders;
 use crate::visibility::grid;
 use ash::vk;
 
+/// Where in [`Made::groups`] the grids of a segment's rows are, and of the row that keeps the sample before.
+const SEGMENT: u64 = 16;
+const SAMPLE_BEFORE: u64 = 32;
+
 /// What one sample of a segment makes of the other's occluders.
 pub(super) struct Skins {
     pub edges: &'static str,
@@ -16,20 +20,20 @@ pub(super) struct Skins {
     /// Which ends of occluders are seen past: -1, those towards −x.
     pub side: i32,
     pub skins: ResourceId,
-    pub arguments: ResourceId,
+    /// Of the draw's arguments in [`Made::draws`].
+    pub offset: u64,
     pub channel: ResourceId,
 }
 
-/// Adds the rows of a sample and of the segment behind it.
+/// Adds the rows of the segment before a sample, and what they leave of the sample before it.
 pub(super) fn declare(
     graph: &mut Graph,
     made: &Made,
     settings: &Settings,
-    at: (usize, u32),
+    at: (u32, u32),
     line: &Line,
     inputs: &Inputs,
 ) {
-    start(graph, made, settings, at, line, inputs);
     // The first one's neighbour sees what ends towards it. Only then is what the segment before drew into the first
     // one's other channel done with.
     skins(graph, made, &made.left, settings, line, inputs);
@@ -37,24 +41,11 @@ pub(super) fn declare(
     skins(graph, made, &made.right, settings, line, inputs);
 }
 
-/// Adds the rows of a line's last sample.
-pub(super) fn finish(
+/// Adds the row that says which of the rows of a sample and of the segment before it have anything to do.
+pub(super) fn start(
     graph: &mut Graph,
     made: &Made,
-    settings: &Settings,
-    at: (usize, u32),
-    line: &Line,
-    inputs: &Inputs,
-) {
-    start(graph, made, settings, at, line, inputs);
-    keep(graph, made, settings, at, inputs);
-}
-
-fn start(
-    graph: &mut Graph,
-    made: &Made,
-    settings: &Settings,
-    (row, nth): (usize, u32),
+    (row, nth): (u32, u32),
     line: &Line,
     inputs: &Inputs,
 ) {
@@ -68,18 +59,17 @@ fn start(
             turn: [c, s, x, y].map(|x| x as f32),
             u_window: line.u_window(),
             v_window: line.v.map(|v| v as f32),
-            line: (2.0 * line.half) as f32,
+            line: line.length(),
             weight: line.weight as f32,
             nth: nth as i32,
             row: row as i32,
-            even: if settings.is_even() { settings.samples as i32 } else { 0 },
-            rounds: settings.rounds() as i32,
+            groups: grid([inputs.side; 2])[0] as i32,
         }),
         vec![
-            Use::bound(0, made.layers.tree, Access::BufferReadCompute),
+            Use::bound(0, made.layers.of, Access::BufferReadCompute),
             Use::bound(1, made.here, Access::BufferWriteCompute),
-            Use::bound(2, made.left.arguments, Access::BufferWriteCompute),
-            Use::bound(3, made.right.arguments, Access::BufferWriteCompute),
+            Use::bound(2, made.draws, Access::BufferWriteCompute),
+            Use::bound(3, made.groups, Access::BufferWriteCompute),
             Use::bound(4, made.places, Access::ImageWrite),
         ],
         inputs.make,
@@ -96,31 +86,31 @@ fn skins(
     inputs: &Inputs,
 ) {
     let map = inputs.side as i32;
-    graph.push(Pass::compute(
-        skins.edges,
-        shaders::EDGES,
-        grid([inputs.side; 2]),
-        Push::new(&push::Edges { u_window: line.u_window(), map, side: skins.side }),
-        vec![
+    graph.push(Pass {
+        name: skins.edges,
+        work: Work::Indirect { shader: shaders::EDGES, arguments: made.groups, offset: SEGMENT },
+        push: Push::new(&push::Edges { u_window: line.u_window(), map, side: skins.side }),
+        uses: vec![
+            Use::fixed(made.groups, Access::Indirect),
             Use::bound(0, made.layers.seen, Access::SampledCompute),
             Use::bound(1, made.here, Access::BufferReadCompute),
             Use::bound(2, skins.skins, Access::BufferWriteCompute),
-            Use::bound(3, skins.arguments, Access::BufferUpdate),
+            Use::bound(3, made.draws, Access::BufferUpdate),
         ],
-        inputs.make,
-    ));
+        need: inputs.make.clone(),
+    });
     graph.push(Pass {
         name: skins.draw,
         uses: vec![
             Use::fixed(skins.channel, Access::DepthTarget),
-            Use::fixed(skins.arguments, Access::Indirect),
+            Use::fixed(made.draws, Access::Indirect),
             Use::bound(0, skins.skins, Access::BufferReadVertex),
             Use::bound(1, made.here, Access::BufferReadVertex),
             Use::bound(2, made.layers.seen, Access::SampledFragment),
         ],
         push: Push::new(&push::Skins {
             u_window: line.u_window(),
-            line: (2.0 * line.half) as f32,
+            line: line.length(),
             w_far: inputs.w_far as f32,
             map,
             side: skins.side,
@@ -131,37 +121,42 @@ fn skins(
             fragment: Some(shaders::SKINS_FRAG),
             cull: vk::CullModeFlags::NONE,
             target: Target::Depth { clear: 1.0, compare: vk::CompareOp::LESS },
-            draw: Draw::Indirect { arguments: skins.arguments },
+            draw: Draw::Indirect { arguments: made.draws, offset: skins.offset },
         },
         need: inputs.make.clone(),
     });
 }
 
-fn keep(
+/// Adds the row that keeps the map of the sample before a sample.
+pub(super) fn keep(
     graph: &mut Graph,
     made: &Made,
     settings: &Settings,
-    (row, nth): (usize, u32),
+    (row, nth): (u32, u32),
     inputs: &Inputs,
 ) {
-    let layer = row as u32 * settings.samples + nth;
+    let layer = row * settings.samples + nth - 1;
     // Nothing was drawn for a segment before the first sample.
     let (name, before) = match nth {
-        0 => ("linear_light.keep_first", made.left.channel),
+        1 => ("linear_light.keep_first", made.left.channel),
         _ => ("linear_light.keep", made.right.channel),
     };
-    graph.push(Pass::compute(
+    graph.push(Pass {
         name,
-        shaders::KEEP,
-        grid([inputs.side; 2]),
-        Push::new(&push::Keep { map: inputs.side as i32, layer: layer as i32 }),
-        vec![
+        work: Work::Indirect {
+            shader: shaders::KEEP,
+            arguments: made.groups,
+            offset: SAMPLE_BEFORE,
+        },
+        push: Push::new(&push::Keep { map: inputs.side as i32, layer: layer as i32 }),
+        uses: vec![
+            Use::fixed(made.groups, Access::Indirect),
             Use::bound(0, made.layers.seen, Access::SampledCompute),
             Use::bound(1, before, Access::SampledCompute),
             Use::bound(2, made.left.channel, Access::SampledCompute),
             Use::bound(3, made.here, Access::BufferReadCompute),
             Use::bound(4, made.maps, Access::ImageWrite),
         ],
-        inputs.make,
-    ));
+        need: inputs.make.clone(),
+    });
 }

@@ -63,24 +63,6 @@ impl Settings {
         self.error == 0.0 || self.samples == 2
     }
 
-    /// How often a line's parts are halved, at most.
-    pub fn rounds(&self) -> u32 {
-        if self.is_even() { 0 } else { (self.samples - 1).next_power_of_two().trailing_zeros() }
-    }
-
-    /// Where samples may be, from 0 at the line's first end to 1 at its last: the nodes of
-    /// `glsl/linear_light/tree.glsl`.
-    pub fn nodes(&self) -> Vec<f64> {
-        if self.is_even() {
-            return (0..self.samples).map(|n| f64::from(n) / f64::from(self.samples - 1)).collect();
-        }
-        let in_round = |round: u32| {
-            let parts = f64::from(1 << round);
-            (0..1 << (round - 1)).map(move |i| f64::from(2 * i + 1) / parts)
-        };
-        [0.0, 1.0].into_iter().chain((1..=self.rounds()).flat_map(in_round)).collect()
-    }
-
     /// The fewest samples that a line may have.
     pub(super) fn fewest(&self) -> u32 {
         if self.is_even() { self.samples } else { 2 }
@@ -91,14 +73,9 @@ impl Settings {
         if light.is_line() { 1 } else { self.lines }
     }
 
-    /// The layers of maps that are needed at once: even samples take turns.
-    pub(super) fn layers(&self) -> u32 {
-        if self.is_even() { 2 } else { (1 << self.rounds()) + 1 }
-    }
-
     /// Checks the knobs that must agree with the maps' side.
     pub(crate) fn check_agreement(&self, map: u32) -> Result<(), Error> {
-        let layers = u64::from(self.lines * self.samples + self.layers());
+        let layers = u64::from(self.lines * self.samples + 2);
         let fits = |map: u32| {
             16 * u64::from(map).pow(2) * layers <= MOST_BYTES && skin_bytes(map) <= STORAGE_BYTES
         };

@@ -1,9 +1,9 @@
-//! Which lines a light is, where samples may be on them, and what each of those sees.
+//! Which lines a light is, and what their samples see.
 
 use super::Settings;
 use crate::RectangleLight;
-use crate::depth_layers::{Eye, MapView, MeshBounds, fit_occluders};
-use glam::{DMat4, DVec3};
+use crate::depth_layers::{MapView, MeshBounds, fit_occluders};
+use glam::{DMat4, DVec3, DVec4};
 
 /// A line of a light. Its own space is light space turned about the light's axis, its middle the origin.
 ///
@@ -45,24 +45,26 @@ impl Line {
         [a, b, c, d].map(|x| x as f32)
     }
 
-    /// Light space to the clip space of the map of the sample at `at`, 0 at the first end and 1 at the last.
-    pub fn clip_from_light(&self, at: f64, side: u32) -> DMat4 {
+    /// Its length in metres.
+    pub(super) fn length(&self) -> f32 {
+        (2.0 * self.half) as f32
+    }
+
+    /// Light space to what `view.glsl` takes: x in metres from the line's middle, and y, z and w of the clip space that
+    /// all maps of the line share.
+    pub fn line_from_light(&self) -> DMat4 {
         let [c, s] = self.along;
         let [x, y] = self.middle;
-        let window = |i: usize| self.u[0][i] + at * (self.u[1][i] - self.u[0][i]);
-        let view = MapView {
-            eye: Eye::Behind(0.0),
-            min: [window(0), self.v[0]],
-            max: [window(1), self.v[1]],
-            near: self.near,
-            far: 2.0 * self.near,
-            side,
-        };
-        let turn = DMat4::from_rotation_z(-s.atan2(c));
-        let sample = DVec3::new((2.0 * at - 1.0) * self.half, 0.0, 0.0);
-        view.clip_from_light()
-            * DMat4::from_translation(-sample)
-            * turn
+        let height = self.v[1] - self.v[0];
+        let tall = 2.0 / height;
+        let project = DMat4::from_cols(
+            DVec4::X,
+            DVec4::Y * tall,
+            DVec4::new(0.0, -(self.v[1] + self.v[0]) / height, 0.0, 1.0),
+            DVec4::new(0.0, 0.0, self.near, 0.0),
+        );
+        project
+            * DMat4::from_rotation_z(-s.atan2(c))
             * DMat4::from_translation(DVec3::new(-x, -y, 0.0))
     }
 }
@@ -110,10 +112,7 @@ fn stacked(
             half: a,
             weight: 1.0 / f64::from(count),
             u,
-            v: [
-                mix(across, [low.min[1], high.min[1]]),
-                mix(across, [low.max[1], high.max[1]]),
-            ],
+            v: [mix(across, [low.min[1], high.min[1]]), mix(across, [low.max[1], high.max[1]])],
             near: ends[0].near,
         }
     };

@@ -200,7 +200,7 @@ fn listed(
     need: &Need,
 ) {
     uses.push(Use::fixed(arguments, Access::Indirect));
-    let work = Work::Indirect { shader, arguments };
+    let work = Work::Indirect { shader, arguments, offset: 0 };
     graph.push(Pass { name, uses, push, work, need: need.clone() });
 }
 

@@ -349,7 +349,7 @@ fn blend_map(
             fragment: Some(shaders::PATCH_FRAG),
             cull: vk::CullModeFlags::NONE,
             target: Target::Add,
-            draw: Draw::Indirect { arguments },
+            draw: Draw::Indirect { arguments, offset: 0 },
         },
         need: inputs.need.clone(),
     });

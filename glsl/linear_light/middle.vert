@@ -1,0 +1,10 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "linear_light/view.glsl"
+
+// The meshes as the line's middle sees them.
+
+void main()
+{
+    gl_Position = seen_from(0.5);
+}

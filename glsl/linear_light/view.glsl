@@ -1,0 +1,26 @@
+// A mesh's vertices to the clip space of a map on a line, whose eye moves along x alone.
+
+#ifndef LINEAR_LIGHT_VIEW_GLSL
+#define LINEAR_LIGHT_VIEW_GLSL
+
+#include "linear_light/segment.glsl"
+
+layout(location = 0) in vec3 position;
+
+layout(push_constant) uniform Push {
+    mat4 line_from_mesh; // x in metres from the line's middle; y, z and w of clip space
+    vec4 u_window;       // least and largest u at the line's first end, at its last
+    float line;          // its length, m
+    int nth;             // sample; of the middle none
+} push;
+
+// As the place `at` sees them, 0 at the first end and 1 at the last. Depth is near / d.
+vec4 seen_from(float at)
+{
+    vec4 p = push.line_from_mesh * vec4(position, 1.0);
+    vec2 window = window_at(push.u_window, at);
+    p.x = (2.0 * (p.x - (at - 0.5) * push.line) - (window.x + window.y) * p.w) / (window.y - window.x);
+    return p;
+}
+
+#endif
