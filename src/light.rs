@@ -1,7 +1,7 @@
 //! The rectangle light, and the light space that every technique works in.
 
 use crate::Error;
-use glam::{DMat3, DMat4, DVec3};
+use glam::{DMat3, DMat4, DVec2, DVec3};
 
 pub(crate) mod outline;
 
@@ -138,6 +138,13 @@ impl RectangleLight {
     /// The same light with its centre at a point of its own plane, in metres along its x and y.
     pub(crate) fn moved(&self, [x, y]: [f64; 2]) -> Self {
         Self { center: self.center + self.axes * DVec3::new(x, y, 0.0), ..*self }
+    }
+
+    /// The same light with its x along a unit vector of its own plane.
+    pub(crate) fn turned(&self, along: DVec2) -> Self {
+        let [x, y, z] = [self.axes.x_axis, self.axes.y_axis, self.axes.z_axis];
+        let turned = along.x * x + along.y * y;
+        Self { axes: DMat3::from_cols(turned, z.cross(turned), z), ..*self }
     }
 
     /// The same light with its x along what was its y.

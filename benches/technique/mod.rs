@@ -1,5 +1,7 @@
 //! What the benches of single techniques share: their command line, scenes, and a stage that runs a plan.
 
+#![allow(dead_code, reason = "each bench uses a part")]
+
 use antumbra::gpu::headless::{FrameTimes, HeadlessDevice, HeadlessOptions, Stage, View};
 use antumbra::scene::{Instance, Role, Scene, from_gltf, generate};
 use antumbra::truth::{ErrorSummary, ExactLine, Receiver, Sampling, Tracer};
@@ -8,7 +10,6 @@ use glam::DVec3;
 use std::path::Path;
 
 #[path = "../soft_shadow_map/table.rs"]
-#[allow(dead_code, reason = "another bench uses the rest")]
 pub mod table;
 
 use table::Table;
@@ -49,7 +50,6 @@ pub fn make_tables(studies: &[Study], full: Options, quick: Options) {
 }
 
 /// A model under a light of a width in metres, or one of the generated scenes.
-#[allow(dead_code, reason = "lines have lights of their own")]
 pub fn scene(name: &str, side: f64) -> Scene {
     scene_under(name, generate::square_light(side).unwrap())
 }

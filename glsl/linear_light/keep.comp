@@ -2,9 +2,10 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "linear_light/segment.glsl"
+#include "linear_light/channels.glsl"
 
-// A sample's map as pixels ask for it: w of the nearest occluder, and what part of the line the sample adds where it
-// sees past, of both of its segments together (section 3.3); of a texel and of the next one in its row.
+// A sample's map as pixels ask for it: w of the nearest occluder, and how much of its two segments is seen by what the
+// sample sees past it; of a texel and of the next one in its row.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -17,24 +18,19 @@ layout(set = 0, binding = 4, rgba32f) writeonly uniform image2DArray maps;
 layout(push_constant) uniform Push {
     int map;   // side in texels
     int layer; // of maps
+    float lit; // what a channel has where no skin was drawn
 } push;
 
-// Lit by both samples is half by each (section 3.2).
 float channel(float drawn)
 {
-    return drawn == 1.0 ? 0.5 : 2.0 * drawn;
+    return drawn == 1.0 ? push.lit : drawn;
 }
 
 vec2 told_at(ivec2 p)
 {
-    float part = 0.0;
-    if (here.before > 0.0) {
-        part += here.before * channel(texelFetch(right_channel, p, 0).x);
-    }
-    if (here.behind > 0.0) {
-        part += here.behind * channel(texelFetch(left_channel, p, 0).x);
-    }
-    return vec2(texelFetch(seen, ivec3(p, here.first), 0).x, part);
+    float before = channel(texelFetch(right_channel, p, 0).x);
+    float behind = channel(texelFetch(left_channel, p, 0).x);
+    return vec2(texelFetch(seen, ivec3(p, here.first), 0).x, packed(vec2(before, behind)));
 }
 
 void main()

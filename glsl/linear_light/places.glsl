@@ -3,7 +3,7 @@
 //   1     least and largest u at its first end, at its last
 //   2     least and largest v; its length, m; its share of the light
 //   3     the number of its samples
-//   4...  of each: how far along it is, 0 to 1; what part of the line it adds where nothing blocks
+//   4...  of each: how far along it is, 0 to 1
 
 #ifndef LINEAR_LIGHT_PLACES_GLSL
 #define LINEAR_LIGHT_PLACES_GLSL

@@ -4,13 +4,9 @@
 #define LINEAR_LIGHT_SEGMENT_GLSL
 
 struct Segment {
-    vec2 along;   // of its two samples, 0 to 1
-    int first;    // the first one's layer of what is seen
-    int last;     // the last one's
-    float before; // the share of the line that is the segment before the first one, 0 where there is none
-    float behind; // and of the one behind it: this one, where there is a last one
-    float pad_0;
-    float pad_1;
+    vec2 along; // of its two samples, 0 to 1
+    int first;  // the first one's layer of what is seen
+    int last;   // the last one's
 };
 
 // Least and largest tangent of the map of a sample, from those at the line's ends: what bounds boxes' tangents from

@@ -3,8 +3,8 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "linear_light/skin.glsl"
 
-// What a surface behind a skin sees of the segment, half of it as depth: of all skins the depth test keeps the one
-// that hides most. 1 stays where there is none.
+// What a surface behind a skin sees of the segment, as depth: of all skins the depth test keeps the one that hides
+// most. 1 stays where there is none.
 
 layout(set = 0, binding = 2) uniform texture2DArray seen;
 
@@ -23,5 +23,5 @@ void main()
     if (w_receiver >= w_crossing) {
         discard;
     }
-    gl_FragDepth = 0.5 * transition(skin.z, w_crossing, push.rational != 0 ? w_receiver : skin.w);
+    gl_FragDepth = transition(skin.z, w_crossing, push.rational != 0 ? w_receiver : skin.w);
 }

@@ -47,10 +47,6 @@ void main()
     s.along = vec2(previous, at);
     s.first = (nth - 1) & 1;
     s.last = nth & 1;
-    s.before = before_is && nth > 1 ? previous - of.at[nth - 2] : 0.0;
-    s.behind = before_is && here_is ? at - previous : 0.0;
-    s.pad_0 = 0.0;
-    s.pad_1 = 0.0;
     here = s;
     if (nth == 0) {
         imageStore(places, ivec2(0, push.row), push.turn);
@@ -59,8 +55,6 @@ void main()
         imageStore(places, ivec2(3, push.row), vec4(float(of.count), 0.0, 0.0, 0.0));
     }
     if (before_is) {
-        // Where nothing blocks, both ends of a segment see half of it.
-        float free = 0.5 * (s.before + s.behind);
-        imageStore(places, ivec2(SAMPLES_AT + nth - 1, push.row), vec4(previous, free, 0.0, 0.0));
+        imageStore(places, ivec2(SAMPLES_AT + nth - 1, push.row), vec4(previous, 0.0, 0.0, 0.0));
     }
 }

@@ -15,6 +15,7 @@ layout(set = 0, binding = 4, r32f) writeonly uniform image2D visibility;
 #include "common/gbuffer.glsl"
 #include "common/light.glsl"
 #include "baseline/compare.glsl"
+#include "linear_light/channels.glsl"
 #include "linear_light/places.glsl"
 #include "linear_light/segment.glsl"
 
@@ -27,6 +28,7 @@ layout(push_constant) uniform Push {
     int most;     // samples that a line may have: layers of maps
     int lines;
     int masked;
+    float lit;    // what a channel has where no skin was drawn
 } push;
 
 // What a line of the light is to a pixel.
@@ -37,37 +39,55 @@ struct Line {
     int row;
 };
 
-// The part of a line that one of its samples adds: the mean of four texels of which the receiver is behind none.
-// `position` and `normal` are the line's, from its middle.
-float part_of(Line line, int nth, vec3 position, vec3 normal, bool blocks)
+// What a sample tells of the segments before and behind it: the mean of four texels of which the receiver is behind
+// none. `position` and `normal` are the line's, from its middle.
+vec2 told_by(Line line, int nth, float at, vec3 position, vec3 normal, bool blocks)
 {
-    vec2 place = texelFetch(places, ivec2(SAMPLES_AT + nth, line.row), 0).xy;
-    vec3 p = position - vec3((place.x - 0.5) * line.span, 0.0, 0.0);
+    vec3 p = position - vec3((at - 0.5) * line.span, 0.0, 0.0);
     if (dot(normal, p) >= 0.0) {
         // The sample is below the pixel's plane, whose other side is seen where it does not block.
         if (blocks) {
-            return 0.0;
+            return vec2(0.0);
         }
         normal = -normal;
     }
-    vec2 u = window_at(line.u_window, place.x);
+    vec2 u = window_at(line.u_window, at);
     vec2 v = line.v_window;
     vec2 per_uv = float(push.map) / vec2(u.y - u.x, v.y - v.x);
     MapPlane m = map_plane(p, normal, per_uv, -vec2(u.x, v.x) * per_uv, push.snap, 0.0);
     vec2 corner = floor(m.t - 0.5);
     // Nothing is in the outermost texels of a map, nor beyond.
     if (any(lessThan(corner, vec2(0.0))) || any(greaterThanEqual(corner, vec2(push.map - 1)))) {
-        return place.y;
+        return vec2(push.lit);
     }
     vec2 f = m.t - 0.5 - corner;
-    float sum = 0.0;
+    vec2 sum = vec2(0.0);
     for (int row = 0; row < 2; ++row) {
         ivec2 texel = ivec2(corner) + ivec2(0, row);
         vec4 told = texelFetch(maps, ivec3(texel, line.row * push.most + nth), 0);
         float weight = row == 1 ? f.y : 1.0 - f.y;
-        vec2 at = vec2(texel) + 0.5;
-        sum += in_front_of_filter(m, at, told.x) ? 0.0 : weight * (1.0 - f.x) * told.y;
-        sum += in_front_of_filter(m, at + vec2(1.0, 0.0), told.z) ? 0.0 : weight * f.x * told.w;
+        vec2 at_centre = vec2(texel) + 0.5;
+        bool hides = in_front_of_filter(m, at_centre, told.x);
+        sum += hides ? vec2(0.0) : weight * (1.0 - f.x) * unpacked(told.y);
+        hides = in_front_of_filter(m, at_centre + vec2(1.0, 0.0), told.z);
+        sum += hides ? vec2(0.0) : weight * f.x * unpacked(told.w);
+    }
+    return sum;
+}
+
+// The part of a line that a receiver sees. Of a segment, what its first sample sees up to the first occluder and what
+// its last one sees from there back; all of it where one of them sees all of it.
+float part_of(Line line, int count, vec3 position, vec3 normal, bool blocks)
+{
+    float sum = 0.0;
+    float before = 0.0;
+    float told = 0.0;
+    for (int nth = 0; nth < count; ++nth) {
+        float at = texelFetch(places, ivec2(SAMPLES_AT + nth, line.row), 0).x;
+        vec2 by = told_by(line, nth, at, position, normal, blocks);
+        sum += nth > 0 ? (at - before) * min(told + by.x, 1.0) : 0.0;
+        before = at;
+        told = by.y;
     }
     return sum;
 }
@@ -93,11 +113,7 @@ void main()
             mat2 turned = mat2(turn.x, -turn.y, turn.y, turn.x);
             vec3 position = vec3(turned * (r.position.xy - turn.zw), r.position.z);
             vec3 normal = vec3(turned * r.normal.xy, r.normal.z);
-            float sum = 0.0;
-            for (int nth = 0; nth < count; ++nth) {
-                sum += part_of(line, nth, position, normal, r.blocks);
-            }
-            sum = min(sum, 1.0);
+            float sum = part_of(line, count, position, normal, r.blocks);
             if (r.blocks) {
                 // The part of the line above the pixel's own plane.
                 vec2 slope = vec2(normal.x * 0.5 * line.span, 0.0);

@@ -122,6 +122,18 @@ fn tangents(boxes: &[[DVec3; 8]], near: f64) -> Option<([f64; 2], [f64; 2])> {
     extents(boxes, near, |p| [p.x, p.y].map(|x| (x / p.z).clamp(-MAX_TANGENT, MAX_TANGENT)))
 }
 
+/// Least and largest u and v under which the light's centre sees what of some meshes is beyond `near`; none where
+/// nothing is.
+pub(crate) fn tangents_of(
+    light: &RectangleLight,
+    meshes: &[(MeshBounds, DMat4)],
+    near: f64,
+) -> Option<([f64; 2], [f64; 2])> {
+    let light_from_world = light.light_from_world();
+    let boxes: Vec<_> = meshes.iter().map(|(b, m)| corners(b, &(light_from_world * *m))).collect();
+    tangents(&boxes, near)
+}
+
 /// The least and the largest of what `of` says of the part of the boxes beyond `near`.
 fn extents(
     boxes: &[[DVec3; 8]],

@@ -334,13 +334,17 @@ fn look(
         _ => Vec::new(),
     };
     let lines = match (settings.technique, &need, &receiver_fit) {
-        (Technique::LinearLight, Need::Yes(_), Some(receivers)) => linear_light::lines(
-            light,
-            &boxes(occluders),
-            &settings.linear_light,
-            settings.map,
-            1.0 / receivers.far,
-        ),
+        (Technique::LinearLight, Need::Yes(_), Some(receivers)) => {
+            let seen = linear_light::Seen {
+                light,
+                outline: frame.outline,
+                occluders: &boxes(occluders),
+                receivers: &receiver_boxes,
+                side: settings.map,
+                w_far: 1.0 / receivers.far,
+            };
+            linear_light::lines(&settings.linear_light, &seen)?
+        }
         _ => Vec::new(),
     };
     // Ray marching and slices look from behind the light.

@@ -42,5 +42,5 @@ pub mod twin;
 mod view;
 
 pub use passes::{Inputs, declare};
-pub use settings::{Settings, Transition};
-pub use view::{Line, lines, turned};
+pub use settings::{Across, Settings, Transition};
+pub use view::{Line, Seen, lines, turned};

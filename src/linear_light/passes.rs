@@ -90,7 +90,7 @@ pub fn declare(graph: &mut Graph, visibility: ResourceId, settings: &Settings, i
         layers,
         left,
         right,
-        here: graph.buffer("linear_light.segment", 32),
+        here: graph.buffer("linear_light.segment", 16),
         groups: graph.buffer("linear_light.groups", 48),
         draws: graph.buffer("linear_light.draws", 32),
         maps,
@@ -128,6 +128,7 @@ pub fn declare(graph: &mut Graph, visibility: ResourceId, settings: &Settings, i
             most: settings.samples as i32,
             lines: lines.len() as i32,
             masked: i32::from(gbuffer.mask.is_some()),
+            lit: settings.lit(),
         }),
         vec![
             Use::bound(0, gbuffer.depth, Access::SampledCompute),

@@ -48,6 +48,8 @@ pub struct Place {
     pub error: f32,
     /// Samples.
     pub most: i32,
+    /// 1: as many as may be, evenly.
+    pub even: i32,
 }
 
 /// `spread.comp`
@@ -118,6 +120,8 @@ pub struct Keep {
     pub map: i32,
     /// Where the sample's goes.
     pub layer: i32,
+    /// What a channel has where no skin was drawn.
+    pub lit: f32,
 }
 
 /// `visibility.comp`
@@ -140,4 +144,6 @@ pub struct Visibility {
     pub lines: i32,
     /// 1: the mask holds the receivers' roles.
     pub masked: i32,
+    /// What a channel has where no skin was drawn.
+    pub lit: f32,
 }

@@ -78,7 +78,11 @@ pub(super) fn place(
         "linear_light.place",
         shaders::LINE_PLACE,
         [1, 1, 1],
-        Push::new(&push::Place { error: settings.error, most: settings.samples as i32 }),
+        Push::new(&push::Place {
+            error: settings.error,
+            most: settings.samples as i32,
+            even: i32::from(line.is_touched()),
+        }),
         vec![
             Use::bound(0, layers.masks, Access::BufferReadCompute),
             Use::bound(1, layers.of, Access::BufferWriteCompute),

@@ -1,7 +1,7 @@
 //! The knobs.
 
+use crate::Error;
 use crate::graph::STORAGE_BYTES;
-use crate::{Error, RectangleLight};
 
 /// Of the segments' maps.
 const MOST_BYTES: u64 = 1 << 28;
@@ -26,15 +26,32 @@ impl Transition {
     pub const ALL: &[(&str, Self)] = &[("linear", Self::Linear), ("rational", Self::Rational)];
 }
 
+/// Which lines a light with an area is taken for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Across {
+    /// Lines side by side all over it.
+    #[default]
+    Stack,
+    /// Its edges, as published for polygons (section 4).
+    Edges,
+}
+
+impl Across {
+    /// Every choice and its name.
+    pub const ALL: &[(&str, Self)] = &[("stack", Self::Stack), ("edges", Self::Edges)];
+}
+
 /// Every knob of linear lights but the maps' side, which all techniques share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// The most samples on a line, 2 to 16; 8 by default.
     pub samples: u32,
-    /// The most lines that a rectangle is taken for, 1 to 16; 4 by default. A line light is one.
+    /// The most lines that a light with an area is taken for, 1 to 16; 8 by default. A line light is one.
     pub lines: u32,
-    /// The error asked for, as a share of the light, 0 to 1; 0.005 by default. Samples are added where their
-    /// neighbours leave receivers unseen, until what is left costs no more than this. 0: as many samples and lines as
+    /// Which lines.
+    pub across: Across,
+    /// The error asked for, as a share of the light, 0 to 1; 0.02 by default. Samples are added where light is lost
+    /// between others, and lines to a light with an area, until what is missed is no more. 0: as many of both as
     /// there may be, evenly.
     pub error: f32,
     /// How visibility goes from 0 to 1.
@@ -43,7 +60,13 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { samples: 8, lines: 4, error: 0.005, transition: Transition::default() }
+        Self {
+            samples: 8,
+            lines: 8,
+            across: Across::default(),
+            error: 0.02,
+            transition: Transition::default(),
+        }
     }
 }
 
@@ -63,14 +86,19 @@ impl Settings {
         self.error == 0.0 || self.samples == 2
     }
 
+    /// What a sample that sees past everything adds of a segment: half of it, as published (section 3.2). With the
+    /// exact transition all of it, and no more than all with its neighbour: what one sees is then no other where the
+    /// other's map says so a texel too early or too late.
+    pub(super) fn lit(&self) -> f32 {
+        match self.transition {
+            Transition::Linear => 0.5,
+            Transition::Rational => 1.0,
+        }
+    }
+
     /// The fewest samples that a line may have.
     pub(super) fn fewest(&self) -> u32 {
         if self.is_even() { self.samples } else { 2 }
-    }
-
-    /// The lines of a light.
-    pub fn lines_of(&self, light: &RectangleLight) -> u32 {
-        if light.is_line() { 1 } else { self.lines }
     }
 
     /// Checks the knobs that must agree with the maps' side.

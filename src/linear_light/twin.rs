@@ -24,3 +24,30 @@ pub fn transition<T: Float>(w_edge: T, w_crossing: T, w_receiver: T) -> T {
         T::one()
     }
 }
+
+/// Bits from `low` to `high`, both included, `low` of 0 to 31 and `high` of −1 to 31.
+pub fn bits(low: i32, high: i32) -> u32 {
+    if low > high { 0 } else { (u32::MAX >> (31 - high)) & (u32::MAX << low) }
+}
+
+/// The bits whose middles lie between two places along a line, from 0 to 1.
+pub fn between<T: Float>(a: T, b: T) -> u32 {
+    (0..32)
+        .filter(|&bit| {
+            let middle = (T::from(bit).unwrap_or_else(T::nan) + T::from(0.5).unwrap_or_else(T::nan))
+                / T::from(32).unwrap_or_else(T::nan);
+            a.min(b) <= middle && middle <= a.max(b)
+        })
+        .fold(0, |mask, bit| mask | 1 << bit)
+}
+
+/// The run of bits around one; none where it is 0.
+pub fn run_at(mask: u32, at: i32) -> u32 {
+    let set = |bit: i32| (0..32).contains(&bit) && mask >> bit & 1 == 1;
+    if !set(at) {
+        return 0;
+    }
+    let low = (0..=at).rev().take_while(|&bit| set(bit)).last().unwrap_or(at);
+    let high = (at..32).take_while(|&bit| set(bit)).last().unwrap_or(at);
+    bits(low, high)
+}

@@ -118,17 +118,26 @@ pub const KNOBS: &[Knob] = &[
         techniques: &[Technique::LinearLight],
         unit: "lines",
         range: "1 to 16",
-        default: "4",
-        about: "most lines side by side that a rectangle is taken for; a line light is one. Any whole number",
+        default: "8",
+        about: "most lines that a light with an area is taken for; a line light is one. Any whole number",
+    },
+    Knob {
+        key: "across",
+        techniques: &[Technique::LinearLight],
+        unit: "choice",
+        range: "stack, edges",
+        default: "stack",
+        about: "which lines those are: side by side all over the light, or its edges, as published for \
+                polygons, which is a coarse thing to do",
     },
     Knob {
         key: "error",
         techniques: &[Technique::LinearLight],
         unit: "visible fraction",
         range: "0 to 1",
-        default: "0.005",
-        about: "mean error asked for: points are added where others leave receivers unseen, and lines to a \
-                rectangle, until what is missed costs no more; 0 uses as many as there may be, evenly",
+        default: "0.02",
+        about: "mean error asked for: points are added where light is lost between others, and lines to a light \
+                with an area, until what is missed is no more; 0 uses as many as there may be, evenly",
     },
     Knob {
         key: "transition",

@@ -6,7 +6,7 @@ pub use knobs::{KNOBS, Knob};
 
 use crate::Error;
 use crate::baseline::Settings as Baseline;
-use crate::linear_light::{Settings as LinearLight, Transition};
+use crate::linear_light::{Across, Settings as LinearLight, Transition};
 use crate::nbuffer;
 use crate::occlusion_textures::{Combine, Placement, Prefilter, Settings as OcclusionTextures};
 use crate::ray_march::{Hash, Layers, Projection, Sampling, Search, Settings as RayMarch};
@@ -136,6 +136,7 @@ impl Settings {
             }
             "samples" => self.baseline.samples = number(key, value)?,
             "lines" => self.linear_light.lines = number(key, value)?,
+            "across" => self.linear_light.across = choose(key, value, Across::ALL)?,
             "error" => self.linear_light.error = number(key, value)?,
             "transition" => self.linear_light.transition = choose(key, value, Transition::ALL)?,
             "rays" => r.rays = number(key, value)?,
@@ -181,6 +182,7 @@ impl Settings {
             }
             "samples" => self.baseline.samples.to_string(),
             "lines" => self.linear_light.lines.to_string(),
+            "across" => name_of(Across::ALL, self.linear_light.across),
             "error" => self.linear_light.error.to_string(),
             "transition" => name_of(Transition::ALL, self.linear_light.transition),
             "seed" if self.technique == Technique::RayMarch => r.seed.to_string(),
