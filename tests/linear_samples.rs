@@ -7,7 +7,7 @@ use antumbra::gpu::headless::{Stage, View};
 use antumbra::linear_light::twin::{between, bits, run_at};
 use antumbra::scene::{Role, Scene, generate};
 use antumbra::{Frame, RectangleLight};
-use antumbra_tests::measure::{Setup, metre_line, model, percent, summary};
+use antumbra_tests::measure::{Setup, metre_line, model, percent};
 use antumbra_tests::{Function, device};
 use glam::{DMat4, DQuat, DVec3};
 
@@ -50,18 +50,13 @@ fn overlapping_penumbrae_are_lost_to_two_samples_and_found_by_those_added() {
     println!("two: {} of {in_shadow} lost, {:.2} %", lost(&two), percent(&truth, &two));
     assert!(lost(&two) > in_shadow / 100, "the paper's failure is not there: {}", lost(&two));
 
-    let mut stage = setup.stage(&device, "technique=linear-light error=0.005");
+    let mut stage = setup.stage(&device, "technique=linear-light error=0.002");
     let more = setup.visibility(&mut stage);
     let places = places(&mut stage, &setup.light());
-    if let Ok(dir) = std::env::var("DUMP") {
-        for (n, i) in [("t", &truth), ("two", &two), ("more", &more)] {
-            std::fs::write(format!("{dir}/{n}.raw"), i.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<_>>()).unwrap();
-        }
-    }
     println!("{places:?}: {} lost, {:.2} %", lost(&more), percent(&truth, &more));
     assert!(places.len() > 2 && places.len() < 8, "{places:?}");
-    assert!(lost(&more) == 0 && percent(&truth, &more) < 1.0);
-    assert!(percent(&truth, &two) > 2.0 * percent(&truth, &more));
+    assert!(lost(&more) == 0 && percent(&truth, &more) < 2.0);
+    assert!(percent(&truth, &two) > 3.0 * percent(&truth, &more));
 }
 
 /// What is lost is no more than asked for: the rest of the error is the maps', the skins' and what the line's middle
@@ -122,12 +117,16 @@ fn kept_maps_are_made_once() {
     assert_eq!(run(&mut stage, &kept), made);
 
     // Another light under the same number is the host's mistake, and shows that nothing was made.
-    let moved = RectangleLight::line(light.center() + DVec3::X, DVec3::X * 0.5, DVec3::NEG_Y).unwrap();
+    let moved =
+        RectangleLight::line(light.center() + DVec3::X, DVec3::X * 0.5, DVec3::NEG_Y).unwrap();
     let other = frame(&mut stage, &moved, Some(8));
     let elsewhere = run(&mut stage, &other);
     assert_ne!(elsewhere, made);
     let sentence = stage.run(&kept).unwrap_err().to_string();
-    assert!(sentence.contains("revision 7") && sentence.contains("plan the frame again"), "{sentence}");
+    assert!(
+        sentence.contains("revision 7") && sentence.contains("plan the frame again"),
+        "{sentence}"
+    );
     // Without a number everything is made, and nothing is kept.
     for _ in 0..2 {
         let plan = frame(&mut stage, &light, None);
@@ -171,36 +170,53 @@ fn tilted_receivers() {
     assert!(errors[2][0] > 2.0 * errors[2][1], "{errors:?}");
 }
 
-/// Occluders that the segment goes through or ends at, and receivers in its plane and on its line: finite, within 0..1,
-/// and no light where all of it is hidden.
+/// Occluders that the segment goes through or ends at, and receivers in its plane and on its line: numbers, and how
+/// wrong they are.
 #[test]
 fn what_touches_the_line() {
     let device = device();
     let mut card = generate::quad(1.0, 1.0);
     card.double_sided = true;
+    let sideways = DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2);
     let upright = DQuat::from_rotation_z(std::f64::consts::FRAC_PI_2);
-    for (name, at) in [
-        ("through the middle", DMat4::from_rotation_translation(upright, DVec3::Y * 4.0)),
-        ("at an end", DMat4::from_rotation_translation(upright, DVec3::new(0.5, 3.5, 0.0))),
-        ("right under it", DMat4::from_translation(DVec3::Y * (4.0 - 1e-3))),
-        ("in its plane", DMat4::from_translation(DVec3::Y * 4.0)),
+    // The mean error in percent with 2 samples and with 8, which are what an error asked for gives where something is
+    // this near: the nearest ends of occluders are further aside than a map looks.
+    for (name, at, most) in [
+        ("through", DMat4::from_rotation_translation(upright, DVec3::Y * 4.0), [16.5, 2.2]),
+        (
+            "at an end",
+            DMat4::from_rotation_translation(upright, DVec3::new(0.5, 3.5, 0.0)),
+            [19.0, 3.7],
+        ),
+        ("right under", DMat4::from_translation(DVec3::Y * (4.0 - 1e-3)), [79.0, 12.0]),
     ] {
         for role in [Role::Occluder, Role::Both] {
             let mut scene = generate::stage(generate::line_light(1.0, 0.0).unwrap());
             scene.add("card", card.clone(), at, role);
             let setup = Setup { occluders_seen: true, ..Setup::ground(&scene, 2.2, 64) };
-            for words in ["samples=2", "samples=5 error=0", "error=0.001 transition=linear"] {
+            for (words, most) in ["samples=2", "samples=8"].into_iter().zip(most) {
                 let mut stage = setup.stage(&device, &format!("technique=linear-light {words}"));
                 let image = setup.visibility(&mut stage);
                 let good = image.iter().all(|v| v.is_finite() && (0.0..=1.0).contains(v));
                 assert!(good, "{name}, {role:?}, {words}");
-                let (truth, _) = setup.traced(&stage, 16);
-                let s = summary(&truth, &image);
-                println!(
-                    "{name}, {role:?}, {words}: {:.2} %, {} penumbra, {} samples",
-                    100.0 * s.mean_abs_error, s.penumbra_pixels, places(&mut stage, &setup.light()).len()
-                );
+                let error = percent(&setup.traced(&stage, 16).0, &image);
+                println!("{name}, {role:?}, {words}: {error:.2} %");
+                assert!(error < most, "{name}, {role:?}, {words}: {error}");
             }
+        }
+    }
+    // A receiver in the light's plane, and one that the line lies in.
+    for at in [
+        DMat4::from_translation(DVec3::Y * 4.0),
+        DMat4::from_rotation_translation(sideways, DVec3::Y * 4.0),
+    ] {
+        let mut scene = generate::card(generate::line_light(1.0, 0.0).unwrap());
+        scene.add("shelf", card.clone(), at, Role::Receiver);
+        let setup = Setup::ground(&scene, 2.2, 64);
+        for words in ["samples=2", "samples=8 transition=linear"] {
+            let image = setup
+                .visibility(&mut setup.stage(&device, &format!("technique=linear-light {words}")));
+            assert!(image.iter().all(|v| v.is_finite() && (0.0..=1.0).contains(v)), "{words}");
         }
     }
 }

@@ -18,19 +18,12 @@ layout(set = 0, binding = 4, rgba32f) writeonly uniform image2DArray maps;
 layout(push_constant) uniform Push {
     int map;   // side in texels
     int layer; // of maps
-    float lit; // what a channel has where no skin was drawn
 } push;
-
-float channel(float drawn)
-{
-    return drawn == 1.0 ? push.lit : drawn;
-}
 
 vec2 told_at(ivec2 p)
 {
-    float before = channel(texelFetch(right_channel, p, 0).x);
-    float behind = channel(texelFetch(left_channel, p, 0).x);
-    return vec2(texelFetch(seen, ivec3(p, here.first), 0).x, packed(vec2(before, behind)));
+    vec2 channels = vec2(texelFetch(right_channel, p, 0).x, texelFetch(left_channel, p, 0).x);
+    return vec2(texelFetch(seen, ivec3(p, here.first), 0).x, packed(channels));
 }
 
 void main()

@@ -38,5 +38,5 @@ void main()
             }
         }
     }
-    masks[cell.y * RECEIVERS + cell.x] = mask;
+    masks[cell.y * RECEIVERS.x + cell.x] = mask;
 }

@@ -6,8 +6,8 @@
 #ifndef LINEAR_LIGHT_MASK_GLSL
 #define LINEAR_LIGHT_MASK_GLSL
 
-// Receivers along a side of a line's middle map.
-const int RECEIVERS = 64;
+// Receivers along the rows of a line's middle map, where what is seen of the line changes most, and across.
+const ivec2 RECEIVERS = ivec2(128, 32);
 
 const uint ALL = 0xffffffffu;
 

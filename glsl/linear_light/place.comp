@@ -17,7 +17,7 @@ layout(push_constant) uniform Push {
     int even;    // 1: as many as may be, evenly: the middle does not tell
 } push;
 
-const int EACH = RECEIVERS * RECEIVERS / 128;
+const int EACH = RECEIVERS.x * RECEIVERS.y / 128;
 
 shared int begins[33];  // at the first bit of each lost run, its length; behind the last, less so
 shared int shadowed;    // receivers that do not see the whole line
@@ -77,21 +77,22 @@ void main()
         atomicAdd(shadowed, my_shadowed);
         barrier();
         if (me == 0) {
-            int best = 0;
+            // The middle of the first places that tell most.
+            int first = 0;
+            int last = 0;
             int most = 0;
             int sum = 0;
             for (int bit = 0; bit < 32; ++bit) {
                 sum += begins[bit];
-                if (sum > most) {
-                    most = sum;
-                    best = bit;
-                }
+                first = sum > most ? bit : first;
+                last = sum > most || (sum == most && last == bit - 1) ? bit : last;
+                most = max(most, sum);
             }
             bool enough = float(lost) <= 32.0 * push.error * float(shadowed);
             if (enough || most == 0 || count >= push.most) {
                 done = 1;
             } else {
-                taken |= 1u << best;
+                taken |= 1u << ((first + last) / 2);
             }
         }
         barrier();

@@ -28,7 +28,6 @@ layout(push_constant) uniform Push {
     int most;     // samples that a line may have: layers of maps
     int lines;
     int masked;
-    float lit;    // what a channel has where no skin was drawn
 } push;
 
 // What a line of the light is to a pixel.
@@ -39,15 +38,16 @@ struct Line {
     int row;
 };
 
-// What a sample tells of the segments before and behind it: the mean of four texels of which the receiver is behind
-// none. `position` and `normal` are the line's, from its middle.
-vec2 told_by(Line line, int nth, float at, vec3 position, vec3 normal, bool blocks)
+// What a sample tells of the segments before and behind it: in x and y what skins say, in z and w how far there are
+// none. The mean of four texels, of those that the receiver is behind. `position` and `normal` are the line's, from its middle.
+vec4 told_by(Line line, int nth, float at, vec3 position, vec3 normal, bool blocks, out float sees)
 {
+    sees = 0.0;
     vec3 p = position - vec3((at - 0.5) * line.span, 0.0, 0.0);
     if (dot(normal, p) >= 0.0) {
         // The sample is below the pixel's plane, whose other side is seen where it does not block.
         if (blocks) {
-            return vec2(0.0);
+            return vec4(0.0);
         }
         normal = -normal;
     }
@@ -58,36 +58,51 @@ vec2 told_by(Line line, int nth, float at, vec3 position, vec3 normal, bool bloc
     vec2 corner = floor(m.t - 0.5);
     // Nothing is in the outermost texels of a map, nor beyond.
     if (any(lessThan(corner, vec2(0.0))) || any(greaterThanEqual(corner, vec2(push.map - 1)))) {
-        return vec2(push.lit);
+        sees = 1.0;
+        return vec4(0.0, 0.0, 1.0, 1.0);
     }
     vec2 f = m.t - 0.5 - corner;
-    vec2 sum = vec2(0.0);
+    vec4 sum = vec4(0.0);
     for (int row = 0; row < 2; ++row) {
         ivec2 texel = ivec2(corner) + ivec2(0, row);
         vec4 told = texelFetch(maps, ivec3(texel, line.row * push.most + nth), 0);
         float weight = row == 1 ? f.y : 1.0 - f.y;
         vec2 at_centre = vec2(texel) + 0.5;
         bool hides = in_front_of_filter(m, at_centre, told.x);
-        sum += hides ? vec2(0.0) : weight * (1.0 - f.x) * unpacked(told.y);
+        float part = hides ? 0.0 : weight * (1.0 - f.x);
+        sum += part * unpacked(told.y);
+        sees += part;
         hides = in_front_of_filter(m, at_centre + vec2(1.0, 0.0), told.z);
-        sum += hides ? vec2(0.0) : weight * f.x * unpacked(told.w);
+        part = hides ? 0.0 : weight * f.x;
+        sum += part * unpacked(told.w);
+        sees += part;
     }
     return sum;
 }
 
-// The part of a line that a receiver sees. Of a segment, what its first sample sees up to the first occluder and what
-// its last one sees from there back; all of it where one of them sees all of it.
+// The part of a segment that a receiver sees, by what its first and its last sample tell of it and whether they see the
+// receiver, 0 to 1: a half of it for each that sees past everything (section 3.2), all of it where the other is hidden.
+float part_of(vec2 first, vec2 last, vec2 see)
+{
+    vec2 clear = vec2(first.y, last.y) * (1.0 - 0.5 * see.yx);
+    return min(first.x + last.x + clear.x + clear.y, 1.0);
+}
+
+// The part of a line that it sees.
 float part_of(Line line, int count, vec3 position, vec3 normal, bool blocks)
 {
     float sum = 0.0;
     float before = 0.0;
-    float told = 0.0;
+    vec2 told = vec2(0.0);
+    float saw = 0.0;
     for (int nth = 0; nth < count; ++nth) {
         float at = texelFetch(places, ivec2(SAMPLES_AT + nth, line.row), 0).x;
-        vec2 by = told_by(line, nth, at, position, normal, blocks);
-        sum += nth > 0 ? (at - before) * min(told + by.x, 1.0) : 0.0;
+        float sees;
+        vec4 by = told_by(line, nth, at, position, normal, blocks, sees);
+        sum += nth > 0 ? (at - before) * part_of(told, by.xz, vec2(saw, sees)) : 0.0;
         before = at;
-        told = by.y;
+        told = by.yw;
+        saw = sees;
     }
     return sum;
 }

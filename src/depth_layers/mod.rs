@@ -25,8 +25,8 @@ mod host_maps;
 mod view;
 
 pub(crate) use host_maps::HostMapView;
-pub use view::{Eye, MapView, MeshBounds, fit_from, fit_occluders, fit_receivers, is_aside};
 pub(crate) use view::tangents_of;
+pub use view::{Eye, MapView, MeshBounds, fit_from, fit_occluders, fit_receivers, is_aside};
 
 use crate::graph::{
     Access, Draw, Graph, Layer, Need, Owner, Pass, Push, ResourceId, Target, Use, Work,

@@ -120,8 +120,6 @@ pub struct Keep {
     pub map: i32,
     /// Where the sample's goes.
     pub layer: i32,
-    /// What a channel has where no skin was drawn.
-    pub lit: f32,
 }
 
 /// `visibility.comp`
@@ -144,6 +142,4 @@ pub struct Visibility {
     pub lines: i32,
     /// 1: the mask holds the receivers' roles.
     pub masked: i32,
-    /// What a channel has where no skin was drawn.
-    pub lit: f32,
 }

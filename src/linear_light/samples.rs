@@ -9,8 +9,8 @@ use crate::graph::{Access, Draw, Graph, Layer, Pass, Push, ResourceId, Target, U
 use crate::shaders;
 use crate::visibility::grid;
 
-/// Receivers along a side of `mask.comp`'s grid.
-pub(super) const RECEIVERS: u32 = 64;
+/// Receivers along and across the rows of `mask.comp`'s grid.
+pub(super) const RECEIVERS: [u32; 2] = [128, 32];
 
 /// What samples see.
 pub(super) struct Layers {
@@ -66,7 +66,7 @@ pub(super) fn place(
     graph.push(Pass::compute(
         "linear_light.mask",
         shaders::LINE_MASK,
-        grid([RECEIVERS; 2]),
+        grid(RECEIVERS),
         Push::new(&push::Mask { u_window: line.u_window(), line: line.length(), map: side as i32 }),
         vec![
             Use::bound(0, layers.seen, Access::SampledCompute),

@@ -148,7 +148,7 @@ pub(super) fn keep(
             arguments: made.groups,
             offset: SAMPLE_BEFORE,
         },
-        push: Push::new(&push::Keep { map: inputs.side as i32, layer: layer as i32, lit: settings.lit() }),
+        push: Push::new(&push::Keep { map: inputs.side as i32, layer: layer as i32 }),
         uses: vec![
             Use::fixed(made.groups, Access::Indirect),
             Use::bound(0, made.layers.seen, Access::SampledCompute),

@@ -50,7 +50,7 @@ pub struct Settings {
     pub lines: u32,
     /// Which lines.
     pub across: Across,
-    /// The error asked for, as a share of the light, 0 to 1; 0.02 by default. Samples are added where light is lost
+    /// The error asked for, as a share of the light, 0 to 1; 0.01 by default. Samples are added where light is lost
     /// between others, and lines to a light with an area, until what is missed is no more. 0: as many of both as
     /// there may be, evenly.
     pub error: f32,
@@ -64,7 +64,7 @@ impl Default for Settings {
             samples: 8,
             lines: 8,
             across: Across::default(),
-            error: 0.02,
+            error: 0.01,
             transition: Transition::default(),
         }
     }
@@ -84,16 +84,6 @@ impl Settings {
     /// Whether samples are evenly spaced, whatever they see.
     pub fn is_even(&self) -> bool {
         self.error == 0.0 || self.samples == 2
-    }
-
-    /// What a sample that sees past everything adds of a segment: half of it, as published (section 3.2). With the
-    /// exact transition all of it, and no more than all with its neighbour: what one sees is then no other where the
-    /// other's map says so a texel too early or too late.
-    pub(super) fn lit(&self) -> f32 {
-        match self.transition {
-            Transition::Linear => 0.5,
-            Transition::Rational => 1.0,
-        }
     }
 
     /// The fewest samples that a line may have.

@@ -34,7 +34,8 @@ pub fn bits(low: i32, high: i32) -> u32 {
 pub fn between<T: Float>(a: T, b: T) -> u32 {
     (0..32)
         .filter(|&bit| {
-            let middle = (T::from(bit).unwrap_or_else(T::nan) + T::from(0.5).unwrap_or_else(T::nan))
+            let middle = (T::from(bit).unwrap_or_else(T::nan)
+                + T::from(0.5).unwrap_or_else(T::nan))
                 / T::from(32).unwrap_or_else(T::nan);
             a.min(b) <= middle && middle <= a.max(b)
         })

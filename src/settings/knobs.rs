@@ -135,7 +135,7 @@ pub const KNOBS: &[Knob] = &[
         techniques: &[Technique::LinearLight],
         unit: "visible fraction",
         range: "0 to 1",
-        default: "0.02",
+        default: "0.01",
         about: "mean error asked for: points are added where light is lost between others, and lines to a light \
                 with an area, until what is missed is no more; 0 uses as many as there may be, evenly",
     },
