@@ -62,7 +62,10 @@ pub fn declare(graph: &mut Graph, visibility: ResourceId, settings: &Settings, i
         receivers: depth(graph, "linear_light.receivers"),
         of: graph.buffer("linear_light.samples", 4 + 4 * 16),
         seen: graph.image_array("linear_light.seen", format, [side; 2], 2),
-        masks: graph.buffer("linear_light.masks", 4 * samples::RECEIVERS.map(u64::from).iter().product::<u64>()),
+        masks: graph.buffer(
+            "linear_light.masks",
+            4 * samples::RECEIVERS.map(u64::from).iter().product::<u64>(),
+        ),
     };
     let bytes = skin_bytes(side);
     let left = Skins {
