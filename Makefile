@@ -1,8 +1,8 @@
 # make demo    real models with soft shadows, in out/
 # make test    every test, on each driver
-# make bench   what accuracy costs in time, in out/accuracy_cost/, and what soft shadow maps and ray
-#              marching do, in out/bench/ and on the terminal (make bench QUICK=1 in under five
-#              minutes, the report alone)
+# make bench   what accuracy costs in time, in out/accuracy_cost/, and what each technique does, in
+#              out/bench/ and on the terminal (make bench QUICK=1 in under five minutes, the report
+#              alone)
 #
 # ANTUMBRA_DRIVER=<part of a device name> picks the device for all of them.
 
@@ -35,6 +35,7 @@ ifndef QUICK
 	$(CARGO) bench --bench soft_shadow_map -- --out out/bench
 	$(CARGO) bench --bench ray_march
 	$(CARGO) bench --bench occlusion_textures
+	$(CARGO) bench --bench linear_light
 endif
 
 # ---------------------------------------------------------------------------------------------

@@ -193,8 +193,8 @@ pub const CURVES: &[Curve] = &[
     Curve {
         technique: "linear-light",
         label: "linear light",
-        sweeps: "samples",
-        steps: &[("samples=2", true), ("samples=4", true), ("samples=8", false)],
+        sweeps: "error",
+        steps: &[("error=0.05", true), ("error=0.02", true), ("error=0.01", false)],
         shown: Some(1),
     },
 ];
