@@ -15,16 +15,18 @@ struct Skin {
     float row;    // of texels
 };
 
-// Whether an occluder ends between two texels that lie side by side: no surface that goes on falls by more than
-// twice as much from one texel to the next as it does before and behind them. In w planes are straight lines,
-// whichever way they lean; a step that goes the other way says nothing of this one.
+// Whether an occluder ends between two texels that lie side by side: by a step that is no plane's, whichever way it
+// leans, because a plane's w falls by as much from each texel to the next. A step that goes the other way says nothing
+// of this one. A surface that bends away by more than a fifth is taken for one that ends. It hides as one does, so that
+// its skin is not wrong; one that is missed lets light through. (Missed in the bunny's shadow: 15 spots with a step of
+// twice as much, 2 with a fifth more, 2 with none, which takes twice as many skins.)
 bool is_edge(float w_before, float w_near, float w_seen, float w_behind)
 {
     float step = w_near - w_seen;
     float before = max(w_before - w_near, 0.0);
     float behind = max(w_seen - w_behind, 0.0);
     // Rounding of the four.
-    return step > 2.0 * min(before, behind) + 1.0e-6 * w_near;
+    return step > 1.2 * min(before, behind) + 1.0e-6 * w_near;
 }
 
 // The receiver beside the edge; where the map shows none, as far as the furthest there is.

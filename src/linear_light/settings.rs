@@ -46,7 +46,7 @@ impl Across {
 pub struct Settings {
     /// The most samples on a line, 2 to 16; 8 by default.
     pub samples: u32,
-    /// The most lines that a light with an area is taken for, 1 to 16; 8 by default. A line light is one.
+    /// The most lines that a light with an area is taken for, 1 to 16; 4 by default. A line light is one.
     pub lines: u32,
     /// Which lines.
     pub across: Across,
@@ -62,7 +62,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             samples: 8,
-            lines: 8,
+            lines: 4,
             across: Across::default(),
             error: 0.01,
             transition: Transition::default(),

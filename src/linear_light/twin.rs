@@ -8,7 +8,8 @@ pub fn is_edge<T: Float>([before, near, seen, behind]: [T; 4]) -> bool {
     let rounding = T::from(1.0e-6).unwrap_or_else(T::epsilon);
     let falls = |a: T, b: T| (a - b).max(T::zero());
     let least = falls(before, near).min(falls(seen, behind));
-    near - seen > least + least + rounding * near
+    let more = T::from(1.2f32).unwrap_or_else(T::one);
+    near - seen > more * least + rounding * near
 }
 
 /// The w where a ray is at `u`: at `ray` for w = 0, and moving by `step` with w.

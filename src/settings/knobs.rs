@@ -118,7 +118,7 @@ pub const KNOBS: &[Knob] = &[
         techniques: &[Technique::LinearLight],
         unit: "lines",
         range: "1 to 16",
-        default: "8",
+        default: "4",
         about: "most lines that a light with an area is taken for; a line light is one. Any whole number",
     },
     Knob {
