@@ -98,7 +98,7 @@ fn samples(device: &HeadlessDevice, _: &Options) -> Table {
                 n.to_string(),
                 format!("{:.2}", error("linear")),
                 format!("{rational:.2}"),
-                format!("{:.2}", hard_of(if n == 3 { 3 } else { n })),
+                format!("{:.2}", hard_of(n)),
                 format!("{:.2}", hard_of(200)),
                 match (n, as_good) {
                     (16, Some((m, _))) => m.to_string(),

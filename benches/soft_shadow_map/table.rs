@@ -12,13 +12,13 @@ impl Table {
     /// An empty table; prints its head.
     pub fn new(name: &'static str, columns: &[&'static str]) -> Self {
         println!("\n== {name}");
-        println!("{}", columns.iter().map(|c| format!("{c:>14}")).collect::<String>());
+        println!("{}", columns.iter().map(|c| format!(" {c:>13}")).collect::<String>());
         Self { name, columns: columns.to_vec(), rows: Vec::new() }
     }
 
     /// Adds and prints a row.
     pub fn row(&mut self, cells: Vec<String>) {
-        println!("{}", cells.iter().map(|c| format!("{c:>14}")).collect::<String>());
+        println!("{}", cells.iter().map(|c| format!(" {c:>13}")).collect::<String>());
         self.rows.push(cells);
     }
 

@@ -207,7 +207,8 @@ pub struct Frame<'a> {
     pub noise: u32,
     /// The host's number for the state of the light and of the meshes, geometry, transforms and roles: as long as
     /// it gives the same one, maps of them that the node keeps are not made anew. None: everything may have
-    /// changed. `linear-light` keeps its maps; the pixels are looked at in every frame.
+    /// changed. `linear-light` keeps its maps; the pixels are looked at in every frame. Maps count as made once a
+    /// frame that makes them is recorded: it must be submitted, and before what is recorded after it.
     pub revision: Option<u64>,
     /// Which of the frames in flight this is, 0 and up. The frame that last had the same number
     /// must be done before this one is recorded.
