@@ -26,8 +26,8 @@ pub struct ShadowNode {
     kinds: Vec<&'static str>,
     /// What plans for these objects carry.
     stamp: Stamp,
-    /// The revision of light and meshes that the maps are of which recorded frames have left.
-    kept: Mutex<Option<u64>>,
+    /// What recorded frames have left.
+    kept: Mutex<Kept>,
 }
 
 /// The next [`Stamp`]: no two nodes or sizes share one.
@@ -107,7 +107,7 @@ impl ShadowNode {
         let FrameGraph { graph, visibility, .. } = frame::nominal(&description, limits);
         let objects = NodeObjects::new(&host, allocator, &graph, &description)?;
         let kinds = graph.kinds().map(|p| p.name).collect();
-        let kept = Mutex::new(None);
+        let kept = Mutex::default();
         Ok(Self {
             host,
             description,
@@ -120,7 +120,7 @@ impl ShadowNode {
         })
     }
 
-    fn kept(&self) -> MutexGuard<'_, Option<u64>> {
+    fn kept(&self) -> MutexGuard<'_, Kept> {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -135,7 +135,7 @@ impl ShadowNode {
     /// See [`frame::plan`].
     pub fn plan(&self, frame: &Frame) -> Result<FramePlan, Error> {
         let kept = *self.kept();
-        let plan = frame::plan_with(&self.description, self.limits, frame, kept)?;
+        let plan = frame::plan_with(&self.description, self.limits, frame, &kept)?;
         Ok(plan.stamped(self.stamp, self.objects.image(self.visibility).0))
     }
 
@@ -174,17 +174,13 @@ impl ShadowNode {
             ));
         }
         let mut kept = self.kept();
-        match plan.kept {
-            Kept::Untouched => {}
-            Kept::Made(revision) => *kept = revision,
-            Kept::Used(revision) if *kept == Some(revision) => {}
-            Kept::Used(revision) => {
-                return Err(Error::Frame(format!(
-                    "this plan uses the maps of revision {revision}, and a frame recorded since has made others; \
-                     plan the frame again"
-                )));
-            }
+        if !plan.keeping.agrees(&kept) {
+            return Err(Error::Frame(
+                "this plan counts on maps or pixels that a frame recorded since has replaced; plan the frame again"
+                    .into(),
+            ));
         }
+        *kept = plan.keeping.behind(&kept);
         drop(kept);
         self.objects.record(&self.host, cmd, plan, draw);
         Ok(())
@@ -231,7 +227,7 @@ impl ShadowNode {
         let old = self.objects.resize(&self.host, allocator, &graph, description.inspect)?;
         self.description = description;
         self.stamp = next_stamp();
-        *self.kept() = None;
+        *self.kept() = Kept::default();
         Ok(Retired::sized(self.host.clone(), old))
     }
 

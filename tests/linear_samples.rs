@@ -112,7 +112,7 @@ fn kept_maps_are_made_once() {
     let kept = frame(&mut stage, &light, Some(7));
     let runs: Vec<_> = kept.plan.runs().iter().map(|r| r.pass.name).collect();
     assert_eq!(runs, ["linear_light.visibility"]);
-    assert!(kept.plan.skipped.iter().any(|s| s.why == "the maps of revision 7 are kept"));
+    assert!(kept.plan.skipped.iter().any(|s| s.why == "the maps of scene revision 7 are kept"));
     assert_eq!(run(&mut stage, &kept), made);
     assert_eq!(run(&mut stage, &kept), made);
 
@@ -124,7 +124,7 @@ fn kept_maps_are_made_once() {
     assert_ne!(elsewhere, made);
     let sentence = stage.run(&kept).unwrap_err().to_string();
     assert!(
-        sentence.contains("revision 7") && sentence.contains("plan the frame again"),
+        sentence.contains("has replaced") && sentence.contains("plan the frame again"),
         "{sentence}"
     );
     // Without a number everything is made, and nothing is kept.

@@ -3,6 +3,7 @@
 mod accesses;
 mod check;
 mod host;
+mod keep;
 mod plan;
 mod rows;
 #[cfg(test)]
@@ -12,8 +13,9 @@ pub use accesses::{BufferAccess, HostAccess, ImageBarrier, NodeUse};
 pub use host::{
     BorderBarriers, Geometry, HostImage, MeshBuffers, MeshInstance, OccluderMaps, Visibility,
 };
+pub(crate) use keep::Kept;
 pub use plan::{Faces, FramePlan, MeshDraw, plan};
-pub(crate) use plan::{Kept, Stamp, plan_with};
+pub(crate) use plan::{Stamp, plan_with};
 pub(crate) use rows::{FrameGraph, nominal};
 pub use rows::{Limits, full_graph};
 
@@ -205,11 +207,14 @@ pub struct Frame<'a> {
     /// Moves the noise of `ray-march`: added to the technique's seed. A number that is another one each
     /// frame lets what is behind average over frames; 0 keeps the noise where it is.
     pub noise: u32,
-    /// The host's number for the state of the light and of the meshes, geometry, transforms and roles: as long as
-    /// it gives the same one, maps of them that the node keeps are not made anew. None: everything may have
-    /// changed. `linear-light` keeps its maps; the pixels are looked at in every frame. Maps count as made once a
-    /// frame that makes them is recorded: it must be submitted, and before what is recorded after it.
+    /// The host's number for the light and the meshes as they stand to each other: geometry, transforms, roles, what
+    /// it lends of them. As long as it gives the same one, what the node has made of them is kept. None: everything
+    /// may have changed. What a frame makes counts as made once it is recorded: it must be submitted, and before what
+    /// is recorded after it.
     pub revision: Option<u64>,
+    /// The same for what the pixels show: camera and G-buffer, [`Self::noise`], and who uses the result how. With both
+    /// numbers as they were in the frame before, a visibility image of the node's own stays as it is and no pass runs.
+    pub view_revision: Option<u64>,
     /// Which of the frames in flight this is, 0 and up. The frame that last had the same number
     /// must be done before this one is recorded.
     pub slot: u32,
@@ -244,6 +249,7 @@ impl<'a> Frame<'a> {
             window: None,
             noise: 0,
             revision: None,
+            view_revision: None,
             slot: 0,
             border_barriers: BorderBarriers::Node,
         }

@@ -1,6 +1,7 @@
 //! From one frame to what it records.
 
 use super::accesses::{self, BufferAccess, HostAccess, ImageBarrier, NodeUse};
+use super::keep::{self, Keeping, Kept, Revisions};
 use super::rows::{Limits, PLACEHOLDER, Views, build, wanted};
 use super::{
     BorderBarriers, Description, Frame, Geometry, HostImage, MeshBuffers, MeshInstance, Visibility,
@@ -69,18 +70,6 @@ impl DrawList {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Stamp(pub u64);
 
-/// What a frame does with the maps that a node keeps.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Kept {
-    /// Nothing.
-    #[default]
-    Untouched,
-    /// It makes those of a revision; of none, where the host says none.
-    Made(Option<u64>),
-    /// It uses those of a revision.
-    Used(u64),
-}
-
 /// What one frame records.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FramePlan {
@@ -93,7 +82,7 @@ pub struct FramePlan {
     /// The frame in flight.
     pub slot: u32,
     pub(crate) stamp: Stamp,
-    pub(crate) kept: Kept,
+    pub(crate) keeping: Keeping,
     accesses: Vec<HostAccess>,
     occluders: DrawList,
     receivers: DrawList,
@@ -175,15 +164,15 @@ impl FramePlan {
 /// usage or layout than the description and the passes need, images or strides that the description
 /// does not have, or a frame slot beyond the frames in flight.
 pub fn plan(description: &Description, limits: Limits, frame: &Frame) -> Result<FramePlan, Error> {
-    plan_with(description, limits, frame, None)
+    plan_with(description, limits, frame, &Kept::default())
 }
 
-/// As [`plan`], for a node that keeps maps of a revision.
+/// As [`plan`], for a node in which earlier frames have left something.
 pub(crate) fn plan_with(
     description: &Description,
     limits: Limits,
     frame: &Frame,
-    kept: Option<u64>,
+    kept: &Kept,
 ) -> Result<FramePlan, Error> {
     frame.check(description)?;
     let turned = match description.settings.technique {
@@ -202,15 +191,12 @@ pub(crate) fn plan_with(
     };
     let receivers = of_role(Role::receives);
     let mut occluders = of_role(Role::blocks);
-    let mut views = look(description, frame, &mut occluders, &receivers)?;
-    views.kept = kept.filter(|_| kept == frame.revision);
-    let keeps = description.settings.technique == Technique::LinearLight;
-    let kept = match (&views.need, views.kept) {
-        (Need::Yes(_), Some(revision)) if keeps => Kept::Used(revision),
-        (Need::Yes(_), None) if keeps => Kept::Made(frame.revision),
-        _ => Kept::Untouched,
-    };
-    let built = build(description, limits, light, &views);
+    let views = look(description, frame, &mut occluders, &receivers)?;
+    let mut built = build(description, limits, light, &views);
+    let pixels: Vec<_> = [Some(built.depth), built.mask].into_iter().flatten().collect();
+    let owned = matches!(frame.visibility, Visibility::Own { .. });
+    let revisions = Revisions { scene: frame.revision, view: frame.view_revision };
+    let keeping = keep::apply(&mut built.graph, &pixels, owned, revisions, kept);
 
     let lent = |id: Option<ResourceId>, image: Option<HostImage>| id.zip(image);
     let maps = frame.occluder_maps;
@@ -255,7 +241,7 @@ pub(crate) fn plan_with(
         visibility: built.visibility,
         slot: frame.slot,
         stamp: Stamp::default(),
-        kept,
+        keeping,
         occluders: DrawList::new(description, &occluders, &occluder_clips)?,
         receivers: if receiver_clips.is_empty() {
             DrawList::default()
@@ -363,7 +349,6 @@ fn look(
     Ok(Views {
         points,
         lines,
-        kept: None,
         occluders: seen.or(fit).unwrap_or(PLACEHOLDER),
         host_maps,
         receivers: Some(receiver_fit.unwrap_or(PLACEHOLDER)),

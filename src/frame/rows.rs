@@ -44,8 +44,6 @@ pub(super) struct Views {
     pub points: Vec<LightPoint>,
     /// Those of linear lights, as `points`.
     pub lines: Vec<linear_light::Line>,
-    /// The revision of light and meshes that the maps which the node keeps are of, where they are this frame's.
-    pub kept: Option<u64>,
     pub host_maps: Option<HostMapView>,
     pub receivers: Option<MapView>,
     pub need: Need,
@@ -104,7 +102,6 @@ pub(crate) fn nominal(description: &Description, limits: Limits) -> FrameGraph {
         occluders: view,
         points: (0..points).map(|_| LightPoint { at: [0.0; 2], view }).collect(),
         lines: vec![linear_light::Line::NONE; lines as usize],
-        kept: None,
         host_maps: description.occluder_maps.map(|_| HostMapView {
             view,
             flip: [false; 2],
@@ -224,12 +221,6 @@ pub(super) fn build(
             occlusion_textures::declare(&mut graph, layers.as_ref(), visibility, settings, &inputs);
         }
         Technique::LinearLight => {
-            let kept =
-                |revision| Need::No(format!("the maps of revision {revision} are kept").into());
-            let make = match (need, views.kept) {
-                (Need::Yes(_), Some(revision)) => &kept(revision),
-                _ => need,
-            };
             let inputs = linear_light::Inputs {
                 lines: &views.lines,
                 side: settings.map,
@@ -237,7 +228,6 @@ pub(super) fn build(
                 gbuffer: &gbuffer,
                 snap,
                 need,
-                make,
             };
             linear_light::declare(&mut graph, visibility, &settings.linear_light, &inputs);
         }

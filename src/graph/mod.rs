@@ -84,6 +84,14 @@ impl Graph {
         }
     }
 
+    /// Leaves out rows that would run, by their place.
+    pub(crate) fn leave_out(&mut self, which: impl Fn(usize) -> bool, why: &str) {
+        let rows = self.passes.iter_mut().enumerate().filter(|(row, _)| which(*row));
+        for (_, pass) in rows.filter(|(_, p)| matches!(p.need, Need::Yes(_))) {
+            pass.need = Need::No(why.to_owned().into());
+        }
+    }
+
     fn add(&mut self, resource: Resource) -> ResourceId {
         // A graph has tens of resources; the id would wrap at 65536.
         let id = ResourceId(self.resources.len() as u16);

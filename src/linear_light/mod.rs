@@ -40,7 +40,8 @@
 //! is one line where its penumbrae across are so narrow that n = 1 line keeps P / 2n (D + P) within the `error`, P being
 //! b (w_o − w_r) and D the occluder's height in tangents; else as many as it takes, at most `lines`.
 //!
-//! **Kept maps.** While the host gives one `Frame::revision`, the maps stay, and a frame is one row.
+//! **Kept maps.** While the host gives one `Frame::revision`, the maps stay, and a frame is one row: 0.6 to 0.9 of the
+//! time of hard shadows from as many points.
 //!
 //! **Measured** (lavapipe, 256² maps, a line of 1 m, mean error in percent over shadow and penumbra against the exact
 //! visible fraction; evenly spaced 2, 4, 8 and 16 samples): card 0.3, 0.2, 0.2, 0.2; tall box 0.4, 0.3, 0.3, 0.2;

@@ -29,8 +29,6 @@ pub struct Inputs<'a> {
     pub snap: f32,
     /// Whether anything can be shadowed.
     pub need: &'a Need,
-    /// Whether the maps must be made: not where they are kept.
-    pub make: &'a Need,
 }
 
 /// What a line's maps and channels are made in, and what is made of all of them.
@@ -87,8 +85,7 @@ pub fn declare(graph: &mut Graph, visibility: ResourceId, settings: &Settings, i
     let kept = settings.lines * settings.samples;
     let maps = graph.image_array("linear_light.maps", format, [side; 2], kept);
     let size = [SAMPLES_AT + settings.samples, settings.lines];
-    let places = graph.image("linear_light.places", format, size, Owner::Kept);
-    graph.keep(maps);
+    let places = graph.image("linear_light.places", format, size, Owner::Transient);
     let made = Made {
         layers,
         left,

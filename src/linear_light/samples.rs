@@ -42,7 +42,7 @@ pub(super) fn place(
             [1, 1, 1],
             Push::new(&push::Spread { count: settings.samples as i32 }),
             vec![Use::bound(0, layers.of, Access::BufferWriteCompute)],
-            inputs.make,
+            inputs.need,
         ));
         return;
     }
@@ -72,7 +72,7 @@ pub(super) fn place(
             Use::bound(0, layers.seen, Access::SampledCompute),
             Use::bound(1, layers.masks, Access::BufferWriteCompute),
         ],
-        inputs.make,
+        inputs.need,
     ));
     graph.push(Pass::compute(
         "linear_light.place",
@@ -87,7 +87,7 @@ pub(super) fn place(
             Use::bound(0, layers.masks, Access::BufferReadCompute),
             Use::bound(1, layers.of, Access::BufferWriteCompute),
         ],
-        inputs.make,
+        inputs.need,
     ));
 }
 
@@ -142,7 +142,7 @@ fn draw(
             target: Target::Depth { clear, compare },
             draw: Draw::Layer { layer, view },
         },
-        need: inputs.make.clone(),
+        need: inputs.need.clone(),
     });
 }
 
@@ -163,6 +163,6 @@ pub(super) fn take(made: &Made, layer: u32, line: &Line, inputs: &Inputs) -> Pas
             layer: layer as i32,
         }),
         work: Work::Indirect { shader: shaders::LINE_TAKE, arguments: made.groups, offset: 0 },
-        need: inputs.make.clone(),
+        need: inputs.need.clone(),
     }
 }

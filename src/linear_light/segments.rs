@@ -72,7 +72,7 @@ pub(super) fn start(
             Use::bound(3, made.groups, Access::BufferWriteCompute),
             Use::bound(4, made.places, Access::ImageWrite),
         ],
-        inputs.make,
+        inputs.need,
     ));
 }
 
@@ -97,7 +97,7 @@ fn skins(
             Use::bound(2, skins.skins, Access::BufferWriteCompute),
             Use::bound(3, made.draws, Access::BufferUpdate),
         ],
-        need: inputs.make.clone(),
+        need: inputs.need.clone(),
     });
     graph.push(Pass {
         name: skins.draw,
@@ -123,7 +123,7 @@ fn skins(
             target: Target::Depth { clear: 1.0, compare: vk::CompareOp::LESS },
             draw: Draw::Indirect { arguments: made.draws, offset: skins.offset },
         },
-        need: inputs.make.clone(),
+        need: inputs.need.clone(),
     });
 }
 
@@ -157,6 +157,6 @@ pub(super) fn keep(
             Use::bound(3, made.here, Access::BufferReadCompute),
             Use::bound(4, made.maps, Access::ImageWrite),
         ],
-        need: inputs.make.clone(),
+        need: inputs.need.clone(),
     });
 }
