@@ -6,7 +6,7 @@
 use antumbra::ash::vk;
 use antumbra::gpu::headless::{HeadlessDevice, View};
 use antumbra::graph::Shape;
-use antumbra::linear_light::twin::{crossing_of, is_edge, transition};
+use antumbra::linear_light::twin::{crossing_of, is_edge, part_of_segment, transition};
 use antumbra::scene::{Scene, generate};
 use antumbra::{Description, Settings, Technique};
 use antumbra_tests::compare::Tolerance;
@@ -162,6 +162,66 @@ fn edges_and_transitions() {
     // Up to 40 of w over a difference of at least 0.03, three roundings of 2⁻²⁴.
     .f64(Tolerance::absolute(3e-4), seen::<f64>)
     .check(&device());
+}
+
+/// Two channels come back from one float, and two samples' tell of a segment no more than there is.
+#[test]
+fn channels_and_what_they_tell_together() {
+    let file = "linear_light/channels.glsl";
+    let part = || 0.0..=1.0f32;
+    Function::new(file, "vec4 both(float before, float behind)")
+        .glue("vec4 both(float before, float behind) { return unpacked(packed(vec2(before, behind))); }")
+        .case((0.0, 0.0))
+        .case((1.0, 1.0))
+        .case((0.999_999, 1.0))
+        .case((1.0, 0.0))
+        .random(4_000, (part(), part()))
+        .f64(Tolerance::absolute(0.5 / 2047.0 + 1e-7), |x: &[f64]| {
+            let told = |c: f64| if c == 1.0 { [0.0, 1.0] } else { [c, 0.0] };
+            let ([a, none_a], [b, none_b]) = (told(x[0]), told(x[1]));
+            vec![a, b, none_a, none_b]
+        })
+        .check(&device());
+    let signature = "float part_of_segment(vec2 first, vec2 last, vec2 see)";
+    Function::new(file, signature)
+        // Both see past everything; one does and the other is hidden; a skin and what its neighbour sees; none sees.
+        .case(([0.0, 1.0], [0.0, 1.0], [1.0, 1.0]))
+        .case(([0.0, 1.0], [0.0, 0.0], [1.0, 0.0]))
+        .case(([0.7, 0.0], [0.0, 1.0], [1.0, 1.0]))
+        .case(([0.0, 0.0], [0.0, 0.0], [0.0, 0.0]))
+        .random(
+            4_000,
+            ((part(), part()), (part(), part()), (part(), part()))
+                .prop_map(|(a, b, c)| ([a.0, a.1], [b.0, b.1], [c.0, c.1])),
+        )
+        .f64(Tolerance::absolute(1e-6), |x: &[f64]| {
+            vec![part_of_segment([x[0], x[1]], [x[2], x[3]], [x[4], x[5]])]
+        })
+        .check(&device());
+}
+
+/// Rectangles so narrow that one line is within the error asked for are one, and wider ones as many as it takes.
+#[test]
+fn narrow_rectangles_are_one_line() {
+    let device = device();
+    let mut last = 0;
+    for (height, most) in [(0.01, 1), (0.03, 1), (0.1, 4), (0.4, 16)] {
+        let scene = generate::card(generate::rectangle_light(1.0, height, 0.0).unwrap());
+        let setup = Setup::ground(&scene, 2.2, 96);
+        let mut stage =
+            setup.stage(&device, "technique=linear-light samples=2 lines=16 error=0.02");
+        let plan = stage.plan(&setup.light(), None).unwrap();
+        let runs = plan.plan.runs();
+        let lines = runs.iter().find(|r| r.pass.name == "linear_light.spread").unwrap().times;
+        let error = percent(&setup.closed_form_of_card(&stage), &setup.visibility(&mut stage));
+        println!("{height} m: {lines} lines, {error:.2} %");
+        assert!(
+            lines <= most && lines >= last && error < 2.0,
+            "{height}: {lines} lines, {error} %"
+        );
+        last = lines;
+    }
+    assert!(last > 1);
 }
 
 /// Eq. 1 in the plane: what a point sees past an edge, by where its ray meets the light.

@@ -25,4 +25,13 @@ vec4 unpacked(float both)
     return vec4(whole / STEPS * (1.0 - none), none);
 }
 
+// The part of a segment that a receiver sees, by what its first and its last sample tell of it (in x what skins say, in
+// y how far there are none) and how far either sees the receiver, 0 to 1. A sample that sees past everything adds half
+// of the segment (section 3.2), and all of it where the other one is hidden.
+float part_of_segment(vec2 first, vec2 last, vec2 see)
+{
+    vec2 clear = vec2(first.y, last.y) * (1.0 - 0.5 * see.yx);
+    return min(first.x + last.x + clear.x + clear.y, 1.0);
+}
+
 #endif

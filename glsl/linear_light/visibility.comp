@@ -80,15 +80,7 @@ vec4 told_by(Line line, int nth, float at, vec3 position, vec3 normal, bool bloc
     return sum;
 }
 
-// The part of a segment that a receiver sees, by what its first and its last sample tell of it and whether they see the
-// receiver, 0 to 1: a half of it for each that sees past everything (section 3.2), all of it where the other is hidden.
-float part_of(vec2 first, vec2 last, vec2 see)
-{
-    vec2 clear = vec2(first.y, last.y) * (1.0 - 0.5 * see.yx);
-    return min(first.x + last.x + clear.x + clear.y, 1.0);
-}
-
-// The part of a line that it sees.
+// The part of a line that a receiver sees.
 float part_of(Line line, int count, vec3 position, vec3 normal, bool blocks)
 {
     float sum = 0.0;
@@ -99,7 +91,7 @@ float part_of(Line line, int count, vec3 position, vec3 normal, bool blocks)
         float at = texelFetch(places, ivec2(SAMPLES_AT + nth, line.row), 0).x;
         float sees;
         vec4 by = told_by(line, nth, at, position, normal, blocks, sees);
-        sum += nth > 0 ? (at - before) * part_of(told, by.xz, vec2(saw, sees)) : 0.0;
+        sum += nth > 0 ? (at - before) * part_of_segment(told, by.xz, vec2(saw, sees)) : 0.0;
         before = at;
         told = by.yw;
         saw = sees;

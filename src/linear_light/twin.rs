@@ -53,3 +53,11 @@ pub fn run_at(mask: u32, at: i32) -> u32 {
     let high = (at..32).take_while(|&bit| set(bit)).last().unwrap_or(at);
     bits(low, high)
 }
+
+/// The part of a segment that a receiver sees: `[skin, none]` of its first and of its last sample, and how far either
+/// sees the receiver (`glsl/linear_light/channels.glsl`).
+pub fn part_of_segment<T: Float>(first: [T; 2], last: [T; 2], see: [T; 2]) -> T {
+    let half = T::from(0.5).unwrap_or_else(T::nan);
+    let clear = |none: T, other: T| none * (T::one() - half * other);
+    (first[0] + last[0] + clear(first[1], see[1]) + clear(last[1], see[0])).min(T::one())
+}
