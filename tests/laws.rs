@@ -35,7 +35,7 @@ const WAYS: &[&str] = &[
     "technique=occlusion-textures map=64 slices=7 combine=product placement=uniform",
     "technique=occlusion-textures map=33 slices=20 combine=sum prefilter=n-buffer",
     "technique=occlusion-textures map=64 combine=max prefilter=mip",
-    "technique=linear-light map=64 lines=2",
+    "technique=linear-light map=64 lines=2 samples=4",
     "technique=linear-light map=33 samples=2 lines=1 transition=linear",
 ];
 

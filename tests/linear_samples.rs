@@ -186,7 +186,7 @@ fn what_touches_the_line() {
         (
             "at an end",
             DMat4::from_rotation_translation(upright, DVec3::new(0.5, 3.5, 0.0)),
-            [29.0, 3.7],
+            [29.0, 14.0],
         ),
         ("right under", DMat4::from_translation(DVec3::Y * (4.0 - 1e-3)), [79.0, 12.0]),
     ] {

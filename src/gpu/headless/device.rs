@@ -56,11 +56,14 @@ impl Drop for Shared {
     }
 }
 
-/// Destroys the device where its fields' order says so.
-struct Device(ash::Device);
+/// Destroys the device where its fields' order says so. The cache makes a node's pipelines cheap where an
+/// earlier one had the same.
+struct Device(ash::Device, vk::PipelineCache);
 
 impl Drop for Device {
     fn drop(&mut self) {
+        // SAFETY: made by this device; no pipeline is being made any more.
+        unsafe { self.0.destroy_pipeline_cache(self.1, None) };
         // SAFETY: idle (`Shared` waits first), and all that came from it is gone by contract.
         unsafe { self.0.destroy_device(None) };
     }
@@ -103,7 +106,11 @@ impl HeadlessDevice {
         // SAFETY: the family was reported by this device; `info` names no feature or extension.
         let device = unsafe { instance.raw.create_device(physical_device, &info, None) }
             .map_err(Error::vulkan(format!("creating the device {name}")))?;
-        let device = Device(device);
+        let mut device = Device(device, vk::PipelineCache::null());
+        let empty = vk::PipelineCacheCreateInfo::default();
+        // SAFETY: the device was just made. `Device` destroys the cache, a null one too.
+        device.1 = unsafe { device.0.create_pipeline_cache(&empty, None) }
+            .map_err(Error::vulkan("creating the pipeline cache"))?;
         // SAFETY: one queue of this family was asked for above.
         let queue = unsafe { device.0.get_device_queue(queue_family, 0) };
         let debug_utils =
@@ -166,6 +173,11 @@ impl HeadlessDevice {
     /// The queue's family.
     pub fn queue_family(&self) -> u32 {
         self.0.queue_family
+    }
+
+    /// A cache of the device's pipelines, for [`crate::Host::with_pipeline_cache`].
+    pub fn pipeline_cache(&self) -> vk::PipelineCache {
+        self.0.device.1
     }
 
     /// Names and labels, where the instance has `VK_EXT_debug_utils`.

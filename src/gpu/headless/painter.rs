@@ -230,7 +230,7 @@ impl Painter {
             .dynamic_state(&dynamic)
             .layout(self.layout)
             .render_pass(self.render_pass)];
-        let (raw, cache) = (self.device.device(), vk::PipelineCache::null());
+        let (raw, cache) = (self.device.device(), self.device.pipeline_cache());
         // SAFETY: every state that the create info points to lives until the end of this call.
         self.pipeline = unsafe { raw.create_graphics_pipelines(cache, &create, None) }
             .map_err(|(_, e)| Error::vulkan("creating a painter's pipeline")(e))?[0];

@@ -274,7 +274,7 @@ impl Raster {
             .color_blend_state(&blend)
             .layout(self.layout)
             .render_pass(self.render_pass)];
-        let (raw, cache) = (self.device.device(), vk::PipelineCache::null());
+        let (raw, cache) = (self.device.device(), self.device.pipeline_cache());
         // SAFETY: every state that the create info points to lives until the end of this call.
         unsafe { raw.create_graphics_pipelines(cache, &create, None) }
             .map(|made| made[0])

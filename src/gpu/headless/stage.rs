@@ -65,6 +65,7 @@ impl Stage {
                 device.queue_family(),
             )
         };
+        host = host.with_pipeline_cache(device.pipeline_cache());
         if let Some(debug_utils) = device.debug_utils() {
             host = host.with_debug_utils(debug_utils.clone());
         }
