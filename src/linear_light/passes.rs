@@ -48,6 +48,16 @@ pub(super) struct Made {
     pub places: ResourceId,
 }
 
+/// What the rows of one line are made of.
+pub(super) struct OfLine<'a> {
+    pub made: &'a Made,
+    pub settings: &'a Settings,
+    pub inputs: &'a Inputs<'a>,
+    pub line: &'a Line,
+    /// Which line it is: its row of places, its view of the meshes.
+    pub row: u32,
+}
+
 /// Adds the rows that turn the meshes, as the samples see them, into `visibility`.
 pub fn declare(graph: &mut Graph, visibility: ResourceId, settings: &Settings, inputs: &Inputs) {
     let side = inputs.side;
@@ -100,18 +110,18 @@ pub fn declare(graph: &mut Graph, visibility: ResourceId, settings: &Settings, i
     let none = [Line::NONE];
     let lines = if inputs.lines.is_empty() { &none } else { inputs.lines };
     for (row, line) in lines.iter().enumerate() {
-        let row = row as u32;
-        samples::place(graph, &made, settings, row, line, inputs);
+        let of = OfLine { made: &made, settings, inputs, line, row: row as u32 };
+        samples::place(graph, &of);
         for nth in 0..settings.samples {
-            samples::look(graph, &made, nth, row, line, inputs);
-            segments::start(graph, &made, (row, nth), line, inputs);
-            graph.push(samples::take(&made, nth % 2, line, inputs));
+            samples::look(graph, &of, nth);
+            segments::start(graph, &of, nth);
+            graph.push(samples::take(&of, nth % 2));
             if nth > 0 {
-                segments::declare(graph, &made, settings, (row, nth), line, inputs);
+                segments::declare(graph, &of, nth);
             }
         }
-        segments::start(graph, &made, (row, settings.samples), line, inputs);
-        segments::keep(graph, &made, settings, (row, settings.samples), inputs);
+        segments::start(graph, &of, settings.samples);
+        segments::keep(graph, &of, settings.samples);
     }
 
     let gbuffer = inputs.gbuffer;

@@ -1,9 +1,7 @@
 //! The rows that say where a line's samples are, and those that draw what they see.
 
-use super::passes::{Inputs, Made};
+use super::passes::OfLine;
 use super::push;
-use super::settings::Settings;
-use super::view::Line;
 use crate::depth_layers::{self, Raster};
 use crate::graph::{Access, Draw, Graph, Layer, Pass, Push, ResourceId, Target, Use, Work};
 use crate::shaders;
@@ -26,14 +24,8 @@ pub(super) struct Layers {
 }
 
 /// Adds the rows that place a line's samples: evenly, or where its middle tells that light is lost.
-pub(super) fn place(
-    graph: &mut Graph,
-    made: &Made,
-    settings: &Settings,
-    view: u32,
-    line: &Line,
-    inputs: &Inputs,
-) {
+pub(super) fn place(graph: &mut Graph, of: &OfLine) {
+    let OfLine { made, settings, inputs, line, .. } = *of;
     let layers = &made.layers;
     if settings.is_even() {
         graph.push(Pass::compute(
@@ -46,28 +38,30 @@ pub(super) fn place(
         ));
         return;
     }
-    let middle = |kind| match kind {
-        Layer::Front => ("linear_light.middle_occluders", layers.occluders),
-        _ => ("linear_light.middle_receivers", layers.receivers),
-    };
-    for kind in [Layer::Front, Layer::Receivers] {
-        let (name, image) = middle(kind);
-        let uses = vec![Use::fixed(image, Access::DepthTarget)];
-        draw(graph, name, uses, shaders::MIDDLE_VERT, kind, -1, view, line, inputs);
-    }
-    let side = inputs.side;
-    let taken = take(made, 0, line, inputs);
+    graph.push(drawn("linear_light.middle_occluders", layers.occluders, Layer::Front, None, of));
+    graph.push(drawn(
+        "linear_light.middle_receivers",
+        layers.receivers,
+        Layer::Receivers,
+        None,
+        of,
+    ));
+    let taken = take(of, 0);
     graph.push(Pass {
         name: "linear_light.middle_take",
         uses: taken.uses.iter().copied().filter(|u| u.access != Access::Indirect).collect(),
-        work: Work::Dispatch { shader: shaders::LINE_TAKE, groups: grid([side; 2]) },
+        work: Work::Dispatch { shader: shaders::LINE_TAKE, groups: grid([inputs.side; 2]) },
         ..taken
     });
     graph.push(Pass::compute(
         "linear_light.mask",
         shaders::LINE_MASK,
         grid(RECEIVERS),
-        Push::new(&push::Mask { u_window: line.u_window(), line: line.length(), map: side as i32 }),
+        Push::new(&push::Mask {
+            u_window: line.u_window(),
+            line: line.length(),
+            map: inputs.side as i32,
+        }),
         vec![
             Use::bound(0, layers.seen, Access::SampledCompute),
             Use::bound(1, layers.masks, Access::BufferWriteCompute),
@@ -92,77 +86,60 @@ pub(super) fn place(
 }
 
 /// Adds the rows that draw what a sample sees.
-pub(super) fn look(
-    graph: &mut Graph,
-    made: &Made,
-    nth: u32,
-    view: u32,
-    line: &Line,
-    inputs: &Inputs,
-) {
-    let layers = &made.layers;
-    for (name, image, kind) in [
-        ("linear_light.occluders", layers.occluders, Layer::Front),
-        ("linear_light.receivers", layers.receivers, Layer::Receivers),
-    ] {
-        let uses = vec![
-            Use::fixed(image, Access::DepthTarget),
-            Use::bound(0, layers.of, Access::BufferReadVertex),
-        ];
-        draw(graph, name, uses, shaders::SAMPLE_VERT, kind, nth as i32, view, line, inputs);
-    }
+pub(super) fn look(graph: &mut Graph, of: &OfLine, nth: u32) {
+    let layers = &of.made.layers;
+    graph.push(drawn("linear_light.occluders", layers.occluders, Layer::Front, Some(nth), of));
+    graph.push(drawn("linear_light.receivers", layers.receivers, Layer::Receivers, Some(nth), of));
 }
 
-#[allow(clippy::too_many_arguments, reason = "a row has as many columns")]
-fn draw(
-    graph: &mut Graph,
+/// The row that draws a layer as a sample sees it, or as the line's middle does.
+fn drawn(
     name: &'static str,
-    uses: Vec<Use>,
-    vertex: shaders::Module,
+    image: ResourceId,
     layer: Layer,
-    nth: i32,
-    view: u32,
-    line: &Line,
-    inputs: &Inputs,
-) {
+    sample: Option<u32>,
+    of: &OfLine,
+) -> Pass {
     let Raster { cull, clear, compare } = depth_layers::raster_of(layer);
-    graph.push(Pass {
+    let mut uses = vec![Use::fixed(image, Access::DepthTarget)];
+    uses.extend(sample.map(|_| Use::bound(0, of.made.layers.of, Access::BufferReadVertex)));
+    Pass {
         name,
         uses,
         push: Push::new(&push::Sample {
             line_from_mesh: [0.0; 16],
-            u_window: line.u_window(),
-            line: line.length(),
-            nth,
+            u_window: of.line.u_window(),
+            line: of.line.length(),
+            nth: sample.map_or(-1, |nth| nth as i32),
         }),
         work: Work::Raster {
-            vertex,
+            vertex: if sample.is_some() { shaders::SAMPLE_VERT } else { shaders::MIDDLE_VERT },
             fragment: None,
             cull,
             target: Target::Depth { clear, compare },
-            draw: Draw::Layer { layer, view },
+            draw: Draw::Layer { layer, view: of.row },
         },
-        need: inputs.need.clone(),
-    });
+        need: of.inputs.need.clone(),
+    }
 }
 
 /// The row that takes what was drawn into a layer.
-pub(super) fn take(made: &Made, layer: u32, line: &Line, inputs: &Inputs) -> Pass {
-    let layers = &made.layers;
+pub(super) fn take(of: &OfLine, layer: u32) -> Pass {
+    let layers = &of.made.layers;
     Pass {
         name: "linear_light.take",
         uses: vec![
-            Use::fixed(made.groups, Access::Indirect),
+            Use::fixed(of.made.groups, Access::Indirect),
             Use::bound(0, layers.occluders, Access::SampledCompute),
             Use::bound(1, layers.receivers, Access::SampledCompute),
             Use::bound(2, layers.seen, Access::ImageWrite),
         ],
         push: Push::new(&push::Take {
-            inv_near: (1.0 / line.near) as f32,
-            map: inputs.side as i32,
+            inv_near: (1.0 / of.line.near) as f32,
+            map: of.inputs.side as i32,
             layer: layer as i32,
         }),
-        work: Work::Indirect { shader: shaders::LINE_TAKE, arguments: made.groups, offset: 0 },
-        need: inputs.need.clone(),
+        work: Work::Indirect { shader: shaders::LINE_TAKE, arguments: of.made.groups, offset: 0 },
+        need: of.inputs.need.clone(),
     }
 }

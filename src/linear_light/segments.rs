@@ -1,15 +1,14 @@
 //! The rows that make channels of a line's samples, segment by segment.
 
-use super::passes::{Inputs, Made};
+use super::passes::OfLine;
 use super::push;
-use super::settings::{Settings, Transition};
-use super::view::Line;
+use super::settings::Transition;
 use crate::graph::{Access, Draw, Graph, Pass, Push, ResourceId, Target, Use, Work};
 use crate::shaders;
 use crate::visibility::grid;
 use ash::vk;
 
-/// Where in [`Made::groups`] the grids of a segment's rows are, and of the row that keeps the sample before.
+/// Where in [`super::passes::Made::groups`] the grids of a segment's rows are, and of the row that keeps the sample before.
 const SEGMENT: u64 = 16;
 const SAMPLE_BEFORE: u64 = 32;
 
@@ -20,35 +19,23 @@ pub(super) struct Skins {
     /// Which ends of occluders are seen past: -1, those towards −x.
     pub side: i32,
     pub skins: ResourceId,
-    /// Of the draw's arguments in [`Made::draws`].
+    /// Of the draw's arguments in [`super::passes::Made::draws`].
     pub offset: u64,
     pub channel: ResourceId,
 }
 
 /// Adds the rows of the segment before a sample, and what they leave of the sample before it.
-pub(super) fn declare(
-    graph: &mut Graph,
-    made: &Made,
-    settings: &Settings,
-    at: (u32, u32),
-    line: &Line,
-    inputs: &Inputs,
-) {
+pub(super) fn declare(graph: &mut Graph, of: &OfLine, nth: u32) {
     // The first one's neighbour sees what ends towards it. Only then is what the segment before drew into the first
     // one's other channel done with.
-    skins(graph, made, &made.left, settings, line, inputs);
-    keep(graph, made, settings, at, inputs);
-    skins(graph, made, &made.right, settings, line, inputs);
+    skins(graph, of, &of.made.left);
+    keep(graph, of, nth);
+    skins(graph, of, &of.made.right);
 }
 
 /// Adds the row that says which of the rows of a sample and of the segment before it have anything to do.
-pub(super) fn start(
-    graph: &mut Graph,
-    made: &Made,
-    (row, nth): (u32, u32),
-    line: &Line,
-    inputs: &Inputs,
-) {
+pub(super) fn start(graph: &mut Graph, of: &OfLine, nth: u32) {
+    let OfLine { made, inputs, line, row, .. } = *of;
     let [c, s] = line.along;
     let [x, y] = line.middle;
     graph.push(Pass::compute(
@@ -77,14 +64,8 @@ pub(super) fn start(
 }
 
 /// Adds the rows that find where occluders end as one sample sees them, and draw that into the other's channel.
-fn skins(
-    graph: &mut Graph,
-    made: &Made,
-    skins: &Skins,
-    settings: &Settings,
-    line: &Line,
-    inputs: &Inputs,
-) {
+fn skins(graph: &mut Graph, of: &OfLine, skins: &Skins) {
+    let OfLine { made, settings, inputs, line, .. } = *of;
     let map = inputs.side as i32;
     graph.push(Pass {
         name: skins.edges,
@@ -128,13 +109,8 @@ fn skins(
 }
 
 /// Adds the row that keeps the map of the sample before a sample.
-pub(super) fn keep(
-    graph: &mut Graph,
-    made: &Made,
-    settings: &Settings,
-    (row, nth): (u32, u32),
-    inputs: &Inputs,
-) {
+pub(super) fn keep(graph: &mut Graph, of: &OfLine, nth: u32) {
+    let OfLine { made, settings, inputs, row, .. } = *of;
     let layer = row * settings.samples + nth - 1;
     // Nothing was drawn for a segment before the first sample.
     let (name, before) = match nth {
