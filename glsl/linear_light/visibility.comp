@@ -39,7 +39,8 @@ struct Line {
 };
 
 // What a sample tells of the segments before and behind it: in x and y what skins say, in z and w how far there are
-// none. The mean of four texels, of those that the receiver is behind. `position` and `normal` are the line's, from its middle.
+// none; and how far it sees the receiver. Of the four texels around the receiver those count, by their weights, that do
+// not hide it. `position` and `normal` are the line's, from its middle.
 vec4 told_by(Line line, int nth, float at, vec3 position, vec3 normal, bool blocks, out float sees)
 {
     sees = 0.0;
