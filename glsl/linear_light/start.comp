@@ -31,7 +31,6 @@ void main()
     int nth = push.nth;
     bool here_is = nth < of.count;
     bool before_is = nth > 0 && nth - 1 < of.count;
-    
     for (int i = 0; i < 4; ++i) {
         draws[i] = i == 1 ? 1u : 0u;
         draws[4 + i] = i == 1 ? 1u : 0u;

@@ -73,8 +73,16 @@ impl Frame<'_> {
                     "mesh {index}: its transform and bounds must be finite numbers"
                 ));
             }
+            // A sample's place on the line is known on the device alone.
+            let drawn_by_host = matches!(mesh.geometry, Geometry::HostDrawn(_));
+            if technique == Technique::LinearLight && drawn_by_host {
+                return bad(format!(
+                    "mesh {index} is drawn by the host, which does not know where linear-light puts its \
+                     samples; give its buffers, or choose another technique"
+                ));
+            }
             let sliced = technique == Technique::OcclusionTextures;
-            if sliced && mesh.role.blocks() && matches!(mesh.geometry, Geometry::HostDrawn(_)) {
+            if sliced && mesh.role.blocks() && drawn_by_host {
                 return bad(format!(
                     "mesh {index} is drawn by the host, which cannot sort it into the slices of \
                      occlusion-textures; give its buffers, or choose another technique"

@@ -209,3 +209,42 @@ fn one_name_for_two_kinds_of_work_is_refused() {
     let error = compiled(graph, result).unwrap_err().to_string();
     assert!(error.contains("writer: rows of one name"), "{error}");
 }
+
+/// What is kept is left as its readers find it, and read without a barrier by a frame that does not make it.
+#[test]
+fn what_is_kept_needs_no_barrier_again() {
+    let plan_of = |makes: Need| {
+        let mut graph = Graph::new();
+        let image = |graph: &mut Graph, name, owner| {
+            graph.image(name, vk::Format::R32_SFLOAT, [4, 4], owner)
+        };
+        let map = image(&mut graph, "map", Owner::Transient);
+        let result = image(&mut graph, "result", Owner::Exported);
+        graph.keep(map);
+        let row = |name, uses, need| Pass {
+            name,
+            uses,
+            push: Push::NONE,
+            work: Work::Dispatch { shader: shaders::LIT, groups: [1; 3] },
+            need,
+        };
+        graph.push(row("make", vec![Use::fixed(map, Access::ImageWrite)], makes));
+        let look =
+            vec![Use::fixed(map, Access::SampledCompute), Use::fixed(result, Access::ImageWrite)];
+        graph.push(row("look", look, Need::Yes("test".into())));
+        let borders = [Border { resource: result, before: FETCHED, after: FETCHED }];
+        (compile(graph, &borders, true).unwrap(), map)
+    };
+    let of_map = |(plan, map): &(Plan, ResourceId)| {
+        let steps = plan.steps.iter().flat_map(|s| &s.barriers).chain(&plan.handover);
+        steps.filter(|b| b.resource == *map).map(|b| b.barrier).collect::<Vec<_>>()
+    };
+    let made = of_map(&plan_of(Need::Yes("test".into())));
+    assert_eq!(made.len(), 2);
+    // Frames before may still read what is overwritten.
+    assert!(made[0].src_stage.contains(S::COMPUTE_SHADER) && made[0].new_layout == L::GENERAL);
+    assert_eq!((made[1].src_access, made[1].new_layout), (A::SHADER_WRITE, FETCHED.layout));
+    let kept = plan_of(Need::No("kept".into()));
+    assert_eq!(kept.0.steps.len(), 1);
+    assert!(of_map(&kept).is_empty());
+}

@@ -3,7 +3,7 @@
 use super::push;
 use super::samples::{self, Layers};
 use super::segments::{self, Skins};
-use super::settings::{Settings, skin_bytes};
+use super::settings::{MOST_SAMPLES, Settings, skin_bytes};
 use super::view::Line;
 use crate::depth_layers;
 use crate::graph::{Access, Graph, Need, Owner, Pass, Push, ResourceId, Use};
@@ -12,7 +12,7 @@ use crate::visibility::{GBuffer, grid};
 use ash::vk;
 
 /// Texels of the image of places before a line's samples.
-const SAMPLES_AT: u32 = 4;
+pub(super) const SAMPLES_AT: u32 = 4;
 
 /// What a frame gives the technique.
 #[derive(Clone, Copy, Debug)]
@@ -68,7 +68,7 @@ pub fn declare(graph: &mut Graph, visibility: ResourceId, settings: &Settings, i
     let layers = Layers {
         occluders: depth(graph, "linear_light.occluders"),
         receivers: depth(graph, "linear_light.receivers"),
-        of: graph.buffer("linear_light.samples", 4 + 4 * 16),
+        of: graph.buffer("linear_light.samples", 4 + 4 * u64::from(MOST_SAMPLES)),
         seen: graph.image_array("linear_light.seen", format, [side; 2], 2),
         masks: graph.buffer(
             "linear_light.masks",

@@ -3,7 +3,10 @@
 use crate::Error;
 use crate::graph::STORAGE_BYTES;
 
-/// Of the segments' maps.
+/// On a line.
+pub(super) const MOST_SAMPLES: u32 = 16;
+
+/// Of the samples' maps.
 const MOST_BYTES: u64 = 1 << 28;
 
 /// Of one side's skins: any texel may end an occluder.
@@ -74,7 +77,7 @@ impl Settings {
     /// Whether the knob with this key is within its range; keys of other techniques pass.
     pub(crate) fn in_range(&self, key: &str) -> bool {
         match key {
-            "samples" => (2..=16).contains(&self.samples),
+            "samples" => (2..=MOST_SAMPLES).contains(&self.samples),
             "lines" => (1..=16).contains(&self.lines),
             "error" => (0.0..=1.0).contains(&self.error),
             _ => true,

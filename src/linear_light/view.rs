@@ -166,16 +166,19 @@ fn stack_height(settings: &Settings, seen: &Seen) -> u32 {
     wanted.clamp(1.0, f64::from(settings.lines)) as u32
 }
 
-/// What rows of one height, through their middles, have of a polygon; each weighs as much as its length.
+/// What rows of one height, through their middles, have of a polygon from its lowest to its highest corner; each weighs as much as its length.
 fn chords(light: &RectangleLight, corners: &[[f64; 2]], rows: u32) -> Vec<Segment> {
     let b = light.half_extents()[1];
     if b == 0.0 {
         let a = light.half_extents()[0];
         return vec![Segment { ends: [DVec2::new(-a, 0.0), DVec2::new(a, 0.0)], weight: 1.0 }];
     }
+    // An outline need not fill its rectangle.
+    let low = corners.iter().map(|c| c[1]).fold(f64::INFINITY, f64::min);
+    let high = corners.iter().map(|c| c[1]).fold(f64::NEG_INFINITY, f64::max);
     let mut all = Vec::new();
     for row in 0..rows {
-        let y = (f64::from(2 * row + 1) / f64::from(rows) - 1.0) * b;
+        let y = low + (high - low) * f64::from(2 * row + 1) / f64::from(2 * rows);
         let next = corners.iter().cycle().skip(1);
         let mut cuts: Vec<f64> = corners
             .iter()

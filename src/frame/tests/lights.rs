@@ -57,3 +57,19 @@ fn an_outline_is_refused_by_what_knows_rectangles_alone() {
         }
     }
 }
+
+/// A host cannot draw what only the device knows the place of, receivers included.
+#[test]
+fn lines_take_no_host_draws() {
+    let description = of_technique(Technique::LinearLight, &[]);
+    let mut meshes = meshes();
+    assert!(plan(&description, Limits::default(), &frame(&meshes)).is_ok());
+    for (role, mesh) in [Role::Occluder, Role::Receiver].into_iter().zip(&mut meshes) {
+        (mesh.role, mesh.geometry) = (role, Geometry::HostDrawn(7));
+    }
+    for mesh in &mut meshes {
+        let error = plan(&description, Limits::default(), &frame(std::slice::from_ref(mesh)));
+        let error = error.unwrap_err().to_string();
+        assert!(error.contains("where linear-light puts its samples"), "{error}");
+    }
+}
