@@ -74,6 +74,7 @@ pub mod linear_light;
 pub mod nbuffer;
 pub mod node;
 pub mod occlusion_textures;
+pub mod planner;
 pub mod ray_march;
 pub mod scene;
 pub mod settings;

@@ -3,6 +3,7 @@
 use crate::frame::{self, Description, Frame, FrameGraph, FramePlan, Kept, Limits, Stamp};
 use crate::gpu::{Allocator, Host, HostDraw, NodeObjects, Requirements, Retired};
 use crate::graph::{Draw, Layer, Owner, Pass, Shape, Target, Work};
+use crate::planner::{Auto, Choice};
 use crate::settings::Technique;
 use crate::soft_shadow_map::Accumulate;
 use crate::{Error, depth_layers};
@@ -243,6 +244,26 @@ impl ShadowNode {
         let next = Self::new(self.host.clone(), allocator, description)?;
         let old = std::mem::replace(self, next);
         Ok(Retired::everything(old.host, old.objects))
+    }
+
+    /// Asks `auto` what to compute this frame's shadow with, and makes everything anew where that is not what the node
+    /// was made for: the answer, and what to retire then. Call it before [`Self::plan`].
+    ///
+    /// # Errors
+    /// As [`Auto::choose`] and [`Self::new`]; the node then goes on as it was.
+    pub fn adapt(
+        &mut self,
+        allocator: &mut dyn Allocator,
+        auto: &mut Auto,
+        frame: &Frame,
+    ) -> Result<(Choice, Option<Retired>), Error> {
+        let choice = auto.choose(&self.description, frame)?;
+        if choice.settings == self.description.settings {
+            return Ok((choice, None));
+        }
+        let description = Description { settings: choice.settings, ..self.description.clone() };
+        let retired = self.reconfigure(allocator, description)?;
+        Ok((choice, Some(retired)))
     }
 
     /// Name and milliseconds of each pass that `slot` recorded last, rows of one name summed; none until the host knows that

@@ -2,13 +2,16 @@
 //!
 //! `cargo run --release --example render -- scenes/bunny.glb --out out/bunny`
 
+mod costs;
 mod options;
 mod output;
 mod report;
 mod shade;
 
 use antumbra::gpu::headless::{FrameTimes, HeadlessDevice, HeadlessOptions, Stage, View};
+use antumbra::planner::Auto;
 use antumbra::scene::{Camera, Scene, from_gltf};
+use antumbra::{Settings, Technique};
 use image::ExtendedColorType;
 use options::{Options, Stop};
 use output::Files;
@@ -59,7 +62,25 @@ fn render(options: &Options) -> Result<String, Stop> {
 
     let device =
         HeadlessDevice::new(&HeadlessOptions { validation: options.validate, driver: None })?;
-    let mut stage = Stage::new(&device, &scene, &view, options.size, options.settings, |_| true)?;
+    // Before anything is chosen, the technique with the fewest passes.
+    let few = Settings { technique: Technique::Hard, ..Settings::default() };
+    let mut stage = Stage::new(&device, &scene, &view, options.size, few, |_| true)?;
+    let mut settings = options.settings;
+    let choice = match options.auto {
+        None => None,
+        Some(budget) => {
+            let mut auto = Auto::new(budget, costs::of(&device)?);
+            let choice = stage.choose(&mut auto, light)?;
+            settings = choice.settings;
+            Some(choice)
+        }
+    };
+    if let Some(problem) = choice.as_ref().and_then(|c| c.problem.as_ref()) {
+        eprintln!("auto: {problem}");
+    }
+    stage.configure_with(settings, |description| {
+        description.max_error = options.max_error.unwrap_or(description.max_error);
+    })?;
     let plan = stage.plan_under(light, None)?;
     // The first frame warms the driver up and is not timed, unless it is the only one.
     if options.repeat > 1 {
@@ -72,8 +93,16 @@ fn render(options: &Options) -> Result<String, Stop> {
     let positions = stage.gbuffer().positions()?;
     let normals = stage.gbuffer().normals()?;
     let memory = stage.node()?.memory();
-    let report =
-        report::Report { device: &device, options, scene: &scene, plan: &plan, frames, memory };
+    let report = report::Report {
+        device: &device,
+        options,
+        settings: &settings,
+        choice: choice.as_ref(),
+        scene: &scene,
+        plan: &plan,
+        frames,
+        memory,
+    };
 
     let mut files = Files::default();
     files.exr_y("visibility.exr", options.size, &visibility)?;

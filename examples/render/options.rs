@@ -1,5 +1,6 @@
 //! The command line.
 
+use antumbra::planner::Budget;
 use antumbra::scene::Role;
 use antumbra::settings::KNOBS;
 use antumbra::{Error, Settings, Technique};
@@ -17,8 +18,8 @@ struct Arguments {
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// How the visible fraction is computed
-    #[arg(long, value_name = "T", default_value = "soft-shadow-map")]
-    technique: String,
+    #[arg(long, value_name = "T")]
+    technique: Option<String>,
     /// A setting of the technique, repeatable; see below
     #[arg(long = "set", value_name = "KEY=VALUE")]
     settings: Vec<String>,
@@ -37,11 +38,12 @@ struct Arguments {
     /// Run under the validation layer with synchronization checks; any message fails the run
     #[arg(long)]
     validate: bool,
-    /// Error budget for --technique auto
-    #[arg(long, value_name = "E", hide = true)]
+    /// Mean error over shadow and penumbra that --technique auto may make, a visible fraction; with another technique,
+    /// what leaving an effect out may add to it
+    #[arg(long, value_name = "E", allow_negative_numbers = true)]
     max_error: Option<f64>,
-    /// Time budget for --technique auto
-    #[arg(long, value_name = "T", hide = true)]
+    /// Milliseconds of the device that --technique auto may take
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
     max_ms: Option<f64>,
 }
 
@@ -50,6 +52,10 @@ struct Arguments {
 pub struct Options {
     pub scene: PathBuf,
     pub out: PathBuf,
+    /// What technique and settings are chosen by; none where they are given.
+    pub auto: Option<Budget>,
+    /// What leaving an effect out may add to the error, where it is given.
+    pub max_error: Option<f64>,
     pub settings: Settings,
     pub size: [u32; 2],
     pub light: Option<String>,
@@ -96,8 +102,10 @@ fn knobs() -> String {
 /// # Errors
 /// The help text where it was asked for; one line for anything wrong.
 pub fn parse(arguments: impl Iterator<Item = OsString>) -> Result<Options, Stop> {
-    let names: Vec<_> = Technique::ALL.iter().map(|(name, _)| *name).collect();
-    let technique = format!("How the visible fraction is computed: {}", names.join(", "));
+    let technique = format!(
+        "How the visible fraction is computed: {}; auto without it, or, with --set, the technique that has these settings",
+        techniques()
+    );
     let command = Arguments::command()
         .mut_arg("technique", |argument| argument.help(technique))
         .after_help(knobs());
@@ -114,24 +122,9 @@ pub fn parse(arguments: impl Iterator<Item = OsString>) -> Result<Options, Stop>
         }
     })?;
     let a = Arguments::from_arg_matches(&matches).map_err(|e| Stop::Wrong(e.to_string()))?;
-    for (option, given) in
-        [("--max-error", a.max_error.is_some()), ("--max-ms", a.max_ms.is_some())]
-    {
-        if given {
-            return Err(wrong(
-                option,
-                "is a budget for --technique auto, which this version does not have; choose a \
-                 technique and its settings",
-            ));
-        }
-    }
-    let technique: Technique = a.technique.parse()?;
-    let mut settings = Settings { technique, ..Settings::default() };
-    for assignment in &a.settings {
-        let (key, value) = assignment
-            .split_once('=')
-            .ok_or_else(|| wrong("--set", format!("\"{assignment}\" is not KEY=VALUE")))?;
-        settings.set(key.trim(), value.trim())?;
+    let (auto, mut settings) = technique_of(&a)?;
+    for (key, value) in assignments(&a)? {
+        settings.set(key, value)?;
     }
     settings.check()?;
     let roles = a
@@ -150,6 +143,8 @@ pub fn parse(arguments: impl Iterator<Item = OsString>) -> Result<Options, Stop>
     Ok(Options {
         scene: a.scene,
         out: a.out,
+        auto,
+        max_error: a.max_error.filter(|_| auto.is_none()),
         settings,
         size: size(&a.size)?,
         light: a.light,
@@ -157,6 +152,55 @@ pub fn parse(arguments: impl Iterator<Item = OsString>) -> Result<Options, Stop>
         repeat: a.repeat,
         validate: a.validate,
     })
+}
+
+fn assignments(a: &Arguments) -> Result<Vec<(&str, &str)>, Stop> {
+    let pair = |text| {
+        let (key, value) = str::split_once(text, '=')
+            .ok_or_else(|| wrong("--set", format!("\"{text}\" is not KEY=VALUE")))?;
+        Ok((key.trim(), value.trim()))
+    };
+    a.settings.iter().map(|text| pair(text.as_str())).collect()
+}
+
+/// The budget of `auto`, or the technique that was asked for: by its name, or by settings that it has.
+fn technique_of(a: &Arguments) -> Result<(Option<Budget>, Settings), Stop> {
+    let of = |technique| Settings { technique, ..Settings::default() };
+    let budget = Budget { max_error: a.max_error, max_ms: a.max_ms };
+    let given = assignments(a)?;
+    match (a.technique.as_deref(), &given[..]) {
+        (None | Some(AUTO), []) => Ok((Some(budget), Settings::default())),
+        (Some(AUTO), [(key, _), ..]) => {
+            Err(wrong("--set", format!("{key} is for auto to choose; name a --technique")))
+        }
+        (named, _) if a.max_ms.is_some() => Err(wrong(
+            "--max-ms",
+            format!("is a budget for --technique auto, and not for {}", named.unwrap_or("--set")),
+        )),
+        (Some(name), _) => match name.parse() {
+            Ok(technique) => Ok((None, of(technique))),
+            Err(_) => {
+                let problem = format!("\"{name}\" is not one of {}", techniques());
+                Err(wrong("--technique", problem))
+            }
+        },
+        (None, given) => {
+            let all = std::iter::once(Settings::default().technique)
+                .chain(Technique::ALL.iter().map(|(_, t)| *t));
+            let has = |t: &Technique, key: &str| KNOBS.iter().any(|k| k.key == key && k.serves(*t));
+            let technique = all.into_iter().find(|t| given.iter().all(|(key, _)| has(t, key)));
+            // A key that none has is refused by name when it is set.
+            Ok((None, technique.map_or_else(Settings::default, of)))
+        }
+    }
+}
+
+/// The name of no technique of its own.
+const AUTO: &str = "auto";
+
+fn techniques() -> String {
+    let names = std::iter::once(AUTO).chain(Technique::ALL.iter().map(|(name, _)| *name));
+    names.collect::<Vec<_>>().join(", ")
 }
 
 fn size(text: &str) -> Result<[u32; 2], Stop> {

@@ -3,6 +3,7 @@
 use crate::options::Options;
 use antumbra::gpu::headless::{FrameTimes, HeadlessDevice};
 use antumbra::graph::Need;
+use antumbra::planner::{Choice, Outcome};
 use antumbra::scene::Scene;
 use antumbra::settings::KNOBS;
 use antumbra::{FramePlan, Settings};
@@ -13,6 +14,9 @@ use std::time::Duration;
 pub struct Report<'a> {
     pub device: &'a HeadlessDevice,
     pub options: &'a Options,
+    /// What ran: given, or chosen.
+    pub settings: &'a Settings,
+    pub choice: Option<&'a Choice>,
     pub scene: &'a Scene,
     pub plan: &'a FramePlan,
     pub frames: Vec<FrameTimes>,
@@ -81,10 +85,38 @@ impl Report<'_> {
             .collect();
         let memory: Map<String, Value> =
             self.memory.iter().map(|(name, bytes)| ((*name).into(), json!(bytes))).collect();
+        let verdicts = &self.plan.verdicts;
+        let effects: Vec<_> = verdicts
+            .all()
+            .iter()
+            .map(|v| {
+                let outcome = match v.outcome {
+                    Outcome::Simulated => "simulated",
+                    Outcome::LeftOut => "left out",
+                    Outcome::NotSimulated => "missing",
+                };
+                let (name, why) = (v.effect.rule().name, verdicts.why(v.effect));
+                json!({ "name": name, "outcome": outcome, "bound": v.bound, "why": why })
+            })
+            .collect();
+        let model = self.choice.map(|c| {
+            json!({
+                "error": c.error,
+                "ms": c.ms,
+                "measured_ms": self.median_ms(|f| f.frame),
+                "alike": c.alike,
+                "max_error": self.options.auto.and_then(|b| b.max_error),
+                "max_ms": self.options.auto.and_then(|b| b.max_ms),
+                "met": c.problem.is_none(),
+                "problem": c.problem,
+            })
+        });
         let report = json!({
             "driver": self.device.name(),
-            "technique": self.options.settings.technique.name(),
-            "settings": settings_of(&self.options.settings),
+            "auto": model,
+            "effects": effects,
+            "technique": self.settings.technique.name(),
+            "settings": settings_of(self.settings),
             "size": self.options.size,
             "passes": passes,
             "skipped": skipped,
@@ -105,7 +137,7 @@ impl Report<'_> {
             "{}: {} triangles, {width}×{height} pixels, {}, {:.1} ms a frame on {}, {:.1} MB",
             self.options.out.join("shaded.png").display(),
             self.scene.triangles(),
-            self.options.settings.technique.name(),
+            self.settings.technique.name(),
             self.median_ms(|f| f.frame),
             self.device.name(),
             self.gpu_bytes() as f64 / 1e6,

@@ -25,8 +25,8 @@ mod host_maps;
 mod view;
 
 pub(crate) use host_maps::HostMapView;
-pub(crate) use view::tangents_of;
 pub use view::{Eye, MapView, MeshBounds, fit_from, fit_occluders, fit_receivers, is_aside};
+pub(crate) use view::{tangents_of, thin_axis, window_of};
 
 use crate::graph::{
     Access, Draw, Graph, Layer, Need, Owner, Pass, Push, ResourceId, Target, Use, Work,
@@ -103,37 +103,60 @@ pub(crate) enum Occluders<'a> {
     Maps { front: ResourceId, back: Option<ResourceId>, camera: &'a HostMapView },
 }
 
-/// Adds the layers and the passes that make them; `need` says whether anything can be shadowed.
+/// Which layers a frame needs.
+#[derive(Clone, Copy)]
+pub(crate) struct Needs<'a> {
+    pub front: &'a Need,
+    pub back: &'a Need,
+    pub inner: &'a Need,
+    pub receivers: &'a Need,
+}
+
+/// Adds the layers and the passes that make them. Those that a frame does without are `None`, though their rows
+/// and images are there.
 pub(crate) fn declare(
     graph: &mut Graph,
     wanted: Wanted,
     occluders: &Occluders,
-    need: &Need,
+    needs: &Needs,
 ) -> DepthLayers {
     let map = wanted.map;
+    let need = needs.front;
     let (front, back) = match occluders {
         Occluders::Meshes => {
             let names = [FRONT, "depth_layers.front"];
             let front = drawn(graph, Layer::Front, names, map, need);
             let names = [BACK, "depth_layers.back"];
-            (front, wanted.back.then(|| drawn(graph, Layer::Back, names, map, need)))
+            (front, wanted.back.then(|| drawn(graph, Layer::Back, names, map, needs.back)))
         }
         Occluders::Maps { front, back, camera } => {
             let front = taken(graph, *front, map, camera, Layer::Front, need);
             let back = back.filter(|_| wanted.back);
-            (front, back.map(|b| taken(graph, b, map, camera, Layer::Back, need)))
+            (front, back.map(|b| taken(graph, b, map, camera, Layer::Back, needs.back)))
         }
     };
     let inner = (wanted.inner && matches!(occluders, Occluders::Meshes)).then(|| {
         let names = ["depth_layers.near_back_depth", "depth_layers.near_back"];
-        let near_back = drawn(graph, Layer::NearBack, names, map, need);
+        let near_back = drawn(graph, Layer::NearBack, names, map, needs.inner);
         let names = ["depth_layers.far_front_depth", "depth_layers.far_front"];
-        [near_back, drawn(graph, Layer::FarFront, names, map, need)]
+        [near_back, drawn(graph, Layer::FarFront, names, map, needs.inner)]
     });
     let names = ["depth_layers.receiver_depth", "depth_layers.receivers"];
-    let receivers =
-        wanted.receiver_map.map(|side| drawn(graph, Layer::Receivers, names, side, need));
-    DepthLayers { front, back, inner, receivers }
+    let receivers = wanted
+        .receiver_map
+        .map(|side| drawn(graph, Layer::Receivers, names, side, needs.receivers));
+    let there = |need: &Need| matches!(need, Need::Yes(_));
+    DepthLayers {
+        front,
+        back: back.filter(|_| there(needs.back)),
+        inner: inner.filter(|_| there(needs.inner)),
+        receivers,
+    }
+}
+
+/// Adds the map of a hard shadow to a technique that has none from the light's centre.
+pub(crate) fn hard(graph: &mut Graph, side: u32, need: &Need) -> ResourceId {
+    drawn(graph, Layer::Front, ["depth_layers.hard_depth", "depth_layers.hard"], side, need)
 }
 
 /// How a layer is drawn.

@@ -134,6 +134,23 @@ pub(crate) fn tangents_of(
     tangents(&boxes, near)
 }
 
+/// Least and largest u and v under which an eye behind the light sees what of a mesh is beyond `near`, which is
+/// counted from the eye as in [`MapView::near`]; none where nothing is.
+pub(crate) fn window_of(
+    eye: Eye,
+    light: &RectangleLight,
+    (bounds, world_from_mesh): &(MeshBounds, DMat4),
+    near: f64,
+) -> Option<([f64; 2], [f64; 2])> {
+    let boxes = [corners(bounds, &(light.light_from_world() * *world_from_mesh))];
+    match eye {
+        Eye::Behind(behind) => extents(&boxes, near - behind, |p| {
+            [p.x, p.y].map(|x| (x / (p.z + behind)).clamp(-MAX_TANGENT, MAX_TANGENT))
+        }),
+        Eye::Infinity => extents(&boxes, near, |p| [p.x, p.y]),
+    }
+}
+
 /// The least and the largest of what `of` says of the part of the boxes beyond `near`.
 fn extents(
     boxes: &[[DVec3; 8]],
@@ -180,6 +197,13 @@ fn pad(min: &mut [f64; 2], max: &mut [f64; 2], side: u32) {
 /// Flat is an extent of no more than this share of a box's largest.
 const FLAT: f64 = 1e-6;
 
+/// The axis along which a box has no extent: what it holds is a flat sheet; none where it is thick.
+pub(crate) fn thin_axis(bounds: &MeshBounds) -> Option<usize> {
+    let extent = |axis: usize| f64::from(bounds[1][axis]) - f64::from(bounds[0][axis]);
+    let largest = (0..3).map(extent).fold(0.0, f64::max);
+    (0..3).find(|&axis| extent(axis) <= FLAT * largest)
+}
+
 /// Whether a mesh is flat and has the whole light and every receiver on one side of its plane, as a
 /// ground has: no ray from the one to the other crosses it, so it blocks nothing, and a map need not
 /// spend its texels on it.
@@ -189,9 +213,7 @@ pub fn is_aside(
     receivers: &[(MeshBounds, DMat4)],
 ) -> bool {
     let light_from_world = light.light_from_world();
-    let extent = |axis: usize| f64::from(bounds[1][axis]) - f64::from(bounds[0][axis]);
-    let largest = (0..3).map(extent).fold(0.0, f64::max);
-    let Some(thin) = (0..3).find(|&axis| extent(axis) <= FLAT * largest) else { return false };
+    let Some(thin) = thin_axis(bounds) else { return false };
     let light_from_mesh = light_from_world * *world_from_mesh;
     let axis = |i: usize| light_from_mesh.col(i).truncate();
     let normal = axis((thin + 1) % 3).cross(axis((thin + 2) % 3)).normalize_or_zero();

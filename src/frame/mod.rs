@@ -4,6 +4,7 @@ mod accesses;
 mod check;
 mod host;
 mod keep;
+mod look;
 mod plan;
 mod rows;
 #[cfg(test)]
@@ -14,6 +15,7 @@ pub use host::{
     BorderBarriers, Geometry, HostImage, MeshBuffers, MeshInstance, OccluderMaps, Visibility,
 };
 pub(crate) use keep::Kept;
+pub(crate) use look::situation;
 pub use plan::{Faces, FramePlan, MeshDraw, plan};
 pub(crate) use plan::{Stamp, plan_with};
 pub(crate) use rows::{FrameGraph, nominal};
@@ -33,6 +35,10 @@ pub struct Description {
     pub extent: [u32; 2],
     /// The technique and its knobs.
     pub settings: Settings,
+    /// What leaving an effect out may add to the mean error at most, 0 to 1, as a mean of visible fractions over the
+    /// pixels that shadow touches: see [`crate::planner::RULES`]. 1/256 by default, a step of an 8-bit image; 0 leaves
+    /// out what cannot matter and nothing else.
+    pub max_error: f64,
     /// How many frames may be recorded before the first of them is done, 1 to 8.
     pub frames_in_flight: u32,
     /// The format of the G-buffer's depth image.
@@ -77,6 +83,7 @@ impl Description {
         Self {
             extent,
             settings: Settings::default(),
+            max_error: 1.0 / 256.0,
             frames_in_flight: 2,
             depth_format: vk::Format::D32_SFLOAT,
             mask_format: None,
@@ -96,6 +103,12 @@ impl Description {
             let [w, h] = self.extent;
             return Err(Error::Frame(format!(
                 "a G-buffer of {w}×{h} pixels is outside 1×1 to 16384×16384"
+            )));
+        }
+        if !(0.0..=1.0).contains(&self.max_error) {
+            return Err(Error::Frame(format!(
+                "max_error is {}, and must be 0 to 1: a mean of visible fractions",
+                self.max_error
             )));
         }
         if !(1..=8).contains(&self.frames_in_flight) {

@@ -2,16 +2,15 @@
 
 use super::accesses::{self, BufferAccess, HostAccess, ImageBarrier, NodeUse};
 use super::keep::{self, Keeping, Kept, Revisions};
-use super::rows::{Limits, PLACEHOLDER, Views, build, wanted};
+use super::look::look;
+use super::rows::{Limits, build, wanted};
 use super::{
     BorderBarriers, Description, Frame, Geometry, HostImage, MeshBuffers, MeshInstance, Visibility,
 };
-use crate::baseline::many_lights;
-use crate::depth_layers::{self, HostMapView};
-use crate::graph::{self, Border, MeshList, Need, ResourceId};
+use crate::graph::{self, Border, MeshList, ResourceId};
 use crate::light::outline;
 use crate::linear_light;
-use crate::ray_march::{self, Projection};
+use crate::planner::Verdicts;
 use crate::settings::Technique;
 use crate::{Error, scene::Role};
 use ash::vk;
@@ -81,6 +80,8 @@ pub struct FramePlan {
     pub visibility: ResourceId,
     /// The frame in flight.
     pub slot: u32,
+    /// What the frame needs and does without, and why.
+    pub verdicts: Verdicts,
     pub(crate) stamp: Stamp,
     pub(crate) keeping: Keeping,
     accesses: Vec<HostAccess>,
@@ -98,6 +99,12 @@ impl FramePlan {
     /// How the node uses one of the images of the border; none where this frame leaves it alone.
     pub fn use_of(&self, image: vk::Image) -> Option<NodeUse> {
         self.accesses.iter().find(|a| a.image == image)?.node
+    }
+
+    /// For people: what runs and why, what does not and why not, and what of the effects that the node can simulate
+    /// is simulated or left out, with the bound on the error of that.
+    pub fn explain(&self) -> String {
+        format!("{}\n{}", self.plan.table(), self.verdicts)
     }
 
     /// The barriers to place before the node, for a host that asked for [`BorderBarriers::Host`].
@@ -191,7 +198,7 @@ pub(crate) fn plan_with(
     };
     let receivers = of_role(Role::receives);
     let mut occluders = of_role(Role::blocks);
-    let views = look(description, frame, &mut occluders, &receivers)?;
+    let (views, verdicts) = look(description, frame, &mut occluders, &receivers)?;
     let mut built = build(description, limits, light, &views);
     let pixels: Vec<_> = [Some(built.depth), built.mask].into_iter().flatten().collect();
     let owned = matches!(frame.visibility, Visibility::Own { .. });
@@ -240,6 +247,7 @@ pub(crate) fn plan_with(
         imports,
         visibility: built.visibility,
         slot: frame.slot,
+        verdicts,
         stamp: Stamp::default(),
         keeping,
         occluders: DrawList::new(description, &occluders, &occluder_clips)?,
@@ -251,113 +259,11 @@ pub(crate) fn plan_with(
     })
 }
 
-fn has_triangles(mesh: &MeshInstance) -> bool {
+pub(super) fn has_triangles(mesh: &MeshInstance) -> bool {
     match mesh.geometry {
         Geometry::Buffers(buffers) => buffers.count >= 3,
         Geometry::HostDrawn(_) => true,
     }
-}
-
-/// Fits the maps and says whether anything can be shadowed; keeps of `occluders` what the node draws.
-fn look(
-    description: &Description,
-    frame: &Frame,
-    occluders: &mut Vec<MeshInstance>,
-    receivers: &[MeshInstance],
-) -> Result<Views, Error> {
-    let light = &frame.light;
-    let settings = &description.settings;
-    let boxes = |meshes: &[MeshInstance]| {
-        meshes.iter().map(|m| (m.bounds, m.world_from_mesh)).collect::<Vec<_>>()
-    };
-    let receiver_boxes = boxes(receivers);
-    let host_maps = match (&frame.occluder_maps, description.occluder_maps) {
-        (Some(maps), Some(format)) => {
-            Some(HostMapView::new(light, &maps.clip_from_world, settings.map, format)?)
-        }
-        _ => None,
-    };
-    let given = occluders.len();
-    let fit = if let Some(maps) = &host_maps {
-        occluders.clear();
-        Some(maps.view)
-    } else {
-        occluders.retain(|m| {
-            !depth_layers::is_aside(light, &(m.bounds, m.world_from_mesh), &receiver_boxes)
-        });
-        depth_layers::fit_occluders(light, &boxes(occluders), frame.window, settings.map)
-    };
-    let receiver_fit = fit.as_ref().and_then(|view| {
-        let side = wanted(settings).receiver_map.unwrap_or(settings.map);
-        depth_layers::fit_receivers(light, &receiver_boxes, view, side)
-    });
-    let need = match (&fit, &receiver_fit) {
-        (None, _) if given == 0 => Need::No("there are no occluders".into()),
-        (None, _) if occluders.is_empty() => {
-            Need::No("every occluder is flat, with light and receivers on one side of it".into())
-        }
-        (None, _) => Need::No("every occluder lies behind the light".into()),
-        (_, None) => Need::No("no receiver lies where an occluder could shadow it".into()),
-        _ if host_maps.is_some() => Need::Yes(
-            format!("the host's maps may shadow some of {} receiver meshes", receivers.len())
-                .into(),
-        ),
-        _ => Need::Yes(
-            format!(
-                "{} of {given} occluder meshes can shadow some of {} receiver meshes",
-                occluders.len(),
-                receivers.len()
-            )
-            .into(),
-        ),
-    };
-    let points = match settings.technique {
-        Technique::ManyLights if matches!(need, Need::Yes(_)) => {
-            let centre = fit.as_ref().unwrap_or(&PLACEHOLDER);
-            let boxes = boxes(occluders);
-            many_lights::points(light, frame.outline, &boxes, &settings.baseline, centre)
-        }
-        _ => Vec::new(),
-    };
-    let lines = match (settings.technique, &need, &receiver_fit) {
-        (Technique::LinearLight, Need::Yes(_), Some(receivers)) => {
-            let seen = linear_light::Seen {
-                light,
-                outline: frame.outline,
-                occluders: &boxes(occluders),
-                receivers: &receiver_boxes,
-                side: settings.map,
-                w_far: 1.0 / receivers.far,
-            };
-            linear_light::lines(&settings.linear_light, &seen)?
-        }
-        _ => Vec::new(),
-    };
-    // Ray marching and slices look from behind the light.
-    let seen = match settings.technique {
-        Technique::RayMarch
-            if host_maps.is_none() && settings.ray_march.projection != Projection::Centre =>
-        {
-            ray_march::view(light, &boxes(occluders), settings.ray_march.projection, settings.map)
-        }
-        Technique::OcclusionTextures => {
-            ray_march::view(light, &boxes(occluders), Projection::Behind, settings.map)
-        }
-        _ => None,
-    };
-    let light_from_ndc = light.light_from_world() * frame.world_from_ndc;
-    Ok(Views {
-        points,
-        lines,
-        occluders: seen.or(fit).unwrap_or(PLACEHOLDER),
-        host_maps,
-        receivers: Some(receiver_fit.unwrap_or(PLACEHOLDER)),
-        need,
-        light_from_ndc: light_from_ndc.as_mat4().to_cols_array(),
-        noise: frame.noise,
-        ndc_from_light: light_from_ndc.inverse().as_mat4().to_cols_array(),
-        background: frame.background,
-    })
 }
 
 /// What a host must know of one image of the border.

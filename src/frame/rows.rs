@@ -4,6 +4,7 @@ use super::Description;
 use crate::baseline::{self, many_lights::LightPoint};
 use crate::depth_layers::{self, Eye, HostMapView, MapView};
 use crate::graph::{Graph, Need, Owner, ResourceId};
+use crate::planner::{Effect, Verdicts};
 use crate::settings::{Settings, Technique};
 use crate::visibility::{self, GBuffer};
 use crate::{RectangleLight, linear_light, occlusion_textures, ray_march, soft_shadow_map};
@@ -46,11 +47,95 @@ pub(super) struct Views {
     pub lines: Vec<linear_light::Line>,
     pub host_maps: Option<HostMapView>,
     pub receivers: Option<MapView>,
-    pub need: Need,
+    pub needs: Needs,
     pub light_from_ndc: [f32; 16],
     pub ndc_from_light: [f32; 16],
     pub noise: u32,
     pub background: f32,
+}
+
+/// Which rows a frame needs.
+#[derive(Clone, Debug)]
+pub(super) struct Needs {
+    /// Those of the technique.
+    pub technique: Need,
+    /// A hard shadow in its place.
+    pub hard: Need,
+    /// The occluders' nearest faces, as the light's centre sees them.
+    pub front: Need,
+    /// Their furthest back faces.
+    pub back: Need,
+    /// Their nearest back faces and their furthest front faces.
+    pub inner: Need,
+    /// The noise filter.
+    pub filter: Need,
+}
+
+/// Whether a hard shadow can stand for what a technique makes: its image holds one visible fraction a pixel.
+fn hardens(description: &Description) -> bool {
+    description.settings.technique != Technique::Hard && !description.has_color()
+}
+
+/// Whether the technique has a map of its own that shows the occluders' nearest faces from the light's centre.
+fn has_front(technique: Technique) -> bool {
+    match technique {
+        Technique::SoftShadowMap
+        | Technique::RayMarch
+        | Technique::Pcss
+        | Technique::BackProjection
+        | Technique::Hard => true,
+        Technique::OcclusionTextures | Technique::LinearLight | Technique::ManyLights => false,
+    }
+}
+
+/// Whether the back layer is there for the occluders' back sides alone: slices are placed by it too, and a soft shadow
+/// map of its own has rows for each side.
+fn back_is_for_its_own_sake(settings: &Settings) -> bool {
+    match settings.technique {
+        Technique::SoftShadowMap => {
+            settings.soft_shadow_map.receivers == soft_shadow_map::Receivers::Pixels
+        }
+        technique => technique == Technique::RayMarch,
+    }
+}
+
+impl Needs {
+    /// Everything but what stands for something else.
+    fn all(need: &Need) -> Self {
+        let [technique, hard, front, back, inner, filter] = [(); 6].map(|()| need.clone());
+        Self { technique, hard, front, back, inner, filter }
+    }
+
+    /// By whether anything can be shadowed, and what of it matters.
+    pub fn of(description: &Description, need: Need, verdicts: &Verdicts) -> Self {
+        let mut needs = Self::all(&need);
+        let Need::Yes(_) = &need else { return needs };
+        let left_out = |effect: Effect| {
+            let bound = verdicts.of(effect).bound;
+            let name = effect.rule().name;
+            Need::No(format!("{name}, ≤ {bound:.4}: {}", verdicts.why(effect)).into())
+        };
+        let soft = verdicts.needs(Effect::Penumbra) || !hardens(description);
+        if soft {
+            needs.hard = Need::No("the penumbra is needed".into());
+        } else {
+            let why = left_out(Effect::Penumbra);
+            needs.front = needs.hard.clone();
+            needs = Self { hard: need, technique: why.clone(), ..needs };
+            let [back, inner, filter] = [(); 3].map(|()| why.clone());
+            return Self { back, inner, filter, ..needs };
+        }
+        if !verdicts.needs(Effect::BackSide) && back_is_for_its_own_sake(&description.settings) {
+            needs.back = left_out(Effect::BackSide);
+        }
+        if !verdicts.needs(Effect::Fusion) {
+            needs.inner = left_out(Effect::Fusion);
+        }
+        if !verdicts.needs(Effect::Noise) {
+            needs.filter = left_out(Effect::Noise);
+        }
+        needs
+    }
 }
 
 impl Views {
@@ -112,7 +197,7 @@ pub(crate) fn nominal(description: &Description, limits: Limits) -> FrameGraph {
             error: 0.0,
         }),
         receivers: Some(view),
-        need: Need::Yes("nominal".into()),
+        needs: Needs::all(&Need::Yes("nominal".into())),
         light_from_ndc: DMat4::IDENTITY.as_mat4().to_cols_array(),
         ndc_from_light: DMat4::IDENTITY.as_mat4().to_cols_array(),
         noise: 0,
@@ -168,7 +253,8 @@ pub(super) fn build(
     };
     let snap = limits.snap;
     let depth_error = views.host_maps.map_or(0.0, |m| m.error);
-    let need = &views.need;
+    let needs = &views.needs;
+    let need = &needs.technique;
     let baseline = baseline::Inputs {
         light,
         occluders: &views.occluders,
@@ -177,10 +263,18 @@ pub(super) fn build(
         depth_error,
         need,
     };
-    let layers = |graph: &mut Graph| depth_layers::declare(graph, wanted, &occluders, need);
+    let layer_needs = depth_layers::Needs {
+        front: if has_front(settings.technique) { &needs.front } else { need },
+        back: &needs.back,
+        inner: &needs.inner,
+        receivers: need,
+    };
+    let layers = |graph: &mut Graph| depth_layers::declare(graph, wanted, &occluders, &layer_needs);
+    let mut nearest = None;
     match settings.technique {
         Technique::SoftShadowMap => {
             let layers = layers(&mut graph);
+            nearest = Some(layers.front);
             let settings = &settings.soft_shadow_map;
             let inputs = soft_shadow_map::Inputs {
                 light,
@@ -195,6 +289,7 @@ pub(super) fn build(
         }
         Technique::RayMarch => {
             let layers = layers(&mut graph);
+            nearest = Some(layers.front);
             let inputs = ray_march::Inputs {
                 light,
                 view: &views.occluders,
@@ -206,6 +301,7 @@ pub(super) fn build(
                 snap,
                 depth_error,
                 need,
+                filter: &needs.filter,
             };
             ray_march::declare(&mut graph, &layers, visibility, &settings.ray_march, &inputs);
         }
@@ -236,21 +332,27 @@ pub(super) fn build(
             baseline::hard::declare(&mut graph, front, visibility, &baseline);
         }
         Technique::Pcss => {
-            let front = layers(&mut graph).front;
+            let front = *nearest.insert(layers(&mut graph).front);
             let taps = settings.baseline.taps;
             baseline::pcss::declare(&mut graph, front, visibility, taps, &baseline);
         }
         Technique::BackProjection => {
-            let front = layers(&mut graph).front;
+            let front = *nearest.insert(layers(&mut graph).front);
             baseline::back_projection::declare(&mut graph, front, visibility, &baseline);
         }
         Technique::ManyLights => {
             baseline::many_lights::declare(&mut graph, visibility, &views.points, &baseline);
         }
     }
-    let lit = match &views.need {
-        Need::Yes(_) => Need::No("something can be shadowed, and is written elsewhere".into()),
-        Need::No(why) => Need::Yes(why.clone()),
+    if hardens(description) {
+        let front =
+            nearest.unwrap_or_else(|| depth_layers::hard(&mut graph, settings.map, &needs.hard));
+        let inputs = baseline::Inputs { need: &needs.hard, ..baseline };
+        baseline::hard::declare(&mut graph, front, visibility, &inputs);
+    }
+    let lit = match (&needs.technique, &needs.hard) {
+        (Need::No(why), Need::No(_)) => Need::Yes(why.clone()),
+        _ => Need::No("something can be shadowed, and is written elsewhere".into()),
     };
     visibility::lit(&mut graph, visibility, description.extent, color, lit);
     FrameGraph { graph, depth, mask, occluder_maps: [front, back], light_texture, visibility }

@@ -38,6 +38,8 @@ pub struct Inputs<'a> {
     pub depth_error: f64,
     /// Whether anything can be shadowed.
     pub need: &'a Need,
+    /// Whether the noise filter is needed, where the settings have one.
+    pub filter: &'a Need,
 }
 
 /// The depth layers that these settings read, with maps of `map` texels a side.
@@ -180,12 +182,12 @@ pub fn declare(
         let mut uses = common.clone();
         uses.push(Use::bound(3, halfway, Access::ImageUpdate));
         let name = "ray_march.filter_rows";
-        listed(graph, name, shaders.rows, arguments, pushed, uses, inputs.need);
+        listed(graph, name, shaders.rows, arguments, pushed, uses, inputs.filter);
         let mut uses = common;
         uses.push(Use::bound(3, halfway, Access::SampledCompute));
         uses.push(Use::bound(4, visibility, Access::ImageUpdate));
         let name = "ray_march.filter_columns";
-        listed(graph, name, shaders.columns, arguments, pushed, uses, inputs.need);
+        listed(graph, name, shaders.columns, arguments, pushed, uses, inputs.filter);
     }
 }
 

@@ -45,10 +45,14 @@ pub struct Inputs<'a> {
 pub fn wanted(settings: &Settings, map: u32) -> Wanted {
     Wanted {
         map,
-        back: settings.sides != Sides::One,
+        back: wanted_back(settings),
         inner: false,
         receiver_map: (settings.receivers == Receivers::Map).then_some(settings.receiver_map),
     }
+}
+
+fn wanted_back(settings: &Settings) -> bool {
+    settings.sides != Sides::One
 }
 
 /// The occluder map's nodes, as resources and sizes.
@@ -73,6 +77,9 @@ pub fn declare(
     settings: &Settings,
     inputs: &Inputs,
 ) {
+    // Without a back layer the front is all there is to both sides.
+    let one = Settings { sides: Sides::One, ..*settings };
+    let settings = if wanted_back(settings) && layers.back.is_none() { &one } else { settings };
     let gather = settings.accumulate == Accumulate::Gather;
     let nodes = declare_nodes(graph, layers, settings, inputs, gather);
     match (settings.receivers, layers.receivers, inputs.receivers) {

@@ -5,8 +5,12 @@ use crate::scenes::{self, SceneSpec, Source};
 use crate::sweeps;
 use crate::techniques::{CURVES, value_of};
 use antumbra::gpu::headless::View;
+use antumbra::planner::{CANDIDATES, Candidate};
 use antumbra::scene::{Camera, Instance, Role, Scene, generate};
 use glam::{DMat4, DVec3};
+
+/// The study of what `auto` chooses among.
+pub const CHOICES: &str = "choices";
 
 /// The study of error against time.
 pub const MATRIX: &str = "matrix";
@@ -184,6 +188,9 @@ pub const QUICK: Scale = Scale { view: [256, 192], grid: 96, rays: 256, rounds: 
 /// See [`QUICK`].
 pub const FULL: Scale = Scale { view: [512, 384], grid: 160, rays: 512, rounds: 7, quick: false };
 
+/// For [`choices`]: as large as the full run, with half of its truth's rays.
+pub const CHOICE: Scale = Scale { rays: 256, rounds: 3, ..FULL };
+
 /// The entries of error against time; the picture strip is of one light of each scene.
 fn matrix_entries(scale: &Scale, in_strip: bool) -> Vec<Entry> {
     let mut entries = Vec::new();
@@ -232,6 +239,43 @@ pub fn all(scale: &Scale, own: &[SceneSpec]) -> Vec<Group> {
         groups.extend(standard.iter().map(|spec| matrix(spec, light)));
     }
     groups
+}
+
+/// The scenes that `auto` is made from beyond the report's: things that stand on each other and things that
+/// touch.
+const MORE_SCENES: [&str; 2] = ["spheres", "contact"];
+
+/// Everything that `auto` chooses among, in every view.
+pub fn choices(scale: &Scale) -> Vec<Group> {
+    let entry = |c: &Candidate| Entry {
+        technique: c.technique.name(),
+        curve: c.technique.name().into(),
+        words: c.words.into(),
+        x: 0.0,
+        light_scale: 1.0,
+        shown: false,
+    };
+    let more = MORE_SCENES.map(|name| SceneSpec { name: name.into(), source: Source::Made(name) });
+    let scenes: Vec<_> = scenes::standard().into_iter().chain(more).collect();
+    let lights = scenes::LIGHTS.iter().map(|l| l.0);
+    let of = |light: &'static str| {
+        let group = move |spec: &SceneSpec| Group {
+            study: CHOICES,
+            scene: spec.name.clone(),
+            light: light.into(),
+            stage: Stage::Seen(spec.clone(), light),
+            extent: scale.view,
+            against: if spec.source == Source::Made("card") {
+                Against::Card
+            } else {
+                Against::Traced
+            },
+            at: None,
+            entries: CANDIDATES.iter().map(entry).collect(),
+        };
+        scenes.iter().map(group).collect::<Vec<_>>()
+    };
+    lights.flat_map(of).collect()
 }
 
 #[cfg(test)]

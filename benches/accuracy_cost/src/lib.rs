@@ -11,6 +11,7 @@
 //! Everything left of `measure` is data, and everything right of `store` is a pure function of the
 //! stored rows: a report can be made of whatever a killed run left behind.
 
+pub mod choices;
 pub mod curtis;
 pub mod findings;
 pub mod groups;

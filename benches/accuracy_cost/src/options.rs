@@ -21,6 +21,12 @@ pub struct Options {
     /// Measure only groups whose name holds this, such as "bunny" or "light size"
     #[arg(long, value_name = "TEXT")]
     pub only: Option<String>,
+    /// Measure what `auto` chooses among in every view, and nothing else
+    #[arg(long, conflicts_with_all = ["quick", "scenes"])]
+    pub choices: bool,
+    /// Measure nothing: make of what `--choices` has measured in --out the table that `auto` chooses by
+    #[arg(long, conflicts_with = "report")]
+    pub write_choices: bool,
     /// Measure nothing: make the report anew of what was measured, by whatever commit
     #[arg(long)]
     pub report: bool,
@@ -54,6 +60,9 @@ impl Options {
         let mut words = String::new();
         if self.quick {
             words.push_str(" --quick");
+        }
+        if self.choices {
+            words.push_str(" --choices");
         }
         if let Some(folder) = &self.scenes {
             let shown = folder.strip_prefix(Self::root()).unwrap_or(folder);

@@ -1,7 +1,8 @@
 //! A whole run: what is left to measure, in order, and the report of what is there.
 
 use crate::Problem;
-use crate::groups::{self, FULL, Group, QUICK};
+use crate::choices;
+use crate::groups::{self, CHOICE, FULL, Group, QUICK};
 use crate::measure::Bench;
 use crate::options::Options;
 use crate::progress::{Estimate, Progress, duration};
@@ -28,6 +29,10 @@ pub fn run(options: &Options) -> Result<bool, Problem> {
         println!("{}", page.display());
         return Ok(true);
     }
+    if options.write_choices {
+        choices::write(options)?;
+        return Ok(true);
+    }
     let measured = options.out.join("measured.jsonl");
     if options.report {
         let (header, rows) = Store::read(&measured)?;
@@ -37,7 +42,11 @@ pub fn run(options: &Options) -> Result<bool, Problem> {
             options,
         );
     }
-    let scale = if options.quick { QUICK } else { FULL };
+    let scale = match (options.choices, options.quick) {
+        (true, _) => CHOICE,
+        (_, true) => QUICK,
+        _ => FULL,
+    };
     let own = options.scenes.as_deref().map(scenes::own).transpose()?.unwrap_or_default();
     let device = HeadlessDevice::new(&HeadlessOptions::default()).map_err(|e| e.to_string())?;
     let header = Header {
@@ -51,7 +60,10 @@ pub fn run(options: &Options) -> Result<bool, Problem> {
     };
     let cache = kept(&options.out, &header)?;
     let mut store = Store::open(&measured, &header)?;
-    let mut groups = groups::all(&scale, &own);
+    let mut groups = match options.choices {
+        true => groups::choices(&scale),
+        false => groups::all(&scale, &own),
+    };
     if let Some(text) = &options.only {
         groups.retain(|g| g.key().contains(text.as_str()));
     }

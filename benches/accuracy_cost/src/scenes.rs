@@ -180,6 +180,8 @@ pub fn made(name: &str, light: RectangleLight) -> Result<Scene, Problem> {
         "slats" => generate::slats(light, 8),
         "foliage" => generate::foliage(light, LEAVES, 1),
         "hills" => over_hills(light)?,
+        "spheres" => generate::spheres(light),
+        "contact" => generate::contact(light),
         curtis::CUBE => curtis::elongated_cube(light),
         curtis::DRAGON => curtis::dragon(light)?,
         model => {

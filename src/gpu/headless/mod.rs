@@ -9,6 +9,7 @@
 mod buffer;
 mod choose;
 mod compute;
+mod costs;
 mod device;
 mod forward;
 mod gbuffer;
@@ -24,6 +25,7 @@ mod view;
 
 pub use buffer::HostBuffer;
 pub use compute::{ComputeProgram, run_compute};
+pub use costs::{measure_costs, probe};
 pub use device::{HeadlessDevice, HeadlessOptions};
 pub use forward::Forward;
 pub use gbuffer::{GBuffer, GBufferPainter};

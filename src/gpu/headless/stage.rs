@@ -3,6 +3,7 @@
 use super::gbuffer::MASK;
 use super::{GBuffer, GBufferPainter, HeadlessDevice, ImageSource, SceneBuffers, View, read_image};
 use crate::graph::Scope;
+use crate::planner::{Auto, Choice};
 use crate::scene::{AreaLight, Instance, Scene};
 use crate::{
     Description, Error, Frame, FramePlan, Host, MeshInstance, RectangleLight, Settings, ShadowNode,
@@ -177,17 +178,33 @@ impl Stage {
         light: &RectangleLight,
         change: impl FnOnce(&mut Frame<'f>),
     ) -> Result<FramePlan, Error> {
-        let world_from_ndc = self.view.clip_from_world.inverse();
-        let depth = self.gbuffer.depth_for_node();
-        let mut frame = Frame {
-            mask: Some(self.gbuffer.mask_for_node()),
-            visibility: Visibility::Own { before: RESULT, after: RESULT },
-            ..Frame::new(*light, world_from_ndc, &self.instances, depth)
-        };
+        let mut frame = self.frame(light);
         change(&mut frame);
         let node =
             self.node.as_ref().ok_or_else(|| Error::Frame("the stage has no node".into()))?;
         node.plan(&frame)
+    }
+
+    /// A frame under the light's whole rectangle.
+    fn frame(&self, light: &RectangleLight) -> Frame<'_> {
+        let world_from_ndc = self.view.clip_from_world.inverse();
+        let depth = self.gbuffer.depth_for_node();
+        Frame {
+            mask: Some(self.gbuffer.mask_for_node()),
+            visibility: Visibility::Own { before: RESULT, after: RESULT },
+            ..Frame::new(*light, world_from_ndc, &self.instances, depth)
+        }
+    }
+
+    /// What `auto` chooses for a scene's light; the node stays as it is.
+    ///
+    /// # Errors
+    /// As [`Auto::choose`].
+    pub fn choose(&mut self, auto: &mut Auto, light: &AreaLight) -> Result<Choice, Error> {
+        let frame = Frame { outline: light.outline(), ..self.frame(&light.light) };
+        let node =
+            self.node.as_ref().ok_or_else(|| Error::Frame("the stage has no node".into()))?;
+        auto.choose(node.description(), &frame)
     }
 
     /// Records a plan, submits it and waits.

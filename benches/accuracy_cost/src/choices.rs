@@ -1,0 +1,92 @@
+//! The table that `auto` chooses by: what every candidate did in every view, as text for the crate.
+
+use crate::Problem;
+use crate::groups::{self, CHOICE, Group};
+use crate::options::Options;
+use crate::store::{Row, Store};
+use antumbra::gpu::headless::{HeadlessDevice, HeadlessOptions, Stage, probe};
+use antumbra::planner::{COLUMNS, Likeness, Measured, PROBE, Situation};
+use antumbra::scene::Instance;
+use antumbra::{Settings, Technique};
+use std::path::Path;
+
+/// Passes in light space, by what their names begin with; all others run at the pixels.
+const MAPS: [&str; 12] = [
+    "depth_layers.",
+    "soft_shadow_map.blocks",
+    "soft_shadow_map.superblocks",
+    "ray_march.columns",
+    "ray_march.level",
+    "occlusion_textures.place",
+    "occlusion_textures.histogram",
+    "occlusion_textures.mask",
+    "occlusion_textures.sum_",
+    "occlusion_textures.front_slices",
+    "occlusion_textures.back_slices",
+    "baseline.point_depth",
+];
+
+/// Writes what a run of `--choices` has measured as the crate's table.
+///
+/// # Errors
+/// A sentence where the run or the table's file cannot be read or written.
+pub fn write(options: &Options) -> Result<(), Problem> {
+    let (_, rows) = Store::read(&options.out.join("measured.jsonl"))?;
+    let device = HeadlessDevice::new(&HeadlessOptions::default()).map_err(|e| e.to_string())?;
+    let Measured { maps_ms, pixels_ms, .. } = probe(&device).map_err(|e| e.to_string())?;
+    let mut text = format!("{COLUMNS}\n{PROBE},{maps_ms:.3},{pixels_ms:.3}\n");
+    for group in groups::choices(&CHOICE) {
+        let own: Vec<&Row> =
+            rows.iter().filter(|r| r.scene == group.scene && r.light == group.light).collect();
+        if own.is_empty() {
+            continue;
+        }
+        let situation = situation(&device, &group)?;
+        let parts = Likeness::of(&situation).parts().map(|p| format!("{p:.3}"));
+        let parts = parts.join(",");
+        for row in own {
+            let Some((errors, times)) = row.measured() else { continue };
+            let is_map = |name: &str| MAPS.iter().any(|m| name.starts_with(m));
+            let sum = |maps: bool| -> f64 {
+                times.passes.iter().filter(|(n, _)| is_map(n) == maps).map(|(_, ms)| ms).sum()
+            };
+            text.push_str(&format!(
+                "{},{},{},{parts},{},{},{:.5},{:.5},{:.3},{:.3}\n",
+                row.scene,
+                row.light,
+                situation.triangles,
+                row.technique,
+                row.settings,
+                errors.mean_abs_error,
+                errors.noise_floor,
+                sum(true),
+                sum(false),
+            ));
+        }
+    }
+    let path = Options::root().join("src/planner/table.csv");
+    write_to(&path, &text)?;
+    println!("{}", path.display());
+    Ok(())
+}
+
+fn write_to(path: &Path, text: &str) -> Result<(), Problem> {
+    std::fs::write(path, text).map_err(|e| format!("{}: {e}", path.display()))
+}
+
+/// What the planner sees of a view.
+///
+/// # Errors
+/// A sentence where the scene cannot be made, or where nothing in it can be shadowed.
+pub fn situation(device: &HeadlessDevice, group: &Group) -> Result<Situation, Problem> {
+    let told = |e: antumbra::Error| e.to_string();
+    let ready = group.ready()?;
+    let settings = Settings { technique: Technique::Hard, ..Settings::default() };
+    let keep = |i: &Instance| ready.keeps(i);
+    let mut stage = Stage::new(device, &ready.scene, &ready.view, group.extent, settings, keep)
+        .map_err(told)?;
+    let light = ready.scene.light(None).map_err(told)?.light;
+    let plan = stage.plan(&light, ready.window).map_err(told)?;
+    let situation = plan.verdicts.situation().copied();
+    situation.ok_or_else(|| format!("{}: nothing can be shadowed", group.key()))
+}

@@ -1,0 +1,34 @@
+//! What passes cost on a device: measured at its first use, and kept by its name.
+
+use antumbra::Error;
+use antumbra::gpu::headless::{HeadlessDevice, measure_costs};
+use antumbra::planner::Costs;
+use std::path::PathBuf;
+
+/// Kept from an earlier run, or measured now. What cannot be kept is measured again next time.
+///
+/// # Errors
+/// Whatever the device refuses.
+pub fn of(device: &HeadlessDevice) -> Result<Costs, Error> {
+    let path = path(device.name());
+    let kept = path.as_ref().and_then(|p| std::fs::read_to_string(p).ok());
+    if let Some(text) = kept {
+        return Ok(Costs::from_text(&text));
+    }
+    let costs = measure_costs(device)?;
+    if let Some(path) = path {
+        let _ = path.parent().map(std::fs::create_dir_all);
+        let _ = std::fs::write(path, costs.to_text());
+    }
+    Ok(costs)
+}
+
+/// A file for each device name, in the user's cache.
+fn path(device: &str) -> Option<PathBuf> {
+    let from = |name: &str| std::env::var_os(name).filter(|v| !v.is_empty()).map(PathBuf::from);
+    let cache = from("XDG_CACHE_HOME").or_else(|| Some(from("HOME")?.join(".cache")))?;
+    let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
+    let name: String = device.chars().map(plain).collect();
+    let version = env!("CARGO_PKG_VERSION");
+    Some(cache.join("antumbra").join(format!("costs-{version}-{name}.txt")))
+}

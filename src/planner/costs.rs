@@ -1,0 +1,156 @@
+//! What passes cost on the device at hand, by what they cost on the one that measured the table.
+
+use super::table::{Measured, PIXELS};
+use crate::settings::Technique;
+
+/// How many techniques there are.
+const TECHNIQUES: usize = Technique::ALL.len();
+
+/// How much of what a frame's own times say is believed at once.
+const BELIEF: f64 = 0.2;
+
+/// A correction beyond this factor is a hiccup, not a device.
+const MOST: f64 = 16.0;
+
+/// Milliseconds that a thousand triangles take in a depth layer, on the table's device.
+const DRAW_MS: f64 = 0.35e-3;
+
+/// Factors between the table's device and the one at hand: 1 where nothing was measured.
+///
+/// They belong to a driver: a host keeps [`Self::to_text`] by the device's name and gives it back at the next start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Costs {
+    /// Of passes in light space.
+    pub maps: f64,
+    /// Of passes at the pixels.
+    pub pixels: f64,
+    /// Of each technique beyond these, by the times of its own frames.
+    by_technique: [f64; TECHNIQUES],
+    /// How many frames that was learnt from.
+    frames: [u32; TECHNIQUES],
+}
+
+impl Default for Costs {
+    fn default() -> Self {
+        Self { maps: 1.0, pixels: 1.0, by_technique: [1.0; TECHNIQUES], frames: [0; TECHNIQUES] }
+    }
+}
+
+/// A technique's place in [`Technique::ALL`].
+fn place(technique: Technique) -> usize {
+    Technique::ALL.iter().position(|(_, t)| *t == technique).unwrap_or(0)
+}
+
+impl Costs {
+    /// Of a device on which passes take so many times as long as on the table's.
+    pub fn new(maps: f64, pixels: f64) -> Self {
+        let sound = |x: f64| if x.is_finite() && x > 0.0 { x } else { 1.0 };
+        Self { maps: sound(maps), pixels: sound(pixels), ..Self::default() }
+    }
+
+    /// Milliseconds of what took so long in the table, at another size and with other geometry.
+    pub(crate) fn ms(
+        &self,
+        technique: Technique,
+        table: &Measured,
+        pixels: f64,
+        more_triangles: f64,
+    ) -> f64 {
+        let draws = DRAW_MS * more_triangles.max(0.0);
+        let ms =
+            self.maps * (table.maps_ms + draws) + self.pixels * table.pixels_ms * pixels / PIXELS;
+        ms * self.by_technique[place(technique)]
+    }
+
+    /// Learns from a frame that was to take `expected` milliseconds, and took `measured`.
+    pub(crate) fn learn(&mut self, technique: Technique, expected: f64, measured: f64) {
+        let i = place(technique);
+        let factor = measured / expected;
+        if !(factor.is_finite() && factor > 0.0) {
+            return;
+        }
+        // The first frames are believed most: they stand against nothing but a guess.
+        let belief = BELIEF.max(1.0 / (1.0 + f64::from(self.frames[i])));
+        let by = factor.clamp(1.0 / MOST, MOST).powf(belief);
+        self.by_technique[i] = (self.by_technique[i] * by).clamp(1.0 / MOST, MOST);
+        self.frames[i] = self.frames[i].saturating_add(1);
+    }
+
+    /// As text to be kept, one line a factor.
+    pub fn to_text(&self) -> String {
+        let mut text = format!("maps {}\npixels {}\n", self.maps, self.pixels);
+        for ((name, _), (factor, frames)) in
+            Technique::ALL.iter().zip(self.by_technique.iter().zip(&self.frames))
+        {
+            text.push_str(&format!("{name} {factor} {frames}\n"));
+        }
+        text
+    }
+
+    /// Reads what [`Self::to_text`] wrote; what cannot be read stays 1.
+    pub fn from_text(text: &str) -> Self {
+        let mut costs = Self::default();
+        for line in text.lines() {
+            let mut words = line.split_whitespace();
+            let (Some(name), Some(Ok(factor))) =
+                (words.next(), words.next().map(str::parse::<f64>))
+            else {
+                continue;
+            };
+            if !(factor.is_finite() && factor > 0.0) {
+                continue;
+            }
+            match name {
+                "maps" => costs.maps = factor,
+                "pixels" => costs.pixels = factor,
+                _ => {
+                    if let Ok(technique) = name.parse::<Technique>() {
+                        let i = place(technique);
+                        costs.by_technique[i] = factor.clamp(1.0 / MOST, MOST);
+                        costs.frames[i] = words.next().and_then(|n| n.parse().ok()).unwrap_or(0);
+                    }
+                }
+            }
+        }
+        costs
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_correct_what_was_guessed_and_text_keeps_it() {
+        let mut costs = Costs::new(2.0, 3.0);
+        let table = Measured { error: 0.0, maps_ms: 1.0, pixels_ms: 4.0 };
+        let ms = |c: &Costs, t| c.ms(t, &table, PIXELS, 0.0);
+        assert_eq!(ms(&costs, Technique::Pcss), 2.0 + 12.0);
+        for _ in 0..20 {
+            let expected = ms(&costs, Technique::Pcss);
+            costs.learn(Technique::Pcss, expected, 28.0);
+        }
+        assert!((ms(&costs, Technique::Pcss) - 28.0).abs() < 0.5);
+        assert_eq!(
+            ms(&costs, Technique::Hard),
+            14.0,
+            "another technique's frames say nothing of it"
+        );
+        assert_eq!(Costs::from_text(&costs.to_text()), costs);
+        for bad in ["", "maps", "maps x", "pixels -1\nmaps NaN", "unknown 3"] {
+            assert_eq!(Costs::from_text(bad), Costs::default(), "{bad}");
+        }
+        assert_eq!(Costs::new(f64::NAN, 0.0), Costs::default());
+    }
+
+    #[test]
+    fn one_slow_frame_changes_little() {
+        let mut costs = Costs::default();
+        (0..9).for_each(|_| costs.learn(Technique::Pcss, 10.0, 10.0));
+        let before = costs;
+        costs.learn(Technique::Pcss, 10.0, 10_000.0);
+        let table = Measured { error: 0.0, maps_ms: 0.0, pixels_ms: 1.0 };
+        let ms = |c: &Costs| c.ms(Technique::Pcss, &table, PIXELS, 0.0);
+        assert!(ms(&costs) < 2.0 * ms(&before));
+    }
+}

@@ -1,0 +1,411 @@
+//! What the node can simulate, when that is needed, and what leaving it out can cost.
+//!
+//! Each rule is one line of [`RULES`] for people and one arm of [`Verdicts::judge`] for the node. Bounds are of the
+//! mean error over the pixels that shadow touches, in visible fractions, beyond what the maps' own texels make of it.
+//! `docs/planner.md` derives them.
+
+use super::Situation;
+use crate::settings::{Settings, Technique};
+use crate::soft_shadow_map::Sides;
+use crate::{occlusion_textures, ray_march};
+use std::fmt;
+
+/// Something that the node can simulate, or leave out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Effect {
+    /// Any shadow at all.
+    Shadow,
+    /// Occluders that can shadow no receiver.
+    OutOfReach,
+    /// The part of the light that a receiver sees, where that is neither all nor nothing.
+    Penumbra,
+    /// The part of the penumbra behind the edge that the light's centre sees.
+    InnerPenumbra,
+    /// Both extents of the light.
+    Area,
+    /// The back faces of occluders.
+    BackSide,
+    /// Occluders behind other ones.
+    Fusion,
+    /// Occluders thinner than what the technique tells apart.
+    ThinOccluders,
+    /// Shadows of meshes on themselves and on others that block.
+    SelfShadowing,
+    /// What the camera sees through, which the light's layers take for solid.
+    EyeLayer,
+    /// Occluders with holes that their triangles do not have.
+    CutOuts,
+    /// Light of different color or strength from different parts of the light.
+    Emission,
+    /// The noise of few rays.
+    Noise,
+}
+
+/// What a reader must know of an effect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rule {
+    /// The effect.
+    pub effect: Effect,
+    /// Its name in explanations and reports.
+    pub name: &'static str,
+    /// When it is needed.
+    pub needed: &'static str,
+    /// What leaving it out costs at most where it is not needed.
+    pub bound: &'static str,
+    /// What it pulls in.
+    pub passes: &'static str,
+}
+
+/// How many effects there are.
+pub const COUNT: usize = 13;
+
+/// Every effect, in the order of [`Effect`].
+pub const RULES: [Rule; COUNT] = [
+    Rule {
+        effect: Effect::Shadow,
+        name: "shadow",
+        needed: "some occluder may lie between the light and a receiver",
+        bound: "0",
+        passes: "every pass but `visibility.lit`",
+    },
+    Rule {
+        effect: Effect::OutOfReach,
+        name: "occluders out of reach",
+        needed: "never",
+        bound: "0",
+        passes: "none; their draws are left out",
+    },
+    Rule {
+        effect: Effect::Penumbra,
+        name: "penumbra",
+        needed: "the widest penumbra spans more than a pixel, or ½ s e is above the error asked for: s its width \
+                 in pixels, e the most edges a pixel's width of shadow may have",
+        bound: "½ s e",
+        passes: "all of the technique's; `baseline.hard` stands for them where it is left out",
+    },
+    Rule {
+        effect: Effect::InnerPenumbra,
+        name: "inner penumbra",
+        needed: "wherever the penumbra is",
+        bound: "the penumbra's",
+        passes: "none of its own",
+    },
+    Rule {
+        effect: Effect::Area,
+        name: "area of the light",
+        needed: "the light has two extents",
+        bound: "0",
+        passes: "`linear-light`'s further lines; techniques for areas alone take no line",
+    },
+    Rule {
+        effect: Effect::BackSide,
+        name: "back side of occluders",
+        needed: "two occluders meet in the map, or Atty 2006 eq. 3 for the whole thickness h of any, over the light's side, \
+                 ½ h d_r / (d_o (d_r − d_o − h)), is above the error asked for",
+        bound: "that, 0 for sheets",
+        passes: "`depth_layers.back`, and the second side of `soft_shadow_map.blocks`",
+    },
+    Rule {
+        effect: Effect::Fusion,
+        name: "fusion of overlapping occluders",
+        needed: "two occluders meet in the map, or the back side of one is needed",
+        bound: "that of the back side",
+        passes: "`depth_layers.near_back`, `depth_layers.far_front`; both faces of `soft_shadow_map`",
+    },
+    Rule {
+        effect: Effect::ThinOccluders,
+        name: "leaks of thin occluders",
+        needed: "there are slices, and occluders may end within one",
+        bound: "0",
+        passes: "none of its own; filled slices",
+    },
+    Rule {
+        effect: Effect::SelfShadowing,
+        name: "self-shadowing",
+        needed: "some mesh blocks and receives",
+        bound: "0",
+        passes: "none of its own; it asks for `receivers=pixels`",
+    },
+    Rule {
+        effect: Effect::EyeLayer,
+        name: "eye layer",
+        needed: "`layers=3`, and occluders overlap",
+        bound: "0",
+        passes: "the G-buffer's depth in every ray's search",
+    },
+    Rule {
+        effect: Effect::CutOuts,
+        name: "cut-outs",
+        needed: "the host draws some mesh itself",
+        bound: "0",
+        passes: "the host's draws in every layer",
+    },
+    Rule {
+        effect: Effect::Emission,
+        name: "texture of the light",
+        needed: "the host lends one",
+        bound: "0",
+        passes: "the texture in `ray_march.trace`",
+    },
+    Rule {
+        effect: Effect::Noise,
+        name: "noise filter",
+        needed: "the filter's Gaussian would be wider than 0.4 pixels: penumbrae of more than 0.67 / √N pixels, N the \
+                 noise of so many rays",
+        bound: "0",
+        passes: "`ray_march.filter_rows`, `ray_march.filter_columns`",
+    },
+];
+
+impl Effect {
+    /// What to know of it.
+    pub fn rule(self) -> &'static Rule {
+        &RULES[self as usize]
+    }
+}
+
+/// What comes of an effect in one frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// It is needed and simulated.
+    Simulated,
+    /// It is not needed.
+    LeftOut,
+    /// It is needed, and the technique has no means for it.
+    NotSimulated,
+}
+
+/// What a frame decides of an effect.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Verdict {
+    /// The effect.
+    pub effect: Effect,
+    /// What comes of it.
+    pub outcome: Outcome,
+    /// What it costs at most that it is left out, or would cost: a mean of visible fractions, 0 to 1.
+    pub bound: f64,
+}
+
+/// What a frame decides of all effects, and what from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Verdicts {
+    all: [Verdict; COUNT],
+    situation: Option<Situation>,
+    settings: Settings,
+}
+
+/// The widest penumbra that a hard shadow may stand for, pixels: narrower than the pixels that sample it.
+pub const HARD_PIXELS: f64 = 1.0;
+
+/// The Gaussian below which the noise filter changes nothing, pixels (`ray_march/filter.glsl`).
+const LEAST_FILTER: f64 = 0.4;
+
+impl Verdicts {
+    /// Decides by a situation, none where nothing can be shadowed.
+    ///
+    /// `max_error` is the most that each effect may add to the mean error to be left out; `texture` says whether the
+    /// light has one.
+    pub fn judge(
+        situation: Option<Situation>,
+        settings: &Settings,
+        max_error: f64,
+        texture: bool,
+    ) -> Self {
+        let mut all = RULES.map(|rule| {
+            let effect = rule.effect;
+            Verdict { effect, outcome: Outcome::LeftOut, bound: 0.0 }
+        });
+        let mut set = |effect: Effect, needed: bool, bound: f64| {
+            let can = simulates(settings, effect);
+            all[effect as usize].bound = bound;
+            all[effect as usize].outcome = match (needed, can) {
+                (false, _) => Outcome::LeftOut,
+                (true, true) => Outcome::Simulated,
+                (true, false) => Outcome::NotSimulated,
+            };
+        };
+        if let Some(s) = &situation {
+            set(Effect::Shadow, true, 1.0);
+            let penumbra = (0.5 * s.penumbra_pixels * s.edges_a_pixel).min(1.0);
+            let soft = s.penumbra_pixels > HARD_PIXELS || penumbra > max_error || texture;
+            set(Effect::Penumbra, soft, penumbra);
+            set(Effect::InnerPenumbra, soft, penumbra);
+            set(Effect::Area, soft && s.light[1] > 0.0, if s.light[1] > 0.0 { 1.0 } else { 0.0 });
+            // Within one occluder no two surfaces are further apart than it is thick.
+            let layers = if s.overlap { 1.0 } else { s.thickness };
+            let fused = soft && layers > max_error;
+            set(Effect::Fusion, fused, layers);
+            set(Effect::BackSide, fused, layers);
+            let slices = settings.technique == Technique::OcclusionTextures;
+            set(Effect::ThinOccluders, soft && slices, if slices { 1.0 } else { 0.0 });
+            set(Effect::SelfShadowing, s.both > 0, if s.both > 0 { 1.0 } else { 0.0 });
+            let eye = settings.technique == Technique::RayMarch
+                && settings.ray_march.layers == ray_march::Layers::Eye;
+            set(Effect::EyeLayer, fused && eye, if eye { layers } else { 0.0 });
+            set(Effect::CutOuts, s.host_drawn > 0, if s.host_drawn > 0 { 1.0 } else { 0.0 });
+            set(Effect::Emission, texture, if texture { 1.0 } else { 0.0 });
+            if settings.technique == Technique::RayMarch && settings.ray_march.filter {
+                let narrow = s.penumbra_pixels <= filtered_from(&settings.ray_march);
+                set(Effect::Noise, soft && !narrow, if narrow { 0.0 } else { 1.0 });
+            }
+        }
+        Self { all, situation, settings: *settings }
+    }
+
+    /// Every verdict, in the order of [`Effect`].
+    pub fn all(&self) -> &[Verdict; COUNT] {
+        &self.all
+    }
+
+    /// What is decided of one effect.
+    pub fn of(&self, effect: Effect) -> Verdict {
+        self.all[effect as usize]
+    }
+
+    /// Whether an effect is needed.
+    pub fn needs(&self, effect: Effect) -> bool {
+        self.of(effect).outcome != Outcome::LeftOut
+    }
+
+    /// What the boxes told; none where nothing can be shadowed.
+    pub fn situation(&self) -> Option<&Situation> {
+        self.situation.as_ref()
+    }
+
+    /// Why an effect is simulated or left out, as part of a sentence.
+    pub fn why(&self, effect: Effect) -> String {
+        let Some(s) = &self.situation else { return "nothing can be shadowed".into() };
+        let needs = self.needs(effect);
+        let hard = !self.needs(Effect::Penumbra);
+        if hard
+            && !matches!(effect, Effect::Shadow | Effect::OutOfReach | Effect::Penumbra)
+            && !needs
+        {
+            let pixels = s.penumbra_pixels;
+            let rest = "shadows are hard";
+            return match effect {
+                Effect::SelfShadowing => "no mesh both blocks and receives".into(),
+                Effect::CutOuts => "no occluder is drawn by the host".into(),
+                Effect::Emission => "the light is the same all over".into(),
+                _ => format!("{rest}: the widest penumbra spans {pixels:.2} pixels"),
+            };
+        }
+        match effect {
+            Effect::Shadow => {
+                let Situation { occluders, receivers, .. } = s;
+                format!(
+                    "{occluders} occluder meshes may shadow some of {receivers} receiver meshes"
+                )
+            }
+            Effect::OutOfReach => {
+                let left = s.given.saturating_sub(s.occluders);
+                format!("{left} of {} occluder meshes can shadow no receiver", s.given)
+            }
+            Effect::Penumbra | Effect::InnerPenumbra => format!(
+                "the widest penumbra spans {:.2} pixels, with at most {:.2} edges in a pixel's width",
+                s.penumbra_pixels, s.edges_a_pixel
+            ),
+            Effect::Area if s.light[1] == 0.0 => "the light is a line".into(),
+            Effect::Area => format!("the light is {:.3} by {:.3} m", s.light[0], s.light[1]),
+            Effect::BackSide | Effect::Fusion if s.overlap => {
+                "occluders may lie before each other".into()
+            }
+            Effect::BackSide | Effect::Fusion if s.sheets => {
+                "every occluder is a sheet, and none lies before another".into()
+            }
+            Effect::BackSide | Effect::Fusion => {
+                format!(
+                    "eq. 3 for the thickest occluder is {:.4}, and none lies before another",
+                    s.thickness
+                )
+            }
+            Effect::ThinOccluders if needs => "occluders may end within a slice".into(),
+            Effect::ThinOccluders => {
+                format!("{} has no slices", self.settings.technique.name())
+            }
+            Effect::SelfShadowing if needs => format!("{} meshes block and receive", s.both),
+            Effect::SelfShadowing => "no mesh both blocks and receives".into(),
+            Effect::EyeLayer if needs => "layers=3, and occluders have insides".into(),
+            Effect::EyeLayer => "layers=3 is not set, or no occluder has an inside".into(),
+            Effect::CutOuts if needs => format!("the host draws {} meshes", s.host_drawn),
+            Effect::CutOuts => "no occluder is drawn by the host".into(),
+            Effect::Emission if needs => "the host lends a texture of the light".into(),
+            Effect::Emission => "the light is the same all over".into(),
+            Effect::Noise if self.settings.technique != Technique::RayMarch => {
+                format!("{} has no noise", self.settings.technique.name())
+            }
+            Effect::Noise if !self.settings.ray_march.filter => "filter=off".into(),
+            Effect::Noise => format!(
+                "penumbrae span up to {:.2} pixels, and the filter acts on those of more than {:.2}",
+                s.penumbra_pixels,
+                filtered_from(&self.settings.ray_march)
+            ),
+        }
+    }
+}
+
+/// One line an effect: what comes of it, the bound, and why.
+impl fmt::Display for Verdicts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let width = RULES.iter().map(|r| r.name.len()).max().unwrap_or(0);
+        for v in &self.all {
+            let outcome = match v.outcome {
+                Outcome::Simulated => "simulated",
+                Outcome::LeftOut => "left out",
+                Outcome::NotSimulated => "missing",
+            };
+            let bound = match v.outcome {
+                Outcome::Simulated => String::new(),
+                _ => format!("≤ {:.4}", v.bound),
+            };
+            let (name, why) = (v.effect.rule().name, self.why(v.effect));
+            writeln!(f, "{outcome:9}  {name:width$}  {bound:8}  {why}")?;
+        }
+        Ok(())
+    }
+}
+
+/// The width of penumbra from which the noise filter does anything, pixels: its Gaussian's standard deviation a is
+/// given by a³ = N W² / (4 √π), `ray_march/filter.glsl`.
+fn filtered_from(settings: &ray_march::Settings) -> f64 {
+    let random = settings.sampling == ray_march::Sampling::Random;
+    let noise = 0.33 * f64::from(settings.rays).powf(if random { -0.5 } else { -0.75 });
+    (LEAST_FILTER.powi(3) * 7.09 / noise).sqrt()
+}
+
+/// Whether a technique has means for an effect.
+fn simulates(settings: &Settings, effect: Effect) -> bool {
+    use Technique as T;
+    let technique = settings.technique;
+    let soft = technique != T::Hard;
+    match effect {
+        Effect::Penumbra | Effect::InnerPenumbra | Effect::Area => soft,
+        Effect::BackSide => match technique {
+            T::SoftShadowMap => settings.soft_shadow_map.sides != Sides::One,
+            T::RayMarch | T::OcclusionTextures | T::ManyLights | T::LinearLight => true,
+            T::Hard | T::Pcss | T::BackProjection => false,
+        },
+        Effect::Fusion => match technique {
+            T::RayMarch => settings.ray_march.layers == ray_march::Layers::Four,
+            T::SoftShadowMap => settings.soft_shadow_map.sides != Sides::One,
+            T::OcclusionTextures | T::ManyLights | T::LinearLight => true,
+            T::Hard | T::Pcss | T::BackProjection => false,
+        },
+        Effect::ThinOccluders => fills(&settings.occlusion_textures),
+        Effect::SelfShadowing => {
+            technique != T::SoftShadowMap
+                || settings.soft_shadow_map.receivers == crate::soft_shadow_map::Receivers::Pixels
+        }
+        Effect::Shadow
+        | Effect::OutOfReach
+        | Effect::EyeLayer
+        | Effect::CutOuts
+        | Effect::Emission
+        | Effect::Noise => true,
+    }
+}
+
+/// Whether what ends within a slice is seen by the next.
+fn fills(settings: &occlusion_textures::Settings) -> bool {
+    settings.fill || settings.is_correlated()
+}
