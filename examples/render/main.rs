@@ -79,7 +79,7 @@ fn render(options: &Options) -> Result<String, Stop> {
         eprintln!("auto: {problem}");
     }
     stage.configure_with(settings, |description| {
-        description.max_error = options.max_error.unwrap_or(description.max_error);
+        description.max_error = options.max_error.or(description.max_error);
     })?;
     let plan = stage.plan_under(light, None)?;
     // The first frame warms the driver up and is not timed, unless it is the only one.

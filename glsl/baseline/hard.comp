@@ -5,6 +5,8 @@
 
 // A hard shadow map, 3x3 percentage-closer filtered (Reeves 1987): the mean of nine comparisons that are
 // each bilinear. Together they weigh 4x4 texels by (1 - f, 1, 1, f)/3 along each axis.
+//
+// Where it stands for a soft shadow whose penumbra no pixel shows, one bilinear comparison blurs less.
 
 void main()
 {
@@ -18,8 +20,9 @@ void main()
         MapPlane m = pixel_plane(r);
         vec2 corner = floor(m.t - 0.5);
         vec2 f = m.t - 0.5 - corner;
-        vec4 x = vec4(1.0 - f.x, 1.0, 1.0, f.x);
-        vec4 y = vec4(1.0 - f.y, 1.0, 1.0, f.y);
+        bool one = push.count == 1;
+        vec4 x = one ? vec4(0.0, 1.0 - f.x, f.x, 0.0) : vec4(1.0 - f.x, 1.0, 1.0, f.x) / 3.0;
+        vec4 y = one ? vec4(0.0, 1.0 - f.y, f.y, 0.0) : vec4(1.0 - f.y, 1.0, 1.0, f.y) / 3.0;
         float hidden = 0.0;
         for (int j = 0; j < 4; ++j) {
             for (int i = 0; i < 4; ++i) {
@@ -27,7 +30,7 @@ void main()
             }
         }
         // From below the pixel's own surface nothing is seen of the light's centre.
-        v = m.c >= 0.0 && r.blocks ? 0.0 : 1.0 - min(hidden / 9.0, 1.0);
+        v = m.c >= 0.0 && r.blocks ? 0.0 : 1.0 - min(hidden, 1.0);
     }
     imageStore(visibility, p, vec4(v));
 }

@@ -11,7 +11,23 @@ use super::{Inputs, one_map};
 use crate::graph::{Graph, ResourceId};
 use crate::shaders;
 
+/// How many comparisons along each axis are averaged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Filter {
+    /// 3×3 bilinear ones.
+    Three,
+    /// A bilinear one alone, for a shadow that stands for one whose penumbra no pixel shows.
+    One,
+}
+
 /// Adds the row that turns the map `front` into `visibility`.
-pub fn declare(graph: &mut Graph, front: ResourceId, visibility: ResourceId, inputs: &Inputs) {
-    one_map(graph, "baseline.hard", shaders::HARD, (front, visibility), 0, &[], inputs);
+pub fn declare(
+    graph: &mut Graph,
+    front: ResourceId,
+    visibility: ResourceId,
+    filter: Filter,
+    inputs: &Inputs,
+) {
+    let count = u32::from(filter == Filter::One);
+    one_map(graph, "baseline.hard", shaders::HARD, (front, visibility), count, &[], inputs);
 }

@@ -37,8 +37,8 @@ pub struct Description {
     pub settings: Settings,
     /// What leaving an effect out may add to the mean error at most, 0 to 1, as a mean of visible fractions over the
     /// pixels that shadow touches: see [`crate::planner::RULES`]. 1/256 by default, a step of an 8-bit image; 0 leaves
-    /// out what cannot matter and nothing else.
-    pub max_error: f64,
+    /// out what cannot matter and nothing else; none leaves out nothing, for studying what it costs.
+    pub max_error: Option<f64>,
     /// How many frames may be recorded before the first of them is done, 1 to 8.
     pub frames_in_flight: u32,
     /// The format of the G-buffer's depth image.
@@ -83,7 +83,7 @@ impl Description {
         Self {
             extent,
             settings: Settings::default(),
-            max_error: 1.0 / 256.0,
+            max_error: Some(1.0 / 256.0),
             frames_in_flight: 2,
             depth_format: vk::Format::D32_SFLOAT,
             mask_format: None,
@@ -105,10 +105,9 @@ impl Description {
                 "a G-buffer of {w}×{h} pixels is outside 1×1 to 16384×16384"
             )));
         }
-        if !(0.0..=1.0).contains(&self.max_error) {
+        if let Some(most) = self.max_error.filter(|most| !(0.0..=1.0).contains(most)) {
             return Err(Error::Frame(format!(
-                "max_error is {}, and must be 0 to 1: a mean of visible fractions",
-                self.max_error
+                "max_error is {most}, and must be 0 to 1: a mean of visible fractions"
             )));
         }
         if !(1..=8).contains(&self.frames_in_flight) {

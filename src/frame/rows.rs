@@ -1,7 +1,7 @@
 //! Every row that a description calls for, with one frame's numbers in them.
 
 use super::Description;
-use crate::baseline::{self, many_lights::LightPoint};
+use crate::baseline::{self, hard::Filter, many_lights::LightPoint};
 use crate::depth_layers::{self, Eye, HostMapView, MapView};
 use crate::graph::{Graph, Need, Owner, ResourceId};
 use crate::planner::{Effect, Verdicts};
@@ -329,7 +329,7 @@ pub(super) fn build(
         }
         Technique::Hard => {
             let front = layers(&mut graph).front;
-            baseline::hard::declare(&mut graph, front, visibility, &baseline);
+            baseline::hard::declare(&mut graph, front, visibility, Filter::Three, &baseline);
         }
         Technique::Pcss => {
             let front = *nearest.insert(layers(&mut graph).front);
@@ -348,7 +348,7 @@ pub(super) fn build(
         let front =
             nearest.unwrap_or_else(|| depth_layers::hard(&mut graph, settings.map, &needs.hard));
         let inputs = baseline::Inputs { need: &needs.hard, ..baseline };
-        baseline::hard::declare(&mut graph, front, visibility, &inputs);
+        baseline::hard::declare(&mut graph, front, visibility, Filter::One, &inputs);
     }
     let lit = match (&needs.technique, &needs.hard) {
         (Need::No(why), Need::No(_)) => Need::Yes(why.clone()),

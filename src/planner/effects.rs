@@ -203,14 +203,15 @@ const LEAST_FILTER: f64 = 0.4;
 impl Verdicts {
     /// Decides by a situation, none where nothing can be shadowed.
     ///
-    /// `max_error` is the most that each effect may add to the mean error to be left out; `texture` says whether the
-    /// light has one.
+    /// `max_error` is the most that each effect may add to the mean error to be left out, and where there is none, all
+    /// that may show is needed; `texture` says whether the light has one.
     pub fn judge(
         situation: Option<Situation>,
         settings: &Settings,
-        max_error: f64,
+        max_error: Option<f64>,
         texture: bool,
     ) -> Self {
+        let exceeds = |bound: f64| max_error.is_none_or(|most| bound > most);
         let mut all = RULES.map(|rule| {
             let effect = rule.effect;
             Verdict { effect, outcome: Outcome::LeftOut, bound: 0.0 }
@@ -227,13 +228,13 @@ impl Verdicts {
         if let Some(s) = &situation {
             set(Effect::Shadow, true, 1.0);
             let penumbra = (0.5 * s.penumbra_pixels * s.edges_a_pixel).min(1.0);
-            let soft = s.penumbra_pixels > HARD_PIXELS || penumbra > max_error || texture;
+            let soft = s.penumbra_pixels > HARD_PIXELS || exceeds(penumbra) || texture;
             set(Effect::Penumbra, soft, penumbra);
             set(Effect::InnerPenumbra, soft, penumbra);
             set(Effect::Area, soft && s.light[1] > 0.0, if s.light[1] > 0.0 { 1.0 } else { 0.0 });
             // Within one occluder no two surfaces are further apart than it is thick.
             let layers = if s.overlap { 1.0 } else { s.thickness };
-            let fused = soft && layers > max_error;
+            let fused = soft && exceeds(layers);
             set(Effect::Fusion, fused, layers);
             set(Effect::BackSide, fused, layers);
             let slices = settings.technique == Technique::OcclusionTextures;
@@ -246,7 +247,11 @@ impl Verdicts {
             set(Effect::Emission, texture, if texture { 1.0 } else { 0.0 });
             if settings.technique == Technique::RayMarch && settings.ray_march.filter {
                 let narrow = s.penumbra_pixels <= filtered_from(&settings.ray_march);
-                set(Effect::Noise, soft && !narrow, if narrow { 0.0 } else { 1.0 });
+                set(
+                    Effect::Noise,
+                    soft && !(narrow && max_error.is_some()),
+                    if narrow { 0.0 } else { 1.0 },
+                );
             }
         }
         Self { all, situation, settings: *settings }

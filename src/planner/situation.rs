@@ -49,6 +49,9 @@ pub struct Situation {
     pub edges: f64,
     /// The same over a pixel, by the largest pixel there: 0 to 1.
     pub edges_a_pixel: f64,
+    /// A map's texel where shadows fall furthest, in pixels, by the smallest pixel there; infinite where the camera is
+    /// inside. Every technique errs by something like it at edges.
+    pub texel_pixels: f64,
     /// The smaller side of what the map shows at the occluders' mean distance, metres.
     pub size: f64,
 }
@@ -99,6 +102,7 @@ impl Situation {
             penumbra_pixels: 0.0,
             edges: if seen.occluders.is_empty() { f64::INFINITY } else { 0.0 },
             edges_a_pixel: 0.0,
+            texel_pixels: 0.0,
             size: 0.0,
         };
         let [smallest, largest] = pixel_sizes(seen, &light_from_world);
@@ -111,6 +115,8 @@ impl Situation {
         s.edges_a_pixel = (s.edges * largest).min(1.0);
         let middle = 0.5 * (s.occluder_distances[0] + s.occluder_distances[1]);
         let side = (0..2).map(|i| map.max[i] - map.min[i]).fold(f64::INFINITY, f64::min);
+        let reach = if map.eye == Eye::Infinity { 1.0 } else { s.receiver_distances[1] + behind };
+        s.texel_pixels = side * reach / f64::from(map.side) / smallest;
         s.size = side * if map.eye == Eye::Infinity { 1.0 } else { middle + behind };
         s
     }
