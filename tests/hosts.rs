@@ -79,7 +79,8 @@ fn every_host_gets_the_same_bits() {
     let reference = folder("hosts-render");
     let scene = root().join("scenes/bunny.glb");
     let (scene, out) = (scene.to_string_lossy(), reference.to_string_lossy());
-    let arguments = [scene.as_ref(), "--out", &out, "--size", SIZE];
+    let arguments =
+        [scene.as_ref(), "--out", &out, "--size", SIZE, "--technique", "soft-shadow-map"];
     let rendered = run(&build_example("render"), &arguments, Checks::Submits.if_validating());
     assert!(rendered.ok && rendered.messages.is_empty(), "{rendered:?}");
     let visibility = bits(&reference, "visibility.exr");

@@ -141,7 +141,70 @@ fn wrong_options_are_one_sentence() {
     refuse("role", &bunny, &["--role", "ground=wall"], "wall");
     refuse("node", &bunny, &["--role", "nobody=both"], "nobody");
     refuse("option", &bunny, &["--sides", "two"], "--sides");
-    refuse("budget", &bunny, &["--max-error", "0.01"], "--max-error");
+    refuse(
+        "time",
+        &bunny,
+        &["--technique", "pcss", "--max-ms", "9"],
+        "budget for --technique auto",
+    );
+    refuse("chosen", &bunny, &["--technique", "auto", "--set", "map=64"], "for auto to choose");
+    refuse("number", &bunny, &["--max-error", "little"], "--max-error");
+    refuse("tolerance", &bunny, &["--technique", "pcss", "--max-error", "-1"], "max_error is -1");
+}
+
+fn report(out: &Path) -> Value {
+    serde_json::from_slice(&fs::read(out.join("report.json")).unwrap()).unwrap()
+}
+
+/// Without a technique one is chosen, and the report says by what.
+#[test]
+fn auto_chooses_by_a_budget_and_says_what_it_expects() {
+    let scene = root().join("scenes/bunny.glb");
+    let mut last = f64::INFINITY;
+    for options in [&[][..], &["--max-error", "0.05"], &["--technique", "auto", "--max-ms", "1e6"]]
+    {
+        let out = folder("auto");
+        let options = [&["--size", "96x64", "--validate"], options].concat();
+        let output = run(&scene, &out, &options);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        assert!(output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
+        let report = report(&out);
+        assert_ne!(report["technique"], "auto", "what ran is told");
+        let auto = &report["auto"];
+        assert_eq!(auto["met"], true);
+        assert!(auto["ms"].as_f64().unwrap() > 0.0 && auto["measured_ms"].as_f64().unwrap() > 0.0);
+        last = last.min(auto["error"].as_f64().unwrap());
+        let effects = report["effects"].as_array().unwrap();
+        assert_eq!(effects.len(), antumbra::planner::COUNT);
+        for effect in effects {
+            assert!(!effect["why"].as_str().unwrap().is_empty(), "{effect}");
+            assert!((0.0..=1.0).contains(&effect["bound"].as_f64().unwrap()), "{effect}");
+        }
+        fs::remove_dir_all(out).unwrap();
+    }
+    assert!(last < 0.02, "much time buys a small error, not {last}");
+}
+
+/// What cannot be met, or makes no sense, gets a sentence and the nearest that can be done.
+#[test]
+fn a_budget_that_cannot_be_met_is_told_and_the_nearest_is_done() {
+    let scene = root().join("scenes/bunny.glb");
+    for (options, wanted) in [
+        (["--max-error", "0"], "must be above 0"),
+        (["--max-error", "-0.1"], "must be above 0"),
+        (["--max-error", "NaN"], "not a number"),
+        (["--max-ms", "0.000001"], "nothing takes less"),
+        (["--max-error", "0.000001"], "no error below"),
+    ] {
+        let out = folder("unmet");
+        let output = run(&scene, &out, &[&["--size", "32x32"], &options[..]].concat());
+        let line = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success(), "{options:?}: {line}");
+        assert!(line.contains(wanted) && line.lines().count() == 1, "{options:?}: {line}");
+        assert_eq!(files(&out), FILES);
+        assert_eq!(report(&out)["auto"]["met"], false, "{options:?}");
+        fs::remove_dir_all(out).unwrap();
+    }
 }
 
 /// A small scene as text: one triangle, and whatever the test adds.
@@ -205,7 +268,8 @@ fn wrong_scenes_are_one_sentence() {
     let mut line = lamp.clone();
     line["extras"]["height"] = json!(0);
     let scene = write(&there, &triangle(&json!([mesh, line])), good);
-    refuse("line", &scene, &[], "the light is a line, and soft-shadow-map needs an area");
+    let named = ["--technique", "soft-shadow-map"];
+    refuse("line", &scene, &named, "the light is a line, and soft-shadow-map needs an area");
     let out = folder("line_hard");
     let output = run(&scene, &out, &["--size", "32x32", "--technique", "hard"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -218,14 +282,16 @@ fn wrong_scenes_are_one_sentence() {
     refuse(
         "polygon",
         &scene,
-        &[],
+        &named,
         "the light is a polygon, and soft-shadow-map knows rectangles alone",
     );
-    let out = folder("polygon_many");
-    let output = run(&scene, &out, &["--size", "32x32", "--technique", "many-lights"]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    assert_eq!(files(&out), FILES);
-    fs::remove_dir_all(out).unwrap();
+    for options in [&["--technique", "many-lights"][..], &[]] {
+        let out = folder("polygon_many");
+        let output = run(&scene, &out, &[&["--size", "32x32"], options].concat());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        assert_eq!(files(&out), FILES);
+        fs::remove_dir_all(out).unwrap();
+    }
 
     // And the good one renders.
     let scene = write(&there, &triangle(&json!([mesh, lamp])), good);

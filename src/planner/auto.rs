@@ -59,10 +59,13 @@ pub struct Choice {
 
 /// What a candidate is expected to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Expected {
-    candidate: usize,
-    error: f64,
-    ms: f64,
+pub(super) struct Expected {
+    /// Its place among [`CANDIDATES`].
+    pub candidate: usize,
+    /// Mean error, a visible fraction.
+    pub error: f64,
+    /// Milliseconds.
+    pub ms: f64,
 }
 
 /// What is remembered of a light.
@@ -135,12 +138,26 @@ impl Auto {
                 Some(s) if !is_line(frame) => {
                     let can =
                         |e: &Expected| takes(CANDIDATES[e.candidate].technique, description, s);
-                    self.expect(Table::own(), s, pixels).into_iter().filter(can).collect()
+                    let likeness = Likeness::of(s);
+                    expect(Table::own(), &self.costs, &likeness, pixels, s.triangles as f64)
+                        .into_iter()
+                        .filter(can)
+                        .collect()
                 }
                 _ => Vec::new(),
             })
             .collect();
         let picked = share(&expected, &sound);
+        let least: f64 = picked.iter().flatten().map(|e| e.ms).sum();
+        let lights = picked.iter().flatten().count();
+        let too_slow = (lights > 1 && least > sound.max_ms).then(|| {
+            format!(
+                "the {lights} lights together take no less than {least:.1} ms here, and max_ms is {}; \
+                 the fastest is chosen for each",
+                sound.max_ms
+            )
+        });
+        let sound = Sound { problem: sound.problem.or(too_slow), ..sound };
         let mut choices = Vec::with_capacity(frames.len());
         for (i, (frame, situation)) in frames.iter().zip(&situations).enumerate() {
             choices.push(match (situation, picked[i]) {
@@ -157,30 +174,6 @@ impl Auto {
         if let Some((technique, expected)) = self.held.get(light).and_then(|h| h.expected) {
             self.costs.learn(technique, expected, ms);
         }
-    }
-
-    /// What each candidate would do.
-    fn expect(&self, table: &Table, s: &Situation, pixels: f64) -> Vec<Expected> {
-        let likeness = Likeness::of(s);
-        let (nearest, like) = alike(table, &likeness);
-        let doubt = MARGIN * (1.0 + DOUBT * nearest);
-        let of = |candidate: usize| {
-            let technique = CANDIDATES[candidate].technique;
-            let mut error: f64 = 0.0;
-            let mut ms = 0.0;
-            for view in &like {
-                let measured = &view.measured[candidate];
-                error = error.max(measured.error);
-                ms +=
-                    self.costs.ms(technique, measured, pixels, s.triangles as f64 - view.triangles);
-            }
-            Expected {
-                candidate,
-                error: (error * doubt).min(1.0),
-                ms: ms / like.len().max(1) as f64,
-            }
-        };
-        (0..if like.is_empty() { 0 } else { CANDIDATES.len() }).map(of).collect()
     }
 
     /// Nothing can be shadowed: what is there stays, and costs nothing.
@@ -264,6 +257,31 @@ impl Auto {
             problem: sound.problem.clone().or(problem),
         }
     }
+}
+
+/// What each candidate would do in a situation like this.
+pub(super) fn expect(
+    table: &Table,
+    costs: &Costs,
+    likeness: &Likeness,
+    pixels: f64,
+    triangles: f64,
+) -> Vec<Expected> {
+    let (nearest, like) = alike(table, likeness);
+    let doubt = MARGIN * (1.0 + DOUBT * nearest);
+    let of = |candidate: usize| {
+        let technique = CANDIDATES[candidate].technique;
+        let mut error: f64 = 0.0;
+        let mut ms = 0.0;
+        for view in &like {
+            let measured = &view.measured[candidate];
+            error = error.max(measured.error);
+            ms += costs.ms(technique, measured, pixels, triangles - view.triangles);
+        }
+        Expected { candidate, error: (error * doubt).min(1.0), ms: ms / like.len() as f64 }
+    };
+    // Without a table nothing is known.
+    (0..if like.is_empty() { 0 } else { CANDIDATES.len() }).map(of).collect()
 }
 
 fn is_line(frame: &Frame) -> bool {

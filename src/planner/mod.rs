@@ -18,3 +18,6 @@ pub use likeness::{Likeness, PARTS};
 pub(crate) use situation::Seen;
 pub use situation::Situation;
 pub use table::{COLUMNS, Measured, PIXELS, PROBE, Table, View};
+
+#[cfg(test)]
+mod tests;
