@@ -1,4 +1,19 @@
 //! The planner: what a frame needs, what it can do without, and at what price.
+//!
+//! ```text
+//!   Frame: boxes, light, camera
+//!     │
+//!     ▼
+//!   Situation ──► Verdicts     which effects matter by more than an error, and the bound where one is left out:
+//!     │                        what `ShadowNode::plan` leaves out by, and `FramePlan::explain` prints
+//!     ▼
+//!   Likeness ──► Table         what every candidate did in the views of the report that are most alike
+//!     │
+//!     ▼
+//!   Auto ──► Choice            by a Budget of error and time, and what passes cost here (Costs)
+//! ```
+//! Everything here is pure: no Vulkan calls, microseconds. `docs/planner.md` derives the bounds and tells how often
+//! promises are kept.
 
 mod auto;
 mod budget;

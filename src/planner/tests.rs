@@ -126,8 +126,12 @@ fn perspective_pixels_grow_with_distance_and_a_camera_inside_knows_no_smallest()
 
 #[test]
 fn every_effect_has_a_rule_and_a_reason_for_both_outcomes() {
+    let page = include_str!("../../docs/planner.md");
     for (i, rule) in RULES.iter().enumerate() {
         assert_eq!(rule.effect as usize, i, "{}", rule.name);
+        let Rule { name, needed, bound, passes, .. } = rule;
+        let row = format!("| {name} | {needed} | {bound} | {passes} |");
+        assert!(page.contains(&row), "docs/planner.md lacks this row:\n{row}");
     }
     let settings = crate::Settings::default();
     for situation in [None, see(square(0.4), &over(CUBE, 0.5)), see(square(1e-4), &over(CARD, 0.1))]
