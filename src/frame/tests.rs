@@ -5,6 +5,7 @@ use crate::scene::{Role, generate};
 use ash::vk::Handle;
 use glam::DVec3;
 
+mod kinds;
 mod lights;
 
 fn image(format: vk::Format, extent: [u32; 2], usage: vk::ImageUsageFlags) -> HostImage {
@@ -358,23 +359,6 @@ fn every_point_of_many_lights_has_a_view_of_its_own() {
     assert!(plan.plan.table().contains("×9"));
     let lines = plan.plan.table().lines().filter(|l| l.starts_with("run")).count();
     assert_eq!(lines, 4, "{}", plan.plan.table());
-}
-
-/// What a node makes its objects from is the same kinds of row as any frame of it has.
-#[test]
-fn frames_have_the_kinds_that_the_node_was_made_for() {
-    let meshes = meshes();
-    for &(name, technique) in Technique::ALL {
-        let description = of_technique(technique, &[]);
-        let full = full_graph(&description);
-        let names = |graph: &graph::Graph| graph.kinds().map(|p| p.name).collect::<Vec<_>>();
-        for meshes in [&meshes[..], &[]] {
-            let plan = make(&description, &frame(meshes));
-            assert_eq!(names(&plan.plan.graph), names(&full), "{name}");
-            assert!(plan.plan.graph.passes().len() <= full.passes().len(), "{name}");
-            assert!(!plan.plan.skipped.is_empty(), "{name}: lit, or the rest");
-        }
-    }
 }
 
 #[test]

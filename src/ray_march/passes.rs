@@ -269,7 +269,8 @@ fn pixel_push(settings: &Settings, inputs: &Inputs) -> push::Pixels {
         | bit(settings.hash == Hash::Pcg, 19)
         | bit(settings.layers == Layers::Eye, 20)
         | bit(settings.classify, 21)
-        | bit(settings.filter, 22)
+        // Without the filter's rows the rays' own pass writes the result.
+        | bit(settings.filter && matches!(inputs.filter, Need::Yes(_)), 22)
         | match settings.sampling {
             Sampling::Jittered => 0,
             Sampling::Random => 1,

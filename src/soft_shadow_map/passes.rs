@@ -45,14 +45,10 @@ pub struct Inputs<'a> {
 pub fn wanted(settings: &Settings, map: u32) -> Wanted {
     Wanted {
         map,
-        back: wanted_back(settings),
+        back: settings.sides != Sides::One,
         inner: false,
         receiver_map: (settings.receivers == Receivers::Map).then_some(settings.receiver_map),
     }
-}
-
-fn wanted_back(settings: &Settings) -> bool {
-    settings.sides != Sides::One
 }
 
 /// The occluder map's nodes, as resources and sizes.
@@ -77,9 +73,11 @@ pub fn declare(
     settings: &Settings,
     inputs: &Inputs,
 ) {
-    // Without a back layer the front is all there is to both sides.
+    // Without a back layer the front is all there is to both sides. A map of the receivers has rows for each side, which
+    // stay as they are.
     let one = Settings { sides: Sides::One, ..*settings };
-    let settings = if wanted_back(settings) && layers.back.is_none() { &one } else { settings };
+    let at_pixels = settings.receivers == Receivers::Pixels;
+    let settings = if at_pixels && layers.back.is_none() { &one } else { settings };
     let gather = settings.accumulate == Accumulate::Gather;
     let nodes = declare_nodes(graph, layers, settings, inputs, gather);
     match (settings.receivers, layers.receivers, inputs.receivers) {
