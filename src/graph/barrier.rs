@@ -89,13 +89,14 @@ impl State {
             if next.layout == vk::ImageLayout::UNDEFINED { self.layout } else { next.layout };
         let relayout = new_layout != self.layout;
         let was_written = !self.write.0.is_empty();
-        let unseen = was_written
+        // What somebody else left to its readers was written before them, and they alone have seen it.
+        let unseen = (was_written || !self.readers.is_empty())
             && !(self.seen_by.0.contains(next.stage) && self.seen_by.1.contains(next.access));
         let must_wait = if writes { was_written || !self.readers.is_empty() } else { unseen };
         let barrier = (must_wait || relayout).then(|| {
             // Readers since the write already waited for it: waiting for them is enough to
             // overwrite, but a new reader still depends on the write itself.
-            let after_readers = (writes || relayout) && !self.readers.is_empty();
+            let after_readers = (writes || relayout || !was_written) && !self.readers.is_empty();
             let (src_stage, src_access) = if after_readers {
                 (self.readers | self.write.0, self.write.1)
             } else {
@@ -219,5 +220,12 @@ mod tests {
         let mut read = State::left_in(scope);
         assert_eq!(read.touch(scope, false), None);
         assert_eq!(read.scope().stage, S::COMPUTE_SHADER);
+        // But another stage has seen nothing yet: it waits for the readers, and so for what they saw.
+        let mut read = State::left_in(Scope { stage: S::FRAGMENT_SHADER, ..scope });
+        let barrier = read.touch(scope, false).unwrap();
+        assert_eq!((barrier.src_stage, barrier.src_access), (S::FRAGMENT_SHADER, A::empty()));
+        assert_eq!((barrier.dst_stage, barrier.dst_access), (S::COMPUTE_SHADER, A::SHADER_READ));
+        assert_eq!(read.touch(scope, false), None);
+        assert_eq!(read.scope().stage, S::FRAGMENT_SHADER | S::COMPUTE_SHADER);
     }
 }
