@@ -1,8 +1,8 @@
 //! The node: the host's whole view of the crate.
 
-use crate::frame::{self, Description, Frame, FrameGraph, FramePlan, Kept, Limits, Stamp};
+use crate::frame::{self, Description, Frame, FramePlan, Left, Limits, Stamp, Whose};
 use crate::gpu::{Allocator, Host, HostDraw, NodeObjects, Requirements, Retired};
-use crate::graph::{Draw, Layer, Owner, Pass, Shape, Target, Work};
+use crate::graph::{Draw, Graph, Layer, Owner, Pass, Shape, Target, Work};
 use crate::planner::{Auto, Choice};
 use crate::settings::Technique;
 use crate::soft_shadow_map::Accumulate;
@@ -22,13 +22,12 @@ pub struct ShadowNode {
     description: Description,
     limits: Limits,
     objects: NodeObjects,
-    visibility: crate::graph::ResourceId,
-    /// The names of the kinds of row that the objects were made for.
+    /// The names of the kinds of row that the objects were made for, settings by settings.
     kinds: Vec<&'static str>,
     /// What plans for these objects carry.
     stamp: Stamp,
     /// What recorded frames have left.
-    kept: Mutex<Kept>,
+    left: Mutex<Left>,
 }
 
 /// The next [`Stamp`]: no two nodes or sizes share one.
@@ -56,10 +55,13 @@ pub struct VisibilityImage {
     /// R32_SFLOAT, or R32G32B32A32_SFLOAT where the description asks for color; usage STORAGE | SAMPLED |
     /// TRANSFER_SRC.
     pub image: vk::Image,
-    /// A 2D view of it.
+    /// A view of it: 2D with one light, with several a 2D array of a layer a light, whose own view
+    /// [`ShadowNode::visibility_layer`] gives.
     pub view: vk::ImageView,
     /// Width and height, those of the G-buffer.
     pub extent: [u32; 2],
+    /// How many layers it has: the description's lights.
+    pub layers: u32,
 }
 
 /// One of the node's own images, for tests and debuggers.
@@ -92,9 +94,10 @@ impl ShadowNode {
         let requirements = Requirements::of(&host);
         requirements.met()?;
         description.check()?;
-        let settings = &description.settings;
-        let blends = settings.technique == Technique::SoftShadowMap
-            && settings.soft_shadow_map.accumulate == Accumulate::Blend;
+        let blends = description.all_settings().any(|settings| {
+            settings.technique == Technique::SoftShadowMap
+                && settings.soft_shadow_map.accumulate == Accumulate::Blend
+        });
         if blends && !requirements.blends_f32 {
             return Err(Error::Setting {
                 key: "accumulate".into(),
@@ -105,24 +108,15 @@ impl ShadowNode {
             });
         }
         let limits = Limits { snap: 0.5f32.powi(requirements.sub_pixel_bits.min(16) as i32) };
-        let FrameGraph { graph, visibility, .. } = frame::nominal(&description, limits);
-        let objects = NodeObjects::new(&host, allocator, &graph, &description)?;
-        let kinds = graph.kinds().map(|p| p.name).collect();
-        let kept = Mutex::default();
-        Ok(Self {
-            host,
-            description,
-            limits,
-            objects,
-            visibility,
-            kinds,
-            stamp: next_stamp(),
-            kept,
-        })
+        let graphs = graphs(&description, limits)?;
+        let objects = NodeObjects::new(&host, allocator, &graphs, &description)?;
+        let kinds = graphs.iter().flat_map(|graph| graph.kinds().map(|p| p.name)).collect();
+        let left = Mutex::new(Left::new(description.lights, graphs.len()));
+        Ok(Self { host, description, limits, objects, kinds, stamp: next_stamp(), left })
     }
 
-    fn kept(&self) -> MutexGuard<'_, Kept> {
-        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
+    fn left(&self) -> MutexGuard<'_, Left> {
+        self.left.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// What the node was made for.
@@ -130,14 +124,17 @@ impl ShadowNode {
         &self.description
     }
 
-    /// Plans one frame; pure, microseconds, no Vulkan calls.
+    /// Plans one frame of one light; microseconds, no Vulkan calls. Plans of several lights are recorded
+    /// in the order in which they were made.
     ///
     /// # Errors
     /// See [`frame::plan`].
     pub fn plan(&self, frame: &Frame) -> Result<FramePlan, Error> {
-        let kept = *self.kept();
+        let whose = Whose { light: frame.light_index, settings: frame.settings_index };
+        let kept = self.left().for_plan(whose);
         let plan = frame::plan_with(&self.description, self.limits, frame, &kept)?;
-        Ok(plan.stamped(self.stamp, self.objects.image(self.visibility).0))
+        self.left().planned(whose, &plan.keeping);
+        Ok(plan.stamped(self.stamp, self.objects.result().0))
     }
 
     /// Records a plan into a command buffer of the host's: no submit, no wait, no allocation.
@@ -174,23 +171,29 @@ impl ShadowNode {
                     .into(),
             ));
         }
-        let mut kept = self.kept();
-        if !plan.keeping.agrees(&kept) {
+        let mut left = self.left();
+        if !left.agrees(plan.whose(), &plan.keeping) {
             return Err(Error::Frame(
                 "this plan counts on maps or pixels that a frame recorded since has replaced; plan the frame again"
                     .into(),
             ));
         }
-        *kept = plan.keeping.behind(&kept);
-        drop(kept);
+        left.recorded(plan.whose(), &plan.keeping);
+        drop(left);
         self.objects.record(&self.host, cmd, plan, draw);
         Ok(())
     }
 
-    /// What a host's own pipeline must fit to draw into a layer; none where these settings have no
+    /// What a host's own pipeline must fit to draw into a layer; none where the first settings have no
     /// such layer.
     pub fn layer_pass(&self, layer: Layer) -> Option<LayerPass> {
-        let FrameGraph { graph, .. } = frame::nominal(&self.description, self.limits);
+        self.layer_pass_of(0, layer)
+    }
+
+    /// The same for one of the settings, as [`Frame::settings_index`] counts them.
+    pub fn layer_pass_of(&self, settings_index: u32, layer: Layer) -> Option<LayerPass> {
+        let description = self.description.choosing(settings_index).ok()?;
+        let graph = frame::nominal(&description, self.limits).graph;
         let draws = |p: &Pass| match p.work {
             Work::Raster { draw: Draw::Layer { layer: l, .. }, target, .. } => {
                 l == layer && matches!(target, Target::Depth { .. })
@@ -198,15 +201,23 @@ impl ShadowNode {
             _ => false,
         };
         let kind = graph.kinds().position(draws)?;
-        let (render_pass, extent) = self.objects.render_pass(kind)?;
+        let (render_pass, extent) = self.objects.render_pass(settings_index, kind)?;
         Some(LayerPass { render_pass, extent, raster: depth_layers::raster_of(layer) })
     }
 
     /// The node's own image that holds the result, another one after each resize; null handles where
     /// the host lends it.
     pub fn visibility(&self) -> VisibilityImage {
-        let (image, view) = self.objects.image(self.visibility);
-        VisibilityImage { image, view, extent: self.description.extent }
+        let (image, view) = self.objects.result();
+        let Description { extent, lights: layers, .. } = self.description;
+        VisibilityImage { image, view, extent, layers }
+    }
+
+    /// A 2D view of a light's layer of that image; none for a light that does not exist, or where the
+    /// host lends the image.
+    pub fn visibility_layer(&self, light_index: u32) -> Option<vk::ImageView> {
+        let view = self.objects.result_layer(light_index);
+        (light_index < self.description.lights && view != vk::ImageView::null()).then_some(view)
     }
 
     /// Makes what depends on the G-buffer's size anew and gives back what to retire. Pipelines stay,
@@ -221,14 +232,14 @@ impl ShadowNode {
     ) -> Result<Retired, Error> {
         let description = Description { extent, ..self.description.clone() };
         description.check()?;
-        let FrameGraph { graph, .. } = frame::nominal(&description, self.limits);
-        if !self.objects.keeps_pipelines(&graph) {
+        let graphs = graphs(&description, self.limits)?;
+        if !self.objects.keeps_pipelines(&graphs) {
             return self.reconfigure(allocator, description);
         }
-        let old = self.objects.resize(&self.host, allocator, &graph, description.inspect)?;
+        let old = self.objects.resize(&self.host, allocator, &graphs, &description)?;
         self.description = description;
         self.stamp = next_stamp();
-        *self.kept() = Kept::default();
+        self.left().clear();
         Ok(Retired::sized(self.host.clone(), old))
     }
 
@@ -266,11 +277,16 @@ impl ShadowNode {
         Ok((choice, Some(retired)))
     }
 
-    /// Name and milliseconds of each pass that `slot` recorded last, rows of one name summed; none until the host knows that
-    /// its commands are done, where the queue family has no timestamps, or when the device is lost.
-    /// Never waits.
+    /// Name and milliseconds of each pass that `slot` recorded last for light 0, rows of one name summed; none until the
+    /// host knows that its commands are done, where no pass ran, where the queue family has no timestamps, or when the
+    /// device is lost. Never waits.
     pub fn timings(&self, slot: u32) -> Option<Vec<(&'static str, f64)>> {
-        let sums = self.objects.timings(&self.host, slot)?;
+        self.timings_of(slot, 0)
+    }
+
+    /// The same for any of the lights.
+    pub fn timings_of(&self, slot: u32, light_index: u32) -> Option<Vec<(&'static str, f64)>> {
+        let sums = self.objects.timings(&self.host, slot, light_index)?;
         Some(sums.into_iter().map(|(kind, ms)| (self.kinds[kind], ms)).collect())
     }
 
@@ -293,7 +309,7 @@ impl ShadowNode {
                     return None;
                 };
                 let layout = last_layout(id)?;
-                let (image, _) = self.objects.image(id);
+                let (image, _) = self.objects.image(plan.settings_index, id);
                 Some(Inspected {
                     name: resource.name,
                     image,
@@ -311,10 +327,13 @@ impl ShadowNode {
         let graph = &plan.plan.graph;
         let ids = (0..graph.resources().len()).map(|index| graph.id(index));
         let found = ids.into_iter().find(|&id| graph.resource(id).name == name);
-        found.map_or(crate::gpu::objects::Object::None, |id| self.objects.get(id))
+        found.map_or(crate::gpu::objects::Object::None, |id| {
+            self.objects.get(plan.settings_index, id)
+        })
     }
 
-    /// Name and bytes of everything the node holds in device memory.
+    /// Name and bytes of everything the node holds in device memory: the visibility image, then what each
+    /// of the settings has, one behind the other.
     pub fn memory(&self) -> Vec<(&'static str, u64)> {
         self.objects.memory()
     }
@@ -328,6 +347,12 @@ impl ShadowNode {
     pub fn destroy(self, allocator: &mut dyn Allocator) {
         self.objects.destroy(&self.host, allocator);
     }
+}
+
+/// Every row that any frame could run, for each of the description's settings.
+fn graphs(description: &Description, limits: Limits) -> Result<Vec<Graph>, Error> {
+    let of = |index| Ok(frame::nominal(&*description.choosing(index as u32)?, limits).graph);
+    (0..description.all_settings().count()).map(of).collect()
 }
 
 /// A node may be shared by threads: each records slots of its own.

@@ -202,7 +202,8 @@ fn run(options: &Options) -> Outcome<()> {
         let out = [(picture.raw, color), (visibility.image, color), (gbuffer.depth.raw, depth)];
         for &(image, aspect) in &out[1..copies] {
             let (before, after) = (COMPOSE_READS, COPY_READS);
-            gpu.place(cmd, &antumbra::frame::ImageBarrier { image, aspect, before, after });
+            let barrier = antumbra::frame::ImageBarrier { image, layer: 0, aspect, before, after };
+            gpu.place(cmd, &barrier);
         }
         let notes = FrameNotes {
             number,

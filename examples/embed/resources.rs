@@ -22,7 +22,7 @@ pub const COPY_READS: Scope = Scope::COPIED_FROM;
 /// Moves an image on from one use to the next.
 pub fn barrier(gpu: &Gpu, cmd: vk::CommandBuffer, image: &Image, before: Scope, after: Scope) {
     let aspect = aspect_of(image.format);
-    gpu.place(cmd, &ImageBarrier { image: image.raw, aspect, before, after });
+    gpu.place(cmd, &ImageBarrier { image: image.raw, layer: 0, aspect, before, after });
 }
 
 fn aspect_of(format: vk::Format) -> vk::ImageAspectFlags {

@@ -22,6 +22,8 @@ pub struct HostAccess {
     pub name: &'static str,
     /// The image; null for a node's own where the plan was made without its node.
     pub image: vk::Image,
+    /// Which of its array layers: the light's, in a node's own visibility image; otherwise 0.
+    pub layer: u32,
     /// Every aspect that it has.
     pub aspect: vk::ImageAspectFlags,
     /// The host's last use before the node, as the frame says.
@@ -37,6 +39,8 @@ pub struct HostAccess {
 pub struct ImageBarrier {
     /// The image.
     pub image: vk::Image,
+    /// Which of its array layers.
+    pub layer: u32,
     /// Its aspects.
     pub aspect: vk::ImageAspectFlags,
     /// The use that must be done.
@@ -46,7 +50,7 @@ pub struct ImageBarrier {
 }
 
 impl ImageBarrier {
-    /// As Vulkan takes it, for the image's one level and layer; the stages go beside it.
+    /// As Vulkan takes it, for one layer and the image's only level; the stages go beside it.
     pub fn vk(&self) -> vk::ImageMemoryBarrier<'static> {
         vk::ImageMemoryBarrier::default()
             .src_access_mask(self.before.access)
@@ -60,6 +64,7 @@ impl ImageBarrier {
                 vk::ImageSubresourceRange::default()
                     .aspect_mask(self.aspect)
                     .level_count(1)
+                    .base_array_layer(self.layer)
                     .layer_count(1),
             )
     }
@@ -94,7 +99,8 @@ impl HostAccess {
     }
 
     fn barrier(&self, before: Scope, after: Scope) -> ImageBarrier {
-        ImageBarrier { image: self.image, aspect: self.aspect, before, after }
+        let Self { image, layer, aspect, .. } = *self;
+        ImageBarrier { image, layer, aspect, before, after }
     }
 }
 

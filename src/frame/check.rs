@@ -48,6 +48,12 @@ impl Frame<'_> {
                 self.slot, description.frames_in_flight
             ));
         }
+        if self.light_index >= description.lights {
+            return bad(format!(
+                "light {} does not exist; the description has {}, counted from 0",
+                self.light_index, description.lights
+            ));
+        }
         let technique = description.settings.technique;
         if self.light.is_line() && needs_area(technique) {
             return bad(format!(

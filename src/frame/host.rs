@@ -43,12 +43,21 @@ impl HostImage {
     ) -> Self {
         Self { image, view, format, extent, usage, before, after }
     }
+
+    /// The same image as a frame hands it back: what the next light's frame, behind it in the same
+    /// command buffer, says of it. [`Self::after`] must name a layout.
+    #[must_use]
+    pub fn handed_back(self) -> Self {
+        Self { before: self.after, ..self }
+    }
 }
 
 /// Whose image the result is written to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Visibility {
-    /// The node's own, [`ShadowNode::visibility`](crate::ShadowNode::visibility).
+    /// The node's own, [`ShadowNode::visibility`](crate::ShadowNode::visibility): with several lights,
+    /// the layer of the frame's light. A frame that would write what is there already leaves it, unless
+    /// `before` writes it or forgets its layout.
     Own {
         /// The host's last use of it.
         before: Scope,

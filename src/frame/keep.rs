@@ -6,8 +6,14 @@
 //!   camera, G-buffer ─────────────────┘  kept too while it gives one view revision
 //! ```
 //! Which rows those are follows from the graph: what a row reads or writes ties it to the camera, or does not.
+//! And where every pixel is lit, and was so before, no number is needed to leave the image as it is.
 
+use super::Visibility;
 use crate::graph::{Graph, Need, Owner, ResourceId};
+use ash::vk;
+
+/// The row that makes every pixel lit.
+const LIT: &str = "visibility.lit";
 
 /// The numbers that a host gives the state of things; none where it does not.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,13 +33,15 @@ pub(crate) struct Maps {
     pub rows: u64,
 }
 
-/// What recorded frames have left in a node.
+/// What recorded frames have left to a frame: of its light, by its settings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Kept {
     /// The maps.
     pub maps: Option<Maps>,
     /// Scene and view revision of the visibility image.
     pub pixels: Option<(u64, u64)>,
+    /// Every pixel of it is lit.
+    pub lit: bool,
 }
 
 /// What a plan counts on, and what it leaves.
@@ -43,8 +51,12 @@ pub(crate) struct Keeping {
     pub uses_maps: Option<Maps>,
     /// The revisions of the pixels that it leaves as they are.
     pub uses_pixels: Option<(u64, u64)>,
-    /// The rows of the maps that it makes; their revision is that of the frame.
-    makes_maps: Option<u64>,
+    /// It leaves the pixels as they are because every one is lit.
+    pub uses_lit: bool,
+    /// The rows of the maps that it makes, for others to use; their revision is that of the frame.
+    pub makes_maps: Option<u64>,
+    /// It makes every pixel lit.
+    makes_lit: bool,
     revisions: Revisions,
 }
 
@@ -53,6 +65,7 @@ impl Keeping {
     pub fn agrees(&self, kept: &Kept) -> bool {
         (self.uses_maps.is_none() || self.uses_maps == kept.maps)
             && (self.uses_pixels.is_none() || self.uses_pixels == kept.pixels)
+            && (!self.uses_lit || kept.lit)
     }
 
     /// What is kept behind it.
@@ -64,26 +77,42 @@ impl Keeping {
                 (None, _) => kept.maps,
             },
             pixels: self.revisions.scene.zip(self.revisions.view),
+            lit: self.makes_lit || self.uses_lit,
         }
     }
 }
 
-/// Takes out of a frame's rows those that would make again what is kept. `pixels` are what the camera sees; `owned`
-/// says whether the visibility image is the node's, so that it is this frame's as well.
+/// Takes out of a frame's rows those that would make again what is kept. `pixels` are what the camera sees.
 pub(super) fn apply(
     graph: &mut Graph,
     pixels: &[ResourceId],
-    owned: bool,
+    visibility: &Visibility,
     revisions: Revisions,
     kept: &Kept,
 ) -> Keeping {
     let seen = ties_to_camera(graph, pixels);
-    let mut keeping = Keeping { revisions, ..Keeping::default() };
-    let all = revisions.scene.zip(revisions.view).filter(|all| owned && kept.pixels == Some(*all));
+    let lit = graph.passes().iter().any(|p| p.name == LIT && matches!(p.need, Need::Yes(_)));
+    let mut keeping = Keeping { revisions, makes_lit: lit, ..Keeping::default() };
+    // An image of the host's may be another one each frame, and one in no layout holds nothing.
+    let before = match visibility {
+        Visibility::Own { before, .. } if before.layout != vk::ImageLayout::UNDEFINED => {
+            Some(before)
+        }
+        _ => None,
+    };
+    // First, because it holds whatever the numbers say; but only of what the node itself has written.
+    if lit && kept.lit && before.is_some_and(|b| !b.writes()) {
+        graph.leave_out(|_| true, "every pixel is lit already");
+        keeping.uses_lit = true;
+        return keeping;
+    }
+    let all = revisions.scene.zip(revisions.view);
+    let all = all.filter(|all| before.is_some() && kept.pixels == Some(*all));
     if let Some((scene, view)) = all {
         let why = format!("scene revision {scene} and view revision {view} are drawn already");
         graph.leave_out(|_| true, &why);
         keeping.uses_pixels = all;
+        keeping.makes_lit = false;
         return keeping;
     }
     let in_light_space = |row: usize| !seen[row];

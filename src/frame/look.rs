@@ -149,7 +149,7 @@ pub(crate) fn situation(
         ..settings
     };
     let description = Description { settings, light_texture: None, ..description.clone() };
-    let frame = Frame { outline: None, light_texture: None, ..*frame };
+    let frame = Frame { outline: None, light_texture: None, settings_index: 0, ..*frame };
     frame.check(&description)?;
     let of_role = |keep: fn(Role) -> bool| {
         let kept = frame.meshes.iter().filter(move |m| keep(m.role) && has_triangles(m));

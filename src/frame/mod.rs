@@ -4,6 +4,7 @@ mod accesses;
 mod check;
 mod host;
 mod keep;
+mod left;
 mod look;
 mod plan;
 mod rows;
@@ -14,11 +15,11 @@ pub use accesses::{BufferAccess, HostAccess, ImageBarrier, NodeUse};
 pub use host::{
     BorderBarriers, Geometry, HostImage, MeshBuffers, MeshInstance, OccluderMaps, Visibility,
 };
-pub(crate) use keep::Kept;
+pub(crate) use left::{Left, Whose};
 pub(crate) use look::situation;
 pub use plan::{Faces, FramePlan, MeshDraw, plan};
 pub(crate) use plan::{Stamp, plan_with};
-pub(crate) use rows::{FrameGraph, nominal};
+pub(crate) use rows::nominal;
 pub use rows::{Limits, full_graph};
 
 use crate::graph::{self, Scope};
@@ -27,6 +28,7 @@ use crate::settings::{Settings, Technique};
 use crate::{Error, RectangleLight};
 use ash::vk;
 use glam::DMat4;
+use std::borrow::Cow;
 
 /// What stays the same from frame to frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,6 +41,13 @@ pub struct Description {
     /// pixels that shadow touches: see [`crate::planner::RULES`]. 1/256 by default, a step of an 8-bit image; 0 leaves
     /// out what cannot matter and nothing else; none leaves out nothing, for studying what it costs.
     pub max_error: Option<f64>,
+    /// Further settings that a frame may choose ([`Frame::settings_index`]), up to 7: another technique
+    /// or another resolution for some of the lights. Each has pipelines, maps and buffers of its own,
+    /// which its lights share.
+    pub other_settings: Vec<Settings>,
+    /// How many lights there are, 1 to 64: each has its frames ([`Frame::light_index`]), and a layer of
+    /// the node's own visibility image, which is an array where there are several.
+    pub lights: u32,
     /// How many frames may be recorded before the first of them is done, 1 to 8.
     pub frames_in_flight: u32,
     /// The format of the G-buffer's depth image.
@@ -77,13 +86,34 @@ impl Description {
         self.light_texture.is_some_and(|t| t.color)
     }
 
-    /// The default settings for a D32_SFLOAT G-buffer without a mask, two frames in flight and
-    /// tightly packed positions.
+    /// All settings that a frame may choose, [`Self::settings`] first.
+    pub fn all_settings(&self) -> impl Iterator<Item = &Settings> {
+        std::iter::once(&self.settings).chain(&self.other_settings)
+    }
+
+    /// The same with one of its settings alone.
+    pub(crate) fn choosing(&self, settings_index: u32) -> Result<Cow<'_, Self>, Error> {
+        if settings_index == 0 {
+            return Ok(Cow::Borrowed(self));
+        }
+        let settings = *self.all_settings().nth(settings_index as usize).ok_or_else(|| {
+            Error::Frame(format!(
+                "settings {settings_index} do not exist; the description has {}, counted from 0",
+                1 + self.other_settings.len()
+            ))
+        })?;
+        Ok(Cow::Owned(Self { settings, other_settings: Vec::new(), ..self.clone() }))
+    }
+
+    /// The default settings for one light, a D32_SFLOAT G-buffer without a mask, two frames in flight
+    /// and tightly packed positions.
     pub fn new(extent: [u32; 2]) -> Self {
         Self {
             extent,
             settings: Settings::default(),
             max_error: Some(1.0 / 256.0),
+            other_settings: Vec::new(),
+            lights: 1,
             frames_in_flight: 2,
             depth_format: vk::Format::D32_SFLOAT,
             mask_format: None,
@@ -98,7 +128,19 @@ impl Description {
     /// # Errors
     /// [`Error::Setting`] or [`Error::Frame`] for the first thing out of its range.
     pub fn check(&self) -> Result<(), Error> {
-        self.settings.check()?;
+        if self.other_settings.len() > 7 {
+            return Err(Error::Frame(format!(
+                "{} other settings are more than the 7 that a node may have",
+                self.other_settings.len()
+            )));
+        }
+        if !(1..=64).contains(&self.lights) {
+            return Err(Error::Frame(format!(
+                "a node is for 1 to 64 lights, not for {}; more take another node",
+                self.lights
+            )));
+        }
+        self.all_settings().try_for_each(|settings| self.check_settings(settings))?;
         if self.extent.iter().any(|e| !(1..=16384).contains(e)) {
             let [w, h] = self.extent;
             return Err(Error::Frame(format!(
@@ -121,50 +163,13 @@ impl Description {
                 return Err(Error::Frame(format!("{whose} format {format:?} holds no depth")));
             }
         }
-        if self.occluder_maps.is_some() && self.settings.technique == Technique::ManyLights {
-            return Err(Error::Frame(
-                "many-lights sees the occluders from points all over the light, and occluder maps \
-                 from its centre alone; lend meshes, or choose another technique"
-                    .into(),
-            ));
-        }
-        if self.occluder_maps.is_some() && self.settings.technique == Technique::LinearLight {
-            return Err(Error::Frame(
-                "linear-light sees the occluders from points all along the light, and occluder maps from \
-                 its centre alone; lend meshes, or choose another technique"
-                    .into(),
-            ));
-        }
-        if self.occluder_maps.is_some() && self.settings.technique == Technique::OcclusionTextures {
-            return Err(Error::Frame(
-                "occlusion-textures sorts every face of the occluders into slices, and occluder maps hold \
-                 two of them; lend meshes, or choose another technique"
-                    .into(),
-            ));
-        }
-        if self.settings.technique == Technique::RayMarch
-            && ray_march::list_bytes(self.extent) > graph::STORAGE_BYTES
+        if let Some(texture) = &self.light_texture
+            && graph::is_depth_format(texture.format)
         {
-            let [w, h] = self.extent;
             return Err(Error::Frame(format!(
-                "ray-march keeps a list of pixels that for {w}×{h} takes more than the 128 MiB that \
-                 every device binds; up to 11 million pixels work"
+                "the light texture's format {:?} holds no color",
+                texture.format
             )));
-        }
-        if let Some(texture) = &self.light_texture {
-            if self.settings.technique != Technique::RayMarch {
-                return Err(Error::Frame(format!(
-                    "{} does not weigh what the light emits where; choose ray-march, or leave \
-                     light_texture out",
-                    self.settings.technique.name()
-                )));
-            }
-            if graph::is_depth_format(texture.format) {
-                return Err(Error::Frame(format!(
-                    "the light texture's format {:?} holds no color",
-                    texture.format
-                )));
-            }
         }
         match self.position_strides.iter().find(|&&s| s < 12 || s % 4 != 0 || s > 2048) {
             Some(s) => Err(Error::Frame(format!(
@@ -174,6 +179,49 @@ impl Description {
             None => Ok(()),
         }
     }
+
+    /// Whether one of the settings works, alone and with the rest.
+    fn check_settings(&self, settings: &Settings) -> Result<(), Error> {
+        settings.check()?;
+        if self.occluder_maps.is_some() && settings.technique == Technique::ManyLights {
+            return Err(Error::Frame(
+                "many-lights sees the occluders from points all over the light, and occluder maps \
+                 from its centre alone; lend meshes, or choose another technique"
+                    .into(),
+            ));
+        }
+        if self.occluder_maps.is_some() && settings.technique == Technique::LinearLight {
+            return Err(Error::Frame(
+                "linear-light sees the occluders from points all along the light, and occluder maps from \
+                 its centre alone; lend meshes, or choose another technique"
+                    .into(),
+            ));
+        }
+        if self.occluder_maps.is_some() && settings.technique == Technique::OcclusionTextures {
+            return Err(Error::Frame(
+                "occlusion-textures sorts every face of the occluders into slices, and occluder maps hold \
+                 two of them; lend meshes, or choose another technique"
+                    .into(),
+            ));
+        }
+        if settings.technique == Technique::RayMarch
+            && ray_march::list_bytes(self.extent) > graph::STORAGE_BYTES
+        {
+            let [w, h] = self.extent;
+            return Err(Error::Frame(format!(
+                "ray-march keeps a list of pixels that for {w}×{h} takes more than the 128 MiB that \
+                 every device binds; up to 11 million pixels work"
+            )));
+        }
+        if self.light_texture.is_some() && settings.technique != Technique::RayMarch {
+            return Err(Error::Frame(format!(
+                "{} does not weigh what the light emits where; choose ray-march, or leave \
+                 light_texture out",
+                settings.technique.name()
+            )));
+        }
+        Ok(())
+    }
 }
 
 /// One frame, as the host sees it; [`Frame::new`] fills in what most frames leave out.
@@ -181,6 +229,12 @@ impl Description {
 pub struct Frame<'a> {
     /// The light.
     pub light: RectangleLight,
+    /// Which of the description's lights it is, 0 and up. Each has frames of its own, recorded in the
+    /// order in which they were planned; where a light casts no shadow in them they cost nothing.
+    pub light_index: u32,
+    /// Which of the description's settings this frame uses: 0 is [`Description::settings`], n the nth of
+    /// [`Description::other_settings`].
+    pub settings_index: u32,
     /// The polygon that the light has instead of its rectangle: 3 to 16 corners in light space, as x and y in
     /// metres from the rectangle's centre, within it, counter-clockwise as seen from the side that the light
     /// shines to. It need not be convex, and neither touches nor crosses itself.
@@ -235,7 +289,7 @@ pub struct Frame<'a> {
 }
 
 impl<'a> Frame<'a> {
-    /// A frame with the whole rectangle, reversed depth, no mask, the node's own visibility image sampled by fragment and
+    /// A frame of light 0 with the first settings, the whole rectangle, reversed depth, no mask, the node's own visibility image sampled by fragment and
     /// compute shaders, a fitted window, slot 0, and barriers placed by the node.
     pub fn new(
         light: RectangleLight,
@@ -249,6 +303,8 @@ impl<'a> Frame<'a> {
         };
         Self {
             light,
+            light_index: 0,
+            settings_index: 0,
             outline: None,
             world_from_ndc,
             background: 0.0,

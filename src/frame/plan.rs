@@ -2,6 +2,7 @@
 
 use super::accesses::{self, BufferAccess, HostAccess, ImageBarrier, NodeUse};
 use super::keep::{self, Keeping, Kept, Revisions};
+use super::left::Whose;
 use super::look::look;
 use super::rows::{Limits, build, wanted};
 use super::{
@@ -82,6 +83,10 @@ pub struct FramePlan {
     pub slot: u32,
     /// What the frame needs and does without, and why.
     pub verdicts: Verdicts,
+    /// Which of the description's lights it is for.
+    pub light_index: u32,
+    /// Which of the description's settings it uses.
+    pub settings_index: u32,
     pub(crate) stamp: Stamp,
     pub(crate) keeping: Keeping,
     accesses: Vec<HostAccess>,
@@ -152,6 +157,11 @@ impl FramePlan {
         all.any(|d| matches!(d.mesh.geometry, Geometry::HostDrawn(_)))
     }
 
+    /// Whose pixels it writes, by which settings.
+    pub(crate) fn whose(&self) -> Whose {
+        Whose { light: self.light_index, settings: self.settings_index }
+    }
+
     /// Puts the node's mark on it, and the image that the node owns.
     pub(crate) fn stamped(mut self, stamp: Stamp, own_visibility: vk::Image) -> Self {
         self.stamp = stamp;
@@ -169,7 +179,7 @@ impl FramePlan {
 /// [`Error::Frame`] for numbers that are not finite, a line or an outline that the technique does not
 /// take, an outline that is not what [`Frame::outline`] asks for, an image of another size, format,
 /// usage or layout than the description and the passes need, images or strides that the description
-/// does not have, or a frame slot beyond the frames in flight.
+/// does not have, or a light, settings or a frame slot beyond those of the description.
 pub fn plan(description: &Description, limits: Limits, frame: &Frame) -> Result<FramePlan, Error> {
     plan_with(description, limits, frame, &Kept::default())
 }
@@ -181,6 +191,7 @@ pub(crate) fn plan_with(
     frame: &Frame,
     kept: &Kept,
 ) -> Result<FramePlan, Error> {
+    let description = &*description.choosing(frame.settings_index)?;
     frame.check(description)?;
     let turned = match description.settings.technique {
         Technique::LinearLight => linear_light::turned(&frame.light),
@@ -201,9 +212,8 @@ pub(crate) fn plan_with(
     let (views, verdicts) = look(description, frame, &mut occluders, &receivers)?;
     let mut built = build(description, limits, light, &views);
     let pixels: Vec<_> = [Some(built.depth), built.mask].into_iter().flatten().collect();
-    let owned = matches!(frame.visibility, Visibility::Own { .. });
     let revisions = Revisions { scene: frame.revision, view: frame.view_revision };
-    let keeping = keep::apply(&mut built.graph, &pixels, owned, revisions, kept);
+    let keeping = keep::apply(&mut built.graph, &pixels, &frame.visibility, revisions, kept);
 
     let lent = |id: Option<ResourceId>, image: Option<HostImage>| id.zip(image);
     let maps = frame.occluder_maps;
@@ -242,12 +252,17 @@ pub(crate) fn plan_with(
         _ => Vec::new(),
     };
     Ok(FramePlan {
-        accesses: borders.iter().map(|b| access_of(&plan, b, &imports)).collect(),
+        accesses: borders
+            .iter()
+            .map(|b| access_of(&plan, b, &imports, frame.light_index))
+            .collect(),
         plan,
         imports,
         visibility: built.visibility,
         slot: frame.slot,
         verdicts,
+        light_index: frame.light_index,
+        settings_index: frame.settings_index,
         stamp: Stamp::default(),
         keeping,
         occluders: DrawList::new(description, &occluders, &occluder_clips)?,
@@ -271,6 +286,7 @@ fn access_of(
     plan: &graph::Plan,
     border: &Border,
     imports: &[(ResourceId, HostImage)],
+    light_index: u32,
 ) -> HostAccess {
     let resource = plan.graph.resource(border.resource);
     let used = plan.boundary.iter().find(|b| b.resource == border.resource);
@@ -278,6 +294,7 @@ fn access_of(
     HostAccess {
         name: resource.name,
         image: host.map_or(vk::Image::null(), |(_, i)| i.image),
+        layer: if host.is_none() { light_index } else { 0 },
         aspect: graph::aspects(resource.shape),
         before: border.before,
         node: used.map(|b| NodeUse { entry: b.entry, exit: b.exit, writes: b.writes }),

@@ -7,6 +7,7 @@ use glam::DVec3;
 
 mod kinds;
 mod lights;
+mod several;
 
 fn image(format: vk::Format, extent: [u32; 2], usage: vk::ImageUsageFlags) -> HostImage {
     HostImage {

@@ -1,4 +1,4 @@
-//! Descriptor sets: one a kind of row and frame slot, written each time a plan is recorded, at the
+//! Descriptor sets: one a kind of row, frame slot and light, written each time a plan is recorded, at the
 //! kind's first row. Its other rows touch the same resources (`graph::compile` sees to that), and a set
 //! must not be written again while commands that use it are recorded.
 //!
@@ -15,7 +15,7 @@ use ash::vk;
 /// No row binds more than this.
 const MAX_BINDINGS: usize = 20;
 
-/// The sets of all kinds, slot by slot.
+/// The sets of all kinds, place by place; a place is a light of a frame slot.
 pub(crate) struct Descriptors {
     pool: vk::DescriptorPool,
     sets: Vec<vk::DescriptorSet>,
@@ -23,12 +23,12 @@ pub(crate) struct Descriptors {
 }
 
 impl Descriptors {
-    /// Allocates every set that `rows` need in any of `slots` frames in flight.
+    /// Allocates every set that `rows` need in any of `places`.
     pub fn new(
         host: &Host,
         graph: &Graph,
         rows: &[RowPipeline],
-        slots: u32,
+        places: u32,
     ) -> Result<Self, Error> {
         if let Some(pass) = graph.kinds().find(|p| bound(p).any(|b| b.0 as usize >= MAX_BINDINGS)) {
             return Err(Error::Frame(format!(
@@ -46,17 +46,17 @@ impl Descriptors {
             .map(|&ty| {
                 let uses = graph.kinds().flat_map(|p| &p.uses);
                 let count = uses.filter(|u| u.access.descriptor() == Some(ty)).count() as u32;
-                vk::DescriptorPoolSize { ty, descriptor_count: (count * slots).max(1) }
+                vk::DescriptorPoolSize { ty, descriptor_count: (count * places).max(1) }
             })
             .collect();
         let create = vk::DescriptorPoolCreateInfo::default()
-            .max_sets(rows.len() as u32 * slots)
+            .max_sets(rows.len() as u32 * places)
             .pool_sizes(&sizes);
         // SAFETY: the device is valid (Host::borrow).
         let pool = unsafe { host.device.create_descriptor_pool(&create, None) }
             .map_err(Error::vulkan("creating the descriptor pool"))?;
         let mut made = Self { pool, sets: Vec::new(), kinds: rows.len() };
-        let layouts: Vec<_> = (0..slots).flat_map(|_| rows.iter().map(|r| r.set_layout)).collect();
+        let layouts: Vec<_> = (0..places).flat_map(|_| rows.iter().map(|r| r.set_layout)).collect();
         let allocate =
             vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(&layouts);
         // SAFETY: the pool was sized for exactly these sets, and the layouts are alive.
@@ -72,10 +72,10 @@ impl Descriptors {
         }
     }
 
-    /// The set of a kind in a slot; none for rows that bind nothing.
-    pub fn set(&self, pass: &Pass, kind: usize, slot: u32) -> Option<vk::DescriptorSet> {
+    /// The set of a kind at a place; none for rows that bind nothing.
+    pub fn set(&self, pass: &Pass, kind: usize, place: usize) -> Option<vk::DescriptorSet> {
         bound(pass).next()?;
-        self.sets.get(slot as usize * self.kinds + kind).copied()
+        self.sets.get(place * self.kinds + kind).copied()
     }
 
     /// Points a row's set at what `look_up` says.

@@ -5,12 +5,14 @@
 #![allow(unsafe_code)]
 
 mod descriptors;
+mod graph_objects;
 mod host;
 mod memory;
 mod node_objects;
 pub(crate) mod objects;
 mod pipeline;
 mod record;
+mod result;
 mod retired;
 mod timing;
 

@@ -1,118 +1,148 @@
 //! All that a node holds on the device.
 
-use super::descriptors::Descriptors;
+use super::graph_objects::GraphObjects;
 use super::host::Host;
 use super::memory::Allocator;
-use super::objects::{Object, Objects};
-use super::pipeline::RowPipeline;
+use super::objects::{Object, Remade};
 use super::record::{HostDraw, Recorder};
+use super::result::ResultImage;
 use super::timing::Timing;
 use crate::Error;
 use crate::frame::{Description, FramePlan};
-use crate::graph::{Graph, Pass, ResourceId, Shape, Work};
+use crate::graph::{Graph, ResourceId};
 use ash::vk;
-use std::ffi::CString;
 
-/// Resources; pipelines, descriptor sets and labels for each kind of row; timestamps.
+/// The result and the timestamps, and for each of the settings what its graph needs.
 pub(crate) struct NodeObjects {
-    objects: Objects,
-    shapes: Vec<Shape>,
-    rows: Vec<RowPipeline>,
-    labels: Vec<CString>,
-    descriptors: Descriptors,
+    result: Option<ResultImage>,
+    settings: Vec<GraphObjects>,
     timing: Option<Timing>,
     slots: u32,
+    lights: u32,
+}
+
+/// What a resize made anew; then what that replaced.
+#[derive(Default)]
+pub(crate) struct Resized {
+    result: Option<ResultImage>,
+    settings: Vec<Remade>,
 }
 
 impl NodeObjects {
-    /// Makes everything; nothing is left behind where that fails.
+    /// Makes everything, for the graphs of the description's settings; nothing is left behind where
+    /// that fails.
     pub fn new(
         host: &Host,
         allocator: &mut dyn Allocator,
-        graph: &Graph,
+        graphs: &[Graph],
         description: &Description,
     ) -> Result<Self, Error> {
-        let objects = Objects::new(host, allocator, graph, description.inspect)?;
-        let mut rows: Vec<RowPipeline> = Vec::with_capacity(graph.kinds().len());
-        let made = graph
-            .kinds()
-            .try_for_each(|pass| {
-                let strides = &description.position_strides;
-                rows.push(RowPipeline::new(host, graph, pass, &objects, strides)?);
-                Ok(())
-            })
-            .and_then(|()| {
-                let slots = description.frames_in_flight;
-                let descriptors = Descriptors::new(host, graph, &rows, slots)?;
-                match Timing::new(host, slots, rows.len(), graph.passes().len()) {
-                    Ok(timing) => Ok((descriptors, timing)),
-                    Err(e) => {
-                        descriptors.destroy(host);
-                        Err(e)
-                    }
-                }
-            });
-        match made {
-            Ok((descriptors, timing)) => Ok(Self {
-                objects,
-                shapes: graph.resources().iter().map(|r| r.shape).collect(),
-                rows,
-                labels: graph.kinds().map(|p| label(p.name)).collect(),
-                descriptors,
-                timing,
-                slots: description.frames_in_flight,
-            }),
+        let (slots, lights) = (description.frames_in_flight, description.lights);
+        let mut made = Self { result: None, settings: Vec::new(), timing: None, slots, lights };
+        match made.make(host, allocator, graphs, description) {
+            Ok(()) => Ok(made),
             Err(e) => {
-                rows.into_iter().for_each(|row| row.destroy(host));
-                objects.destroy(host, allocator);
+                made.destroy(host, allocator);
                 Err(e)
             }
         }
     }
 
-    /// Whether everything but images and buffers can stay for `graph`, which has the same rows: no
+    fn make(
+        &mut self,
+        host: &Host,
+        allocator: &mut dyn Allocator,
+        graphs: &[Graph],
+        description: &Description,
+    ) -> Result<(), Error> {
+        let places = self.slots * self.lights;
+        self.result = ResultImage::new(host, allocator, description)?;
+        for graph in graphs {
+            let objects = GraphObjects::new(host, allocator, graph, description, places)?;
+            self.settings.push(objects);
+        }
+        let rows = graphs.iter().map(|g| g.passes().len()).max().unwrap_or(0);
+        self.timing = Timing::new(host, places, self.kinds_before(graphs.len()), rows)?;
+        Ok(())
+    }
+
+    /// Kinds of row of all settings before one: where its own begin among those of all.
+    fn kinds_before(&self, settings: usize) -> usize {
+        self.settings[..settings].iter().map(|s| s.rows.len()).sum()
+    }
+
+    /// Where a light of a frame slot has its descriptor sets and timestamps.
+    fn place(&self, slot: u32, light: u32) -> usize {
+        (slot * self.lights + light) as usize
+    }
+
+    /// Whether everything but images and buffers can stay for `graphs`, which have the same rows: no
     /// target of a raster has another shape.
-    pub fn keeps_pipelines(&self, graph: &Graph) -> bool {
-        let rasters = graph.passes().iter().filter(|p| matches!(p.work, Work::Raster { .. }));
-        rasters.flat_map(Pass::writes).all(|id| !self.changed(graph, id))
+    pub fn keeps_pipelines(&self, graphs: &[Graph]) -> bool {
+        self.settings.iter().zip(graphs).all(|(settings, graph)| settings.keeps_pipelines(graph))
     }
 
-    fn changed(&self, graph: &Graph, id: ResourceId) -> bool {
-        self.shapes[id.index()] != graph.resource(id).shape
-    }
-
-    /// Makes images and buffers anew whose shape is another in `graph`, and gives back the old ones;
+    /// Makes images and buffers anew whose shape is another in `graphs`, and gives back the old ones;
     /// nothing is changed where that fails.
     pub fn resize(
         &mut self,
         host: &Host,
         allocator: &mut dyn Allocator,
-        graph: &Graph,
-        inspect: bool,
-    ) -> Result<Objects, Error> {
-        let changed: Vec<_> =
-            (0..self.shapes.len()).map(|i| self.changed(graph, graph.id(i))).collect();
-        let changed = |id: ResourceId| changed[id.index()];
-        let old = self.objects.remake(host, allocator, graph, changed, inspect)?;
-        self.shapes = graph.resources().iter().map(|r| r.shape).collect();
-        Ok(old)
+        graphs: &[Graph],
+        description: &Description,
+    ) -> Result<Resized, Error> {
+        let mut resized = Resized::default();
+        if let Err(e) = self.remake(host, allocator, graphs, description, &mut resized) {
+            resized.destroy(host, allocator);
+            return Err(e);
+        }
+        std::mem::swap(&mut self.result, &mut resized.result);
+        let pairs = self.settings.iter_mut().zip(&mut resized.settings);
+        pairs.zip(graphs).for_each(|((settings, remade), graph)| settings.exchange(graph, remade));
+        Ok(resized)
     }
 
-    /// What is behind a resource.
+    fn remake(
+        &self,
+        host: &Host,
+        allocator: &mut dyn Allocator,
+        graphs: &[Graph],
+        description: &Description,
+        resized: &mut Resized,
+    ) -> Result<(), Error> {
+        resized.result = ResultImage::new(host, allocator, description)?;
+        for (settings, graph) in self.settings.iter().zip(graphs) {
+            let remade = settings.remake(host, allocator, graph, description.inspect)?;
+            resized.settings.push(remade);
+        }
+        Ok(())
+    }
+
+    /// What is behind a resource of one of the settings.
     #[cfg(feature = "headless")]
-    pub fn get(&self, id: ResourceId) -> Object {
-        self.objects.get(id)
+    pub fn get(&self, settings: u32, id: ResourceId) -> Object {
+        self.settings.get(settings as usize).map_or(Object::None, |s| s.get(id))
     }
 
-    /// The image behind a resource; null handles for what is no image.
-    pub fn image(&self, id: ResourceId) -> (vk::Image, vk::ImageView) {
-        match self.objects.get(id) {
-            Object::Image { image, view } => (image, view),
-            Object::Buffer(_) | Object::None => (vk::Image::null(), vk::ImageView::null()),
+    /// The image behind a resource of one of the settings; null handles for what is no image.
+    pub fn image(&self, settings: u32, id: ResourceId) -> (vk::Image, vk::ImageView) {
+        self.settings.get(settings as usize).map_or(Default::default(), |s| s.image(id))
+    }
+
+    /// The node's own visibility image and a view of all of it; null handles where the host lends it.
+    pub fn result(&self) -> (vk::Image, vk::ImageView) {
+        self.result.as_ref().map_or(Default::default(), ResultImage::image)
+    }
+
+    /// A view of a light's layer of it; null where the host lends it.
+    pub fn result_layer(&self, light: u32) -> vk::ImageView {
+        match self.result.as_ref().map(|result| result.layer(light)) {
+            Some(Object::Image { view, .. }) => view,
+            _ => vk::ImageView::null(),
         }
     }
 
-    /// Records a plan whose rows are the ones these objects were made for.
+    /// Records a plan whose rows are the ones that these objects were made for.
     pub fn record(
         &self,
         host: &Host,
@@ -120,44 +150,53 @@ impl NodeObjects {
         plan: &FramePlan,
         draw: &mut dyn FnMut(&HostDraw),
     ) {
+        let index = plan.settings_index as usize;
+        let Some(settings) = self.settings.get(index) else { return };
         Recorder {
             host,
-            objects: &self.objects,
-            rows: &self.rows,
-            labels: &self.labels,
-            descriptors: &self.descriptors,
+            objects: &settings.objects,
+            result: self.result.as_ref(),
+            rows: &settings.rows,
+            labels: &settings.labels,
+            descriptors: &settings.descriptors,
             timing: self.timing.as_ref(),
+            place: self.place(plan.slot, plan.light_index),
+            first_kind: self.kinds_before(index),
             draw,
             cmd,
         }
         .record(plan);
     }
 
-    /// The render pass of a kind of row and the size of its target; none for those that draw nothing.
-    pub fn render_pass(&self, kind: usize) -> Option<(vk::RenderPass, vk::Extent2D)> {
-        let row = self.rows.get(kind).filter(|r| r.render_pass != vk::RenderPass::null())?;
-        Some((row.render_pass, row.extent))
+    /// The render pass of a kind of row of one of the settings and the size of its target; none for
+    /// those that draw nothing.
+    pub fn render_pass(
+        &self,
+        settings: u32,
+        kind: usize,
+    ) -> Option<(vk::RenderPass, vk::Extent2D)> {
+        self.settings.get(settings as usize)?.render_pass(kind)
     }
 
-    /// Each kind of row that a slot recorded last, and the milliseconds of all of its rows.
-    pub fn timings(&self, host: &Host, slot: u32) -> Option<Vec<(usize, f64)>> {
-        self.timing.as_ref()?.read(host, slot)
+    /// Each kind of row that a light's frame recorded last with a slot, and the milliseconds of all of its
+    /// rows; kinds are counted over all settings.
+    pub fn timings(&self, host: &Host, slot: u32, light: u32) -> Option<Vec<(usize, f64)>> {
+        let there = slot < self.slots && light < self.lights;
+        self.timing.as_ref().filter(|_| there)?.read(host, self.place(slot, light))
     }
 
-    /// Name and bytes of everything in device memory.
+    /// Name and bytes of everything in device memory: the result, then settings by settings.
     pub fn memory(&self) -> Vec<(&'static str, u64)> {
-        self.objects.memory().collect()
+        let result = self.result.iter().map(ResultImage::memory);
+        result.chain(self.settings.iter().flat_map(GraphObjects::memory)).collect()
     }
 
     /// How many Vulkan objects there are, memory apart.
     pub fn count(&self) -> usize {
-        let of_row = |r: &RowPipeline| {
-            // layouts; then a render pass and a framebuffer where it draws
-            2 + r.pipelines.len() + if r.render_pass == vk::RenderPass::null() { 0 } else { 2 }
-        };
-        let sets = self.rows.len() * self.slots as usize;
-        let pools = 1 + if self.timing.is_some() { self.slots as usize } else { 0 };
-        self.objects.count() + self.rows.iter().map(of_row).sum::<usize>() + sets + pools
+        let result = self.result.as_ref().map_or(0, ResultImage::count);
+        let pools = if self.timing.is_some() { self.slots * self.lights } else { 0 };
+        let settings = self.settings.iter().map(GraphObjects::count);
+        result + pools as usize + settings.sum::<usize>()
     }
 
     /// Destroys everything; no command may use it any more.
@@ -165,13 +204,23 @@ impl NodeObjects {
         if let Some(timing) = self.timing {
             timing.destroy(host);
         }
-        self.descriptors.destroy(host);
-        self.rows.into_iter().for_each(|row| row.destroy(host));
-        self.objects.destroy(host, allocator);
+        for settings in self.settings {
+            settings.destroy(host, allocator);
+        }
+        if let Some(result) = self.result {
+            result.destroy(host, allocator);
+        }
     }
 }
 
-/// `antumbra.<name>`; names are literals without a zero byte.
-fn label(name: &str) -> CString {
-    CString::new(format!("antumbra.{name}")).unwrap_or_default()
+impl Resized {
+    /// Destroys it; no command may use it any more.
+    pub fn destroy(self, host: &Host, allocator: &mut dyn Allocator) {
+        for settings in self.settings {
+            settings.destroy(host, allocator);
+        }
+        if let Some(result) = self.result {
+            result.destroy(host, allocator);
+        }
+    }
 }

@@ -3,7 +3,7 @@
 use super::host::Host;
 use super::memory::{Allocator, MemoryBlock, MemoryRequest};
 use crate::Error;
-use crate::graph::{Graph, Owner, ResourceId, Shape};
+use crate::graph::{Graph, Owner, Resource, ResourceId, Shape};
 use ash::vk::{self, Handle};
 use std::ffi::CString;
 
@@ -14,23 +14,36 @@ pub(crate) enum Object {
     Image { image: vk::Image, view: vk::ImageView },
     /// A buffer of the node's.
     Buffer(vk::Buffer),
-    /// The host gives it frame by frame, or no row touches it.
+    /// The host gives it frame by frame, it is the result, or no row touches it.
     None,
 }
 
 /// One object and its memory.
-struct Owned {
-    object: Object,
+pub(super) struct Owned {
+    pub object: Object,
     block: Option<MemoryBlock>,
-    name: &'static str,
-    bytes: u64,
+    pub name: &'static str,
+    pub bytes: u64,
 }
 
-/// Everything the node owns of a graph, in the order of the graph's resources.
+/// Everything the node owns of a graph but its result, in the order of the graph's resources.
 pub(crate) struct Objects(Vec<Owned>);
 
+/// Those of [`Objects`] that have another shape, made anew beside them; then those that were replaced.
+pub(crate) struct Remade {
+    places: Vec<usize>,
+    made: Objects,
+}
+
+impl Remade {
+    /// Destroys them; no command may use them any more.
+    pub fn destroy(self, host: &Host, allocator: &mut dyn Allocator) {
+        self.made.destroy(host, allocator);
+    }
+}
+
 impl Objects {
-    /// Makes every transient and exported resource that a row touches.
+    /// Makes every transient resource that a row touches.
     /// With `inspect` every image can be copied from.
     pub fn new(
         host: &Host,
@@ -61,33 +74,39 @@ impl Objects {
         let id = graph.id(index);
         let resource = graph.resource(id);
         let touched = graph.uses_of(id).next().is_some();
-        let mut owned = Owned { object: Object::None, block: None, name: resource.name, bytes: 0 };
-        if matches!(resource.owner, Owner::Imported | Owner::Lent) || !touched {
-            return Ok(owned);
+        if !matches!(resource.owner, Owner::Transient | Owner::Kept) || !touched {
+            return Ok(Owned::none(resource.name));
         }
-        let result = match resource.shape {
-            Shape::Image { .. } => owned.image(host, allocator, graph, id, inspect),
-            Shape::Buffer { bytes } => owned.buffer(host, allocator, graph, id, bytes),
-        };
-        match result {
-            Ok(()) => Ok(owned),
-            Err(e) => {
-                owned.destroy(host, allocator);
-                Err(e)
+        match resource.shape {
+            Shape::Image { .. } => {
+                let uses = graph.uses_of(id);
+                let mut usage =
+                    uses.fold(vk::ImageUsageFlags::empty(), |usage, a| usage | a.image_usage());
+                if inspect {
+                    usage |= vk::ImageUsageFlags::TRANSFER_SRC;
+                }
+                Owned::new(resource.name, host, allocator, |owned, host, allocator| {
+                    owned.image(host, allocator, resource, usage)
+                })
+            }
+            Shape::Buffer { bytes } => {
+                Owned::new(resource.name, host, allocator, |owned, host, allocator| {
+                    owned.buffer(host, allocator, graph, id, bytes)
+                })
             }
         }
     }
 
-    /// Makes anew what has another shape in `graph`, and gives back what it replaced; nothing is
-    /// changed where that fails.
+    /// Makes anew what has another shape in `graph`, to be exchanged; nothing is left behind where that
+    /// fails.
     pub fn remake(
-        &mut self,
+        &self,
         host: &Host,
         allocator: &mut dyn Allocator,
         graph: &Graph,
         changed: impl Fn(ResourceId) -> bool,
         inspect: bool,
-    ) -> Result<Self, Error> {
+    ) -> Result<Remade, Error> {
         let mut made = Self(Vec::new());
         let places: Vec<_> = (0..self.0.len()).filter(|&i| changed(graph.id(i))).collect();
         for &index in &places {
@@ -99,10 +118,14 @@ impl Objects {
                 }
             }
         }
-        for (&index, new) in places.iter().zip(&mut made.0) {
+        Ok(Remade { places, made })
+    }
+
+    /// Takes what was made anew, and leaves there what that replaces.
+    pub fn exchange(&mut self, remade: &mut Remade) {
+        for (&index, new) in remade.places.iter().zip(&mut remade.made.0) {
             std::mem::swap(&mut self.0[index], new);
         }
-        Ok(made)
     }
 
     /// The object of a resource.
@@ -134,26 +157,36 @@ impl Objects {
 }
 
 impl Owned {
-    fn image(
+    fn none(name: &'static str) -> Self {
+        Self { object: Object::None, block: None, name, bytes: 0 }
+    }
+
+    /// What `make` makes; nothing is left behind where that fails.
+    pub fn new(
+        name: &'static str,
+        host: &Host,
+        allocator: &mut dyn Allocator,
+        make: impl FnOnce(&mut Self, &Host, &mut dyn Allocator) -> Result<(), Error>,
+    ) -> Result<Self, Error> {
+        let mut owned = Self::none(name);
+        match make(&mut owned, host, allocator) {
+            Ok(()) => Ok(owned),
+            Err(e) => {
+                owned.destroy(host, allocator);
+                Err(e)
+            }
+        }
+    }
+
+    /// Makes an image and a view of all of it.
+    pub fn image(
         &mut self,
         host: &Host,
         allocator: &mut dyn Allocator,
-        graph: &Graph,
-        id: ResourceId,
-        inspect: bool,
+        resource: &Resource,
+        usage: vk::ImageUsageFlags,
     ) -> Result<(), Error> {
-        let resource = graph.resource(id);
         let Shape::Image { format, width, height, layers } = resource.shape else { return Ok(()) };
-        let mut usage = graph
-            .uses_of(id)
-            .fold(vk::ImageUsageFlags::empty(), |usage, access| usage | access.image_usage());
-        if resource.owner == Owner::Exported {
-            // What hosts do with the result: sample it, or copy it out.
-            usage |= vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_SRC;
-        }
-        if inspect {
-            usage |= vk::ImageUsageFlags::TRANSFER_SRC;
-        }
         let create = vk::ImageCreateInfo::default()
             .image_type(vk::ImageType::TYPE_2D)
             .format(format)
@@ -229,13 +262,14 @@ impl Owned {
         Ok(())
     }
 
-    fn destroy(self, host: &Host, allocator: &mut dyn Allocator) {
+    /// Destroys it; no command may use it any more.
+    pub fn destroy(self, host: &Host, allocator: &mut dyn Allocator) {
         match self.object {
             Object::Image { image, view } => {
                 // SAFETY: made by this device; Host::borrow's promise: no command uses them any
                 // more. A null view is legal to destroy.
                 unsafe { host.device.destroy_image_view(view, None) };
-                // SAFETY: as above; its only view is gone.
+                // SAFETY: as above; its views are gone.
                 unsafe { host.device.destroy_image(image, None) };
             }
             // SAFETY: as above.
@@ -250,10 +284,20 @@ impl Owned {
 
 /// The one level that every image here has, and all of its layers.
 pub(crate) fn whole(aspect: vk::ImageAspectFlags) -> vk::ImageSubresourceRange {
+    layers(aspect, 0, vk::REMAINING_ARRAY_LAYERS)
+}
+
+/// The same of some layers.
+pub(crate) fn layers(
+    aspect: vk::ImageAspectFlags,
+    first: u32,
+    count: u32,
+) -> vk::ImageSubresourceRange {
     vk::ImageSubresourceRange::default()
         .aspect_mask(aspect)
         .level_count(1)
-        .layer_count(vk::REMAINING_ARRAY_LAYERS)
+        .base_array_layer(first)
+        .layer_count(count)
 }
 
 /// Names an object `antumbra.<name>` for debuggers and the validation layer.

@@ -4,8 +4,9 @@
 
 use super::descriptors::Descriptors;
 use super::host::Host;
-use super::objects::{Object, Objects, whole};
+use super::objects::{Object, Objects, layers, whole};
 use super::pipeline::{RowPipeline, variant};
+use super::result::ResultImage;
 use super::timing::Timing;
 use crate::frame::{Faces, FramePlan, Geometry, MeshBuffers, MeshDraw};
 use crate::graph::{
@@ -37,11 +38,17 @@ pub struct HostDraw {
 pub(crate) struct Recorder<'a> {
     pub host: &'a Host,
     pub objects: &'a Objects,
+    /// The node's own visibility image; none where the host lends it.
+    pub result: Option<&'a ResultImage>,
     /// One a kind of row, as are the labels.
     pub rows: &'a [RowPipeline],
     pub labels: &'a [CString],
     pub descriptors: &'a Descriptors,
     pub timing: Option<&'a Timing>,
+    /// Which of the descriptor sets and timestamps are this frame's.
+    pub place: usize,
+    /// The kind of the first of `rows` among those of all settings.
+    pub first_kind: usize,
     pub draw: &'a mut dyn FnMut(&HostDraw),
     pub cmd: vk::CommandBuffer,
 }
@@ -51,7 +58,10 @@ impl Recorder<'_> {
     pub fn record(&mut self, frame: &FramePlan) {
         let plan = &frame.plan;
         if let Some(timing) = self.timing {
-            timing.begin(self.host, self.cmd, frame.slot);
+            match plan.steps.is_empty() {
+                true => timing.nothing(self.place),
+                false => timing.begin(self.host, self.cmd, self.place),
+            }
         }
         for (nth, step) in plan.steps.iter().enumerate() {
             let pass = &plan.graph.passes()[step.pass];
@@ -61,7 +71,8 @@ impl Recorder<'_> {
             self.pass(frame, kind, pass, step.first);
             self.unlabel();
             if let Some(timing) = self.timing {
-                timing.end_row(self.host, self.cmd, frame.slot, (nth, kind));
+                let kind = self.first_kind + kind;
+                timing.end_row(self.host, self.cmd, self.place, (nth, kind));
             }
         }
         self.barriers(frame, &plan.handover);
@@ -71,14 +82,14 @@ impl Recorder<'_> {
         let (host, cmd, row) = (self.host, self.cmd, &self.rows[kind]);
         let device = &host.device;
         let objects = self.objects;
-        let set = self.descriptors.set(pass, kind, frame.slot);
+        let set = self.descriptors.set(pass, kind, self.place);
         let point = match pass.work {
             Work::Dispatch { .. } | Work::Indirect { .. } => vk::PipelineBindPoint::COMPUTE,
             Work::Raster { .. } => vk::PipelineBindPoint::GRAPHICS,
         };
         if let Some(set) = set {
             if first {
-                self.descriptors.write(host, pass, set, |u| look_up(objects, frame, u));
+                self.descriptors.write(host, pass, set, |u| self.look_up(frame, u));
             }
             // SAFETY: Host::borrow's promise: cmd is recording. The set was made for this layout.
             unsafe { device.cmd_bind_descriptor_sets(cmd, point, row.layout, 0, &[set], &[]) };
@@ -196,9 +207,8 @@ impl Recorder<'_> {
             for ResourceBarrier { resource, barrier } in batch {
                 src |= barrier.src_stage;
                 dst |= barrier.dst_stage;
-                match object_of(self.objects, frame, *resource) {
+                match self.object_of(frame, *resource) {
                     Object::Image { image, .. } => {
-                        let info = frame.plan.graph.resource(*resource);
                         images[image_count] = vk::ImageMemoryBarrier::default()
                             .src_access_mask(barrier.src_access)
                             .dst_access_mask(barrier.dst_access)
@@ -207,7 +217,7 @@ impl Recorder<'_> {
                             .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
                             .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
                             .image(image)
-                            .subresource_range(whole(graph::aspects(info.shape)));
+                            .subresource_range(self.range(frame, *resource));
                         image_count += 1;
                     }
                     Object::Buffer(buffer) => {
@@ -253,19 +263,32 @@ impl Recorder<'_> {
             unsafe { debug_utils.cmd_end_debug_utils_label(self.cmd) };
         }
     }
-}
 
-/// The object of a resource: the node's own, or the host's for this frame.
-fn object_of(objects: &Objects, frame: &FramePlan, id: ResourceId) -> Object {
-    frame.imports.iter().find(|(r, _)| *r == id).map_or_else(
-        || objects.get(id),
-        |(_, host)| Object::Image { image: host.image, view: host.view },
-    )
-}
+    /// The object of a resource: the host's for this frame, the layer of the frame's light, or the
+    /// settings' own.
+    fn object_of(&self, frame: &FramePlan, id: ResourceId) -> Object {
+        if let Some((_, host)) = frame.imports.iter().find(|(r, _)| *r == id) {
+            return Object::Image { image: host.image, view: host.view };
+        }
+        match self.result.filter(|_| id == frame.visibility) {
+            Some(result) => result.layer(frame.light_index),
+            None => self.objects.get(id),
+        }
+    }
 
-/// The object of a use and the layout its shader finds it in.
-fn look_up(objects: &Objects, frame: &FramePlan, u: &Use) -> (Object, vk::ImageLayout) {
-    let border = frame.plan.boundary.iter().find(|b| b.resource == u.resource);
-    let layout = border.map_or(u.access.scope().layout, |b| b.entry.layout);
-    (object_of(objects, frame, u.resource), layout)
+    /// What a barrier for a resource names of it: one layer of the result, all of everything else.
+    fn range(&self, frame: &FramePlan, id: ResourceId) -> vk::ImageSubresourceRange {
+        let aspect = graph::aspects(frame.plan.graph.resource(id).shape);
+        match self.result.filter(|_| id == frame.visibility) {
+            Some(_) => layers(aspect, frame.light_index, 1),
+            None => whole(aspect),
+        }
+    }
+
+    /// The object of a use and the layout its shader finds it in.
+    fn look_up(&self, frame: &FramePlan, u: &Use) -> (Object, vk::ImageLayout) {
+        let border = frame.plan.boundary.iter().find(|b| b.resource == u.resource);
+        let layout = border.map_or(u.access.scope().layout, |b| b.entry.layout);
+        (self.object_of(frame, u.resource), layout)
+    }
 }

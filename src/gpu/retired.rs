@@ -2,8 +2,7 @@
 
 use super::host::Host;
 use super::memory::Allocator;
-use super::node_objects::NodeObjects;
-use super::objects::Objects;
+use super::node_objects::{NodeObjects, Resized};
 use std::collections::VecDeque;
 
 /// What a resize or a reconfiguration replaced: alive until the frames that use it are done.
@@ -15,7 +14,7 @@ pub struct Retired {
 
 enum Parts {
     Everything(NodeObjects),
-    Sized(Objects),
+    Sized(Resized),
 }
 
 impl Retired {
@@ -23,15 +22,15 @@ impl Retired {
         Self { host, parts: Parts::Everything(objects) }
     }
 
-    pub(crate) fn sized(host: Host, objects: Objects) -> Self {
-        Self { host, parts: Parts::Sized(objects) }
+    pub(crate) fn sized(host: Host, resized: Resized) -> Self {
+        Self { host, parts: Parts::Sized(resized) }
     }
 
     /// Destroys it; the device must be done with every frame recorded before the replacement.
     pub fn destroy(self, allocator: &mut dyn Allocator) {
         match self.parts {
             Parts::Everything(objects) => objects.destroy(&self.host, allocator),
-            Parts::Sized(objects) => objects.destroy(&self.host, allocator),
+            Parts::Sized(resized) => resized.destroy(&self.host, allocator),
         }
     }
 }

@@ -5,7 +5,8 @@ use crate::Error;
 use ash::vk;
 use std::sync::atomic::{AtomicU16, AtomicU32, Ordering};
 
-/// One pool of timestamps a frame slot: one before the first row, one behind each.
+/// A pool of timestamps for each place, which is a light of a frame slot: one before the first row, one
+/// behind each.
 pub(crate) struct Timing {
     pools: Vec<vk::QueryPool>,
     /// Nanoseconds a tick.
@@ -14,13 +15,13 @@ pub(crate) struct Timing {
     mask: u64,
     /// Queries a pool.
     queries: u32,
-    /// What each slot recorded last.
+    /// What was recorded last at each place.
     recorded: Vec<Recorded>,
     /// Kinds of row.
     kinds: usize,
 }
 
-/// The rows that a slot recorded: how many, and the kind of each.
+/// The rows that were recorded: how many, and the kind of each.
 struct Recorded {
     count: AtomicU32,
     kinds: Vec<AtomicU16>,
@@ -29,7 +30,7 @@ struct Recorded {
 impl Timing {
     /// Makes pools for up to `rows` rows of `kinds` kinds a frame, or none where the queue family has
     /// no timestamps.
-    pub fn new(host: &Host, slots: u32, kinds: usize, rows: usize) -> Result<Option<Self>, Error> {
+    pub fn new(host: &Host, places: u32, kinds: usize, rows: usize) -> Result<Option<Self>, Error> {
         let (instance, physical) = (&host.instance, host.physical_device);
         // SAFETY: Host::borrow's promise: the handles are valid and belong together.
         let families = unsafe { instance.get_physical_device_queue_family_properties(physical) };
@@ -44,7 +45,7 @@ impl Timing {
             period: f64::from(limits.timestamp_period),
             mask: if bits >= 64 { u64::MAX } else { (1 << bits) - 1 },
             queries: rows as u32 + 1,
-            recorded: (0..slots)
+            recorded: (0..places)
                 .map(|_| Recorded {
                     count: AtomicU32::new(0),
                     kinds: (0..rows).map(|_| AtomicU16::new(0)).collect(),
@@ -52,7 +53,7 @@ impl Timing {
                 .collect(),
             kinds,
         };
-        for _ in 0..slots {
+        for _ in 0..places {
             let create = vk::QueryPoolCreateInfo::default()
                 .query_type(vk::QueryType::TIMESTAMP)
                 .query_count(timing.queries);
@@ -68,10 +69,10 @@ impl Timing {
         Ok(Some(timing))
     }
 
-    /// Starts a slot anew: resets its pool and takes the first timestamp.
-    pub fn begin(&self, host: &Host, cmd: vk::CommandBuffer, slot: u32) {
-        let pool = self.pools[slot as usize];
-        self.recorded[slot as usize].count.store(0, Ordering::Relaxed);
+    /// Starts a place anew: resets its pool and takes the first timestamp.
+    pub fn begin(&self, host: &Host, cmd: vk::CommandBuffer, place: usize) {
+        let pool = self.pools[place];
+        self.recorded[place].count.store(0, Ordering::Relaxed);
         // SAFETY: Host::borrow's promise: cmd is recording outside a render pass, and the slot's
         // earlier commands are done.
         unsafe { host.device.cmd_reset_query_pool(cmd, pool, 0, self.queries) };
@@ -81,18 +82,23 @@ impl Timing {
         };
     }
 
-    /// Takes the timestamp behind a row of a kind, the `nth` of the slot from 0.
+    /// Notes that nothing was recorded at a place.
+    pub fn nothing(&self, place: usize) {
+        self.recorded[place].count.store(0, Ordering::Relaxed);
+    }
+
+    /// Takes the timestamp behind a row of a kind, the `nth` of the frame from 0.
     pub fn end_row(
         &self,
         host: &Host,
         cmd: vk::CommandBuffer,
-        slot: u32,
+        place: usize,
         (nth, kind): (usize, usize),
     ) {
-        let recorded = &self.recorded[slot as usize];
+        let recorded = &self.recorded[place];
         recorded.kinds[nth].store(kind as u16, Ordering::Relaxed);
         recorded.count.store(nth as u32 + 1, Ordering::Relaxed);
-        let (pool, query) = (self.pools[slot as usize], nth as u32 + 1);
+        let (pool, query) = (self.pools[place], nth as u32 + 1);
         // SAFETY: as in `begin`; each row takes the next query, and there is one for every row.
         unsafe {
             let bottom = vk::PipelineStageFlags::BOTTOM_OF_PIPE;
@@ -100,10 +106,10 @@ impl Timing {
         };
     }
 
-    /// Each kind of row that the slot recorded last and the milliseconds of all of its rows, in the
+    /// Each kind of row that was recorded last at a place and the milliseconds of all of its rows, in the
     /// order of the first ones; none until its commands are done.
-    pub fn read(&self, host: &Host, slot: u32) -> Option<Vec<(usize, f64)>> {
-        let recorded = self.recorded.get(slot as usize)?;
+    pub fn read(&self, host: &Host, place: usize) -> Option<Vec<(usize, f64)>> {
+        let recorded = self.recorded.get(place)?;
         let count = recorded.count.load(Ordering::Relaxed) as usize;
         if count == 0 {
             return None;
@@ -113,7 +119,7 @@ impl Timing {
         // NOT_READY instead of blocking.
         unsafe {
             host.device.get_query_pool_results(
-                self.pools[slot as usize],
+                self.pools[place],
                 0,
                 &mut ticks,
                 vk::QueryResultFlags::TYPE_64,

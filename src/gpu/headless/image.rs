@@ -17,6 +17,8 @@ pub struct ImageSource {
     pub format: vk::Format,
     /// Width and height in texels.
     pub extent: [u32; 2],
+    /// Which of its array layers.
+    pub layer: u32,
 }
 
 /// A 2D image with one mip level and one layer in device-local memory, and a view of all of it.
@@ -66,7 +68,7 @@ impl OwnedImage {
         // From here on, dropping `new` cleans up.
         let mut new = Self {
             device: device.clone(),
-            source: ImageSource { image, format, extent },
+            source: ImageSource { image, format, extent, layer: 0 },
             usage: info.usage,
             view: vk::ImageView::null(),
             allocation: None,
@@ -84,7 +86,7 @@ impl OwnedImage {
             .image(image)
             .view_type(vk::ImageViewType::TYPE_2D)
             .format(format)
-            .subresource_range(whole(format));
+            .subresource_range(range(&new.source));
         // SAFETY: the image has memory and is of this format.
         new.view = unsafe { device.device().create_image_view(&info, None) }
             .map_err(Error::vulkan(format!("creating the view of {name}")))?;
@@ -113,7 +115,7 @@ impl OwnedImage {
 
     /// The image as the node takes it.
     pub fn lend(&self, before: Scope, after: Scope) -> HostImage {
-        let ImageSource { image, format, extent } = self.source;
+        let ImageSource { image, format, extent, .. } = self.source;
         HostImage { image, view: self.view, format, extent, usage: self.usage, before, after }
     }
 
@@ -183,7 +185,7 @@ impl Drop for OwnedImage {
     }
 }
 
-/// Reads every texel of an image that is in `layout`, row by row from the top, as `T`: a texel's
+/// Reads every texel of an image's layer that is in `layout`, row by row from the top, as `T`: a texel's
 /// own type (`f32` or `[f32; 4]`) or a part of it (`f32` of an RGBA image, `u8` of anything). The
 /// image is in `layout` again afterwards, and earlier submits to the queue are waited for.
 ///
@@ -250,17 +252,22 @@ fn bytes_of(source: &ImageSource) -> Result<u64, Error> {
     Ok(width * height * u64::from(texel))
 }
 
-fn whole(format: vk::Format) -> vk::ImageSubresourceRange {
-    let aspect = match format {
+fn range(source: &ImageSource) -> vk::ImageSubresourceRange {
+    let aspect = match source.format {
         vk::Format::D32_SFLOAT | vk::Format::D16_UNORM => vk::ImageAspectFlags::DEPTH,
         _ => vk::ImageAspectFlags::COLOR,
     };
-    vk::ImageSubresourceRange::default().aspect_mask(aspect).level_count(1).layer_count(1)
+    vk::ImageSubresourceRange::default()
+        .aspect_mask(aspect)
+        .level_count(1)
+        .base_array_layer(source.layer)
+        .layer_count(1)
 }
 
 fn region(source: &ImageSource) -> vk::BufferImageCopy {
     let layers = vk::ImageSubresourceLayers::default()
-        .aspect_mask(whole(source.format).aspect_mask)
+        .aspect_mask(range(source).aspect_mask)
+        .base_array_layer(source.layer)
         .layer_count(1);
     vk::BufferImageCopy::default().image_subresource(layers).image_extent(vk::Extent3D {
         width: source.extent[0],
@@ -269,7 +276,7 @@ fn region(source: &ImageSource) -> vk::BufferImageCopy {
     })
 }
 
-/// A full barrier on the whole image. `UNDEFINED` as the target leaves the layout as it is.
+/// A full barrier on the layer. `UNDEFINED` as the target leaves the layout as it is.
 fn change_layout(
     device: &HeadlessDevice,
     cmd: vk::CommandBuffer,
@@ -286,7 +293,7 @@ fn change_layout(
         .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
         .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
         .image(source.image)
-        .subresource_range(whole(source.format))];
+        .subresource_range(range(source))];
     // SAFETY: recording outside a render pass; the image lives and is in layout `from`.
     unsafe {
         device.device().cmd_pipeline_barrier(

@@ -238,6 +238,7 @@ impl ReadbackScheme {
         let raw = self.device.device();
         let to = |image: &OwnedImage, scope: Scope| ImageBarrier {
             image: image.raw(),
+            layer: 0,
             aspect: vk::ImageAspectFlags::DEPTH,
             before: Scope::DEPTH_DRAWN,
             after: scope,

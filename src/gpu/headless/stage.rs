@@ -212,25 +212,46 @@ impl Stage {
     /// # Errors
     /// As [`ShadowNode::record`] and [`HeadlessDevice::submit_and_wait`].
     pub fn run(&mut self, plan: &FramePlan) -> Result<FrameTimes, Error> {
+        self.run_all(std::slice::from_ref(plan))
+    }
+
+    /// Records plans one behind the other into one command buffer, submits it and waits.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn run_all(&mut self, plans: &[FramePlan]) -> Result<FrameTimes, Error> {
         let device = self.device.clone();
         let node = self.node()?;
         let (record, frame) = device.submit_timed(|cmd| {
             let started = Instant::now();
-            node.record(cmd, plan)?;
+            plans.iter().try_for_each(|plan| node.record(cmd, plan))?;
             Ok(started.elapsed())
         })?;
-        let passes = node.timings(plan.slot).unwrap_or_default();
+        let passes = plans.iter().filter_map(|p| node.timings_of(p.slot, p.light_index));
+        let passes = passes.flatten().collect();
         Ok(FrameTimes { frame, record, passes })
     }
 
-    /// Reads the visible fraction of every pixel, row by row.
+    /// Reads the visible fraction of every pixel, row by row, under light 0.
     ///
     /// # Errors
     /// As [`read_image`].
     pub fn visibility(&mut self) -> Result<Vec<f32>, Error> {
+        self.visibility_under(0)
+    }
+
+    /// The same under any of the description's lights.
+    ///
+    /// # Errors
+    /// As [`read_image`].
+    pub fn visibility_under(&mut self, light_index: u32) -> Result<Vec<f32>, Error> {
         let result = self.node()?.visibility();
-        let source =
-            ImageSource { image: result.image, format: visibility::FORMAT, extent: result.extent };
+        let source = ImageSource {
+            image: result.image,
+            format: visibility::FORMAT,
+            extent: result.extent,
+            layer: light_index,
+        };
         read_image(&self.device, &source, RESULT.layout)
     }
 
@@ -244,7 +265,7 @@ impl Stage {
         let (format, extent) = (visibility::COLOR_FORMAT, result.extent);
         read_image(
             &self.device,
-            &ImageSource { image: result.image, format, extent },
+            &ImageSource { image: result.image, format, extent, layer: 0 },
             RESULT.layout,
         )
     }
@@ -260,7 +281,12 @@ impl Stage {
     ) -> Result<(Vec<T>, [u32; 2]), Error> {
         let image = self.node()?.inspect(plan).into_iter().find(|i| i.name == name);
         let image = image.ok_or_else(|| Error::Frame(format!("the plan writes no {name}")))?;
-        let source = ImageSource { image: image.image, format: image.format, extent: image.extent };
+        let source = ImageSource {
+            image: image.image,
+            format: image.format,
+            extent: image.extent,
+            layer: 0,
+        };
         Ok((read_image(&self.device, &source, image.layout)?, image.extent))
     }
 

@@ -1,0 +1,257 @@
+//! Several lights of one node: what each plan counts on and leaves, and which layer it names.
+
+use super::*;
+use crate::frame::{Left, plan_with};
+
+/// What a node does with its plans, without a device.
+struct Node {
+    description: Description,
+    left: Left,
+}
+
+impl Node {
+    fn new(lights: u32, other_settings: Vec<Settings>) -> Self {
+        let left = Left::new(lights, 1 + other_settings.len());
+        let description = Description { lights, other_settings, ..description(&[]) };
+        description.check().unwrap();
+        Self { description, left }
+    }
+
+    fn plan(&mut self, frame: &Frame) -> FramePlan {
+        let whose = Whose { light: frame.light_index, settings: frame.settings_index };
+        let kept = self.left.for_plan(whose);
+        let plan = plan_with(&self.description, Limits::default(), frame, &kept).unwrap();
+        self.left.planned(whose, &plan.keeping);
+        plan
+    }
+
+    /// Whether the node takes it.
+    fn record(&mut self, plan: &FramePlan) -> bool {
+        let agrees = self.left.agrees(plan.whose(), &plan.keeping);
+        if agrees {
+            self.left.recorded(plan.whose(), &plan.keeping);
+        }
+        agrees
+    }
+
+    /// Plans every frame, records them in that order, and says how many rows each ran.
+    fn all(&mut self, frames: &[Frame]) -> Vec<usize> {
+        let plans: Vec<_> = frames.iter().map(|f| self.plan(f)).collect();
+        for plan in &plans {
+            assert!(self.record(plan), "light {} is refused", plan.light_index);
+        }
+        plans.iter().map(|p| p.plan.steps.len()).collect()
+    }
+}
+
+/// Frames of so many lights at a scene and a view revision.
+fn frames(meshes: &[MeshInstance], lights: u32, scene: u64, view: u64) -> Vec<Frame<'_>> {
+    let of = |light_index| Frame {
+        light_index,
+        revision: Some(scene),
+        view_revision: Some(view),
+        ..frame(meshes)
+    };
+    (0..lights).map(of).collect()
+}
+
+#[test]
+fn barriers_name_the_lights_layer_of_the_result_and_nothing_else() {
+    let meshes = meshes();
+    let d = Description { lights: 3, ..description(&[]) };
+    for light_index in 0..3 {
+        let border_barriers = BorderBarriers::Host;
+        let plan = make(&d, &Frame { light_index, border_barriers, ..frame(&meshes) });
+        assert_eq!(plan.light_index, light_index);
+        let layers: Vec<_> = plan.accesses().iter().map(|a| (a.name, a.layer)).collect();
+        assert_eq!(layers, [("gbuffer.depth", 0), ("visibility", light_index)]);
+        let all: Vec<_> = plan.entry_barriers().chain(plan.exit_barriers()).collect();
+        assert_eq!(all.len(), 4);
+        for barrier in all {
+            let range = barrier.vk().subresource_range;
+            let result = barrier.image == vk::Image::null();
+            let layer = if result { light_index } else { 0 };
+            assert_eq!((range.base_array_layer, range.layer_count), (layer, 1));
+        }
+    }
+    // A lent image is the light's own.
+    let d = Description { lent_visibility: true, ..d };
+    let visibility = Visibility::Lent(target());
+    let plan = make(&d, &Frame { light_index: 2, visibility, ..frame(&meshes) });
+    assert_eq!(plan.accesses()[1].layer, 0);
+}
+
+#[test]
+fn every_bad_number_of_lights_or_settings_is_one_sentence() {
+    let meshes = meshes();
+    let d =
+        Description { lights: 4, other_settings: vec![Settings::default()], ..description(&[]) };
+    let f = frame(&meshes);
+    let refuse = |d: &Description, frame: Frame| {
+        plan(d, Limits::default(), &frame).map(|p| ran(&p)).unwrap_err().to_string()
+    };
+    let sentence = refuse(&d, Frame { light_index: 4, ..f });
+    assert!(sentence.contains("light 4 does not exist; the description has 4"), "{sentence}");
+    let sentence = refuse(&d, Frame { settings_index: 2, ..f });
+    assert!(sentence.contains("settings 2 do not exist; the description has 2"), "{sentence}");
+    for lights in [0, 65] {
+        let sentence = Description { lights, ..d.clone() }.check().unwrap_err().to_string();
+        assert!(sentence.contains(&format!("1 to 64 lights, not for {lights}")), "{sentence}");
+    }
+    let other_settings = vec![Settings::default(); 8];
+    let sentence = Description { other_settings, ..d.clone() }.check().unwrap_err().to_string();
+    assert!(sentence.contains("8 other settings are more than the 7"), "{sentence}");
+    // Each of the settings is held against the rest of the description, and against its frames.
+    let many = Settings { technique: Technique::ManyLights, ..Settings::default() };
+    let d = Description { other_settings: vec![many], ..d };
+    let maps = Description { occluder_maps: Some(vk::Format::D32_SFLOAT), ..d.clone() };
+    assert!(maps.check().unwrap_err().to_string().contains("many-lights"));
+    let small = Settings { map: 7, ..Settings::default() };
+    let small = Description { other_settings: vec![small], ..d.clone() };
+    assert!(small.check().unwrap_err().to_string().contains("16 to 4096"));
+    let line = generate::line_light(1.0, 0.3).unwrap();
+    assert!(refuse(&d, Frame { light: line, ..f }).contains("soft-shadow-map needs an area"));
+    make(&d, &Frame { light: line, settings_index: 1, ..f });
+}
+
+#[test]
+fn a_frame_has_the_rows_of_the_settings_that_it_chooses() {
+    let meshes = meshes();
+    let d = description(&[]);
+    let others: Vec<_> = Technique::ALL
+        .iter()
+        .filter(|(_, t)| *t != Technique::SoftShadowMap)
+        .map(|&(_, technique)| Settings { technique, ..Settings::default() })
+        .collect();
+    let several = Description { other_settings: others.clone(), ..d.clone() };
+    for (index, settings) in others.into_iter().enumerate() {
+        let settings_index = 1 + index as u32;
+        let mut chosen = make(&several, &Frame { settings_index, ..frame(&meshes) });
+        let alone = make(&Description { settings, ..d.clone() }, &frame(&meshes));
+        assert_eq!(chosen.settings_index, settings_index);
+        chosen.settings_index = 0;
+        assert_eq!(chosen, alone);
+    }
+}
+
+/// Whatever is planned before anything is recorded, nothing is refused that is recorded in that order.
+#[test]
+fn all_lights_may_be_planned_before_the_first_is_recorded() {
+    let meshes = meshes();
+    let mut node = Node::new(3, Vec::new());
+    assert_eq!(node.all(&frames(&meshes, 3, 1, 1)), [5; 3]);
+    assert_eq!(node.all(&frames(&meshes, 3, 1, 1)), [0; 3], "idle");
+    // The camera moves: the one set of maps is drawn by each light in turn.
+    assert_eq!(node.all(&frames(&meshes, 3, 1, 2)), [5; 3]);
+    assert_eq!(node.all(&frames(&meshes, 3, 1, 3)), [5; 3]);
+    // One light moves; the others have their pixels.
+    let mut next = frames(&meshes, 3, 1, 3);
+    next[1].revision = Some(2);
+    assert_eq!(node.all(&next), [0, 5, 0]);
+    // And its maps stay, while it alone draws them.
+    next[1].view_revision = Some(4);
+    assert_eq!(node.all(&next), [0, 1, 0]);
+}
+
+#[test]
+fn maps_are_kept_for_a_light_that_has_settings_to_itself() {
+    let meshes = meshes();
+    let hard = Settings { technique: Technique::Hard, ..Settings::default() };
+    let mut node = Node::new(2, vec![hard]);
+    let both = |view| {
+        let mut both = frames(&meshes, 2, 1, view);
+        both[1].settings_index = 1;
+        both
+    };
+    assert_eq!(node.all(&both(1)), [5, 2]);
+    assert_eq!(node.all(&both(2)), [1, 1]);
+    // The same numbers by other settings are other pixels.
+    assert_eq!(node.all(&frames(&meshes, 2, 1, 2)), [0, 5]);
+}
+
+#[test]
+fn maps_of_one_light_are_never_anothers() {
+    let meshes = meshes();
+    let mut node = Node::new(2, Vec::new());
+    let [a, b] = frames(&meshes, 2, 1, 1).try_into().unwrap();
+    let moved = |f| Frame { view_revision: Some(2), ..f };
+    assert_eq!(node.all(&[a]), [5]);
+    assert_eq!(node.all(&[moved(b)]), [5], "the same number, of another light");
+    assert_eq!(node.all(&[moved(a)]), [5]);
+    let counts_on_maps = node.plan(&a);
+    assert_eq!(ran(&counts_on_maps), ["soft_shadow_map.gather_pixels"]);
+    // Another light draws over them first.
+    let drawn = node.plan(&b);
+    assert!(node.record(&drawn));
+    assert!(!node.record(&counts_on_maps), "stale");
+    let again = node.plan(&a);
+    assert_eq!(again.plan.steps.len(), 5);
+    // While that is not recorded, the other light does not count on its maps either.
+    assert_eq!(node.plan(&moved(b)).plan.steps.len(), 5);
+    assert_eq!(node.all(&[b]), [0]);
+    assert_eq!(node.plan(&Frame { view_revision: Some(3), ..a }).plan.steps.len(), 5);
+    assert_eq!(node.plan(&moved(b)).plan.steps.len(), 5);
+    let idle = frames(&[], 2, 1, 1);
+    node.all(&idle[..1]);
+    assert_eq!(node.all(&[moved(b)]), [1], "the dropped plans of the other light are forgotten");
+}
+
+#[test]
+fn what_is_lit_stays_lit_whatever_the_numbers_say() {
+    let shadowed = meshes();
+    for lights in [1, 2] {
+        let mut node = Node::new(lights, vec![Settings::default()]);
+        let light_index = lights - 1;
+        let lit = Frame { light_index, ..frame(&[]) };
+        assert_eq!(node.all(&[lit]), [1]);
+        let again = node.plan(&lit);
+        assert!(again.plan.steps.is_empty());
+        assert!(again.plan.skipped.iter().any(|s| s.why == "every pixel is lit already"));
+        // Other numbers and other settings leave every pixel lit as well.
+        let other = Frame { settings_index: 1, revision: Some(3), view_revision: Some(4), ..lit };
+        assert_eq!(node.all(&[other]), [0]);
+        assert_eq!(node.all(&[lit, other]), [0, 0]);
+        // What forgets or writes the image leaves nothing to count on.
+        for before in [Scope::UNUSED, Scope::COMPUTE_WRITTEN] {
+            let visibility = Visibility::Own { before, after: Scope::FRAGMENT_SAMPLED };
+            assert_eq!(node.all(&[Frame { visibility, ..lit }]), [1]);
+        }
+        // A shadow in between, and the plan from before it is stale.
+        assert_eq!(node.all(&[Frame { meshes: &shadowed, ..lit }]), [5]);
+        assert!(!node.record(&again));
+        assert_eq!(node.all(&[lit, lit]), [1, 1]);
+        assert!(node.record(&again), "lit again");
+    }
+    // An image of the host's is another one each frame.
+    let mut node = Node::new(1, Vec::new());
+    node.description.lent_visibility = true;
+    let visibility = Visibility::Lent(target());
+    assert_eq!(node.all(&[Frame { visibility, ..frame(&[]) }]), [1]);
+    assert_eq!(node.all(&[Frame { visibility, ..frame(&[]) }]), [1]);
+}
+
+/// Idle frames of pixels that are lit keep that they are.
+#[test]
+fn idle_pixels_stay_lit_too() {
+    let mut node = Node::new(1, Vec::new());
+    let [idle] = frames(&[], 1, 1, 1).try_into().unwrap();
+    assert_eq!(node.all(&[idle]), [1]);
+    assert_eq!(node.all(&[idle]), [0]);
+    assert_eq!(node.all(&[frame(&[])]), [0]);
+    let forgotten = Visibility::Own { before: Scope::UNUSED, after: Scope::FRAGMENT_SAMPLED };
+    assert_eq!(node.all(&[idle]), [0]);
+    assert_eq!(node.all(&[Frame { visibility: forgotten, ..idle }]), [1], "nothing is left of it");
+}
+
+#[test]
+fn of_16_lights_12_that_reach_nothing_cost_what_4_cost() {
+    let shadowed = meshes();
+    let mut node = Node::new(16, Vec::new());
+    let meshes = |light| if light % 4 == 0 { &shadowed[..] } else { &[] };
+    let frames = || {
+        let of = |light_index| Frame { light_index, ..frame(meshes(light_index)) };
+        (0..16).map(of).collect::<Vec<_>>()
+    };
+    assert_eq!(node.all(&frames()).iter().sum::<usize>(), 4 * 5 + 12);
+    assert_eq!(node.all(&frames()).iter().sum::<usize>(), 4 * 5);
+}
