@@ -338,6 +338,12 @@ impl ShadowNode {
         self.objects.memory()
     }
 
+    /// Name and bytes of what one of the settings has for the lights that choose it; nothing for settings
+    /// that do not exist.
+    pub fn memory_of(&self, settings_index: u32) -> Vec<(&'static str, u64)> {
+        self.objects.memory_of(settings_index)
+    }
+
     /// How many Vulkan objects the node holds.
     pub fn object_count(&self) -> usize {
         self.objects.count()

@@ -191,6 +191,11 @@ impl NodeObjects {
         result.chain(self.settings.iter().flat_map(GraphObjects::memory)).collect()
     }
 
+    /// The same of one of the settings alone.
+    pub fn memory_of(&self, settings: u32) -> Vec<(&'static str, u64)> {
+        self.settings.get(settings as usize).map_or(Vec::new(), |s| s.memory().collect())
+    }
+
     /// How many Vulkan objects there are, memory apart.
     pub fn count(&self) -> usize {
         let result = self.result.as_ref().map_or(0, ResultImage::count);
