@@ -3,7 +3,7 @@
 use crate::frame::{self, Description, Frame, FramePlan, Left, Limits, Stamp, Whose};
 use crate::gpu::{Allocator, Host, HostDraw, NodeObjects, Requirements, Retired};
 use crate::graph::{Draw, Graph, Layer, Owner, Pass, Shape, Target, Work};
-use crate::planner::{Auto, Choice};
+use crate::planner::{self, Auto, Choice};
 use crate::settings::Technique;
 use crate::soft_shadow_map::Accumulate;
 use crate::{Error, depth_layers};
@@ -257,24 +257,33 @@ impl ShadowNode {
         Ok(Retired::everything(old.host, old.objects))
     }
 
-    /// Asks `auto` what to compute this frame's shadow with, and makes everything anew where that is not what the node
-    /// was made for: the answer, and what to retire then. Call it before [`Self::plan`].
+    /// Asks `auto` what to compute the shadows of a frame's lights with, and makes the node anew where it was not made for
+    /// that: the answers, light by light, and what to retire then. Each frame is told its settings. Call it before
+    /// [`Self::plan`], with the frames of all lights.
     ///
     /// # Errors
-    /// As [`Auto::choose`] and [`Self::new`]; the node then goes on as it was.
+    /// As [`Auto::choose_all`] and [`Self::new`]; the node then goes on as it was.
     pub fn adapt(
         &mut self,
         allocator: &mut dyn Allocator,
         auto: &mut Auto,
-        frame: &Frame,
-    ) -> Result<(Choice, Option<Retired>), Error> {
-        let choice = auto.choose(&self.description, frame)?;
-        if choice.settings == self.description.settings {
-            return Ok((choice, None));
+        frames: &mut [Frame],
+    ) -> Result<(Vec<Choice>, Option<Retired>), Error> {
+        let choices = auto.choose_all(&self.description, frames)?;
+        let mut retired = None;
+        let known = |c: &Choice| self.description.all_settings().any(|s| *s == c.settings);
+        if !choices.iter().all(known) {
+            let (settings, other_settings) = planner::distinct(&choices);
+            let description = Description { settings, other_settings, ..self.description.clone() };
+            retired = Some(self.reconfigure(allocator, description)?);
         }
-        let description = Description { settings: choice.settings, ..self.description.clone() };
-        let retired = self.reconfigure(allocator, description)?;
-        Ok((choice, Some(retired)))
+        for (frame, choice) in frames.iter_mut().zip(&choices) {
+            let mut all = self.description.all_settings();
+            let same = all.position(|s| *s == choice.settings);
+            // Beyond as many settings as a node may have, the first serve.
+            frame.settings_index = same.unwrap_or(0) as u32;
+        }
+        Ok((choices, retired))
     }
 
     /// Name and milliseconds of each pass that `slot` recorded last for light 0, rows of one name summed; none until the

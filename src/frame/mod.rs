@@ -30,6 +30,9 @@ use ash::vk;
 use glam::DMat4;
 use std::borrow::Cow;
 
+/// The most settings that a node may have: [`Description::settings`] and its others.
+pub(crate) const MOST_SETTINGS: usize = 8;
+
 /// What stays the same from frame to frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Description {
@@ -128,7 +131,7 @@ impl Description {
     /// # Errors
     /// [`Error::Setting`] or [`Error::Frame`] for the first thing out of its range.
     pub fn check(&self) -> Result<(), Error> {
-        if self.other_settings.len() > 7 {
+        if self.other_settings.len() >= MOST_SETTINGS {
             return Err(Error::Frame(format!(
                 "{} other settings are more than the 7 that a node may have",
                 self.other_settings.len()

@@ -288,6 +288,24 @@ fn is_line(frame: &Frame) -> bool {
     frame.light.is_line() || frame.outline.is_some()
 }
 
+/// The settings of some choices, each once and the most accurate first, as many as a node may have.
+pub(crate) fn distinct(choices: &[Choice]) -> (Settings, Vec<Settings>) {
+    let mut by_error: Vec<&Choice> = choices.iter().collect();
+    by_error.sort_by(|a, b| {
+        let [a, b] = [a, b].map(|c| c.error.unwrap_or(f64::INFINITY));
+        a.total_cmp(&b)
+    });
+    let mut all: Vec<Settings> = Vec::new();
+    for choice in by_error {
+        if !all.contains(&choice.settings) {
+            all.push(choice.settings);
+        }
+    }
+    all.truncate(frame::MOST_SETTINGS);
+    let mut all = all.into_iter();
+    (all.next().unwrap_or_default(), all.collect())
+}
+
 /// The views that are most like a situation, the nearest first, and how far away that one is.
 fn alike<'a>(table: &'a Table, likeness: &Likeness) -> (f64, Vec<&'a View>) {
     let mut all: Vec<(f64, &View)> =

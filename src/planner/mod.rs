@@ -24,6 +24,7 @@ mod likeness;
 mod situation;
 mod table;
 
+pub(crate) use auto::distinct;
 pub use auto::{Auto, Choice};
 pub use budget::Budget;
 pub use candidates::{CANDIDATES, Candidate};
