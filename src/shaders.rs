@@ -66,6 +66,10 @@ pub const SUPERBLOCKS: Module = module!("soft_shadow_map/superblocks.comp");
 pub const GATHER_MAP: Module = module!("soft_shadow_map/gather_map.comp");
 /// The hierarchical gather at the G-buffer's pixels.
 pub const GATHER_PIXELS: Module = module!("soft_shadow_map/gather_pixels.comp");
+/// The same at the pixels of listed tiles.
+pub const GATHER_TILES: Module = module!("soft_shadow_map/gather_tiles.comp");
+/// Which tiles of pixels feel no occluder, by blocks of the map.
+pub const TILES: Module = module!("soft_shadow_map/tiles.comp");
 /// Occupied texels of each group of blocks.
 pub const PATCH_COUNT: Module = module!("soft_shadow_map/patch_count.comp");
 /// Group counts to offsets, and the draw's arguments.
@@ -164,6 +168,8 @@ pub const KEEP: Module = module!("linear_light/keep.comp");
 pub const LINE_VISIBILITY: Module = module!("linear_light/visibility.comp");
 /// The soft shadow map projected onto the G-buffer.
 pub const RESOLVE: Module = module!("visibility/resolve.comp");
+/// An empty list of tiles.
+pub const TILES_START: Module = module!("visibility/tiles_start.comp");
 /// Everything lit.
 pub const LIT: Module = module!("visibility/lit.comp");
 /// The same in color.
@@ -199,6 +205,8 @@ pub const ALL: &[Module] = &[
     SUPERBLOCKS,
     GATHER_MAP,
     GATHER_PIXELS,
+    GATHER_TILES,
+    TILES,
     PATCH_COUNT,
     PATCH_SCAN,
     PATCH_EMIT,
@@ -247,6 +255,7 @@ pub const ALL: &[Module] = &[
     KEEP,
     LINE_VISIBILITY,
     RESOLVE,
+    TILES_START,
     LIT,
     LIT_COLOR,
 ];

@@ -20,6 +20,7 @@ fn descriptions() -> Vec<(String, Description)> {
         "receivers=pixels sides=bottom",
         "receivers=pixels sides=two",
         "receivers=pixels sides=mean",
+        "receivers=pixels classify=off",
         "receivers=map accumulate=gather sides=two map=100 receiver_map=77",
         "receivers=map accumulate=blend sides=two map=17 receiver_map=16",
         "receivers=map accumulate=blend-fp16 sides=one",

@@ -89,9 +89,19 @@ pub struct Ready {
 impl Ready {
     /// The pixels over |x|, |z| ≤ `half` metres.
     pub fn new(device: &HeadlessDevice, scene: &Scene, settings: Settings, half: f64) -> Self {
+        Self::seen(device, scene, settings, &View::map_of_ground(half, 8.0), [480; 2])
+    }
+
+    /// The pixels of a view.
+    pub fn seen(
+        device: &HeadlessDevice,
+        scene: &Scene,
+        settings: Settings,
+        view: &View,
+        extent: [u32; 2],
+    ) -> Self {
         let keep = |i: &Instance| i.role != Role::Occluder;
-        let view = View::map_of_ground(half, 8.0);
-        let mut stage = Stage::new(device, scene, &view, [480; 2], settings, keep).unwrap();
+        let mut stage = Stage::new(device, scene, view, extent, settings, keep).unwrap();
         let light = scene.light(None).unwrap().light;
         let plan = stage.plan(&light, None).unwrap();
         stage.run(&plan).unwrap();

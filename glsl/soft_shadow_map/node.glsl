@@ -52,6 +52,19 @@ uvec2 rectangle_mask(ivec2 lo, ivec2 hi)
     return columns & below_to & ~below_from;
 }
 
+// Whether a node could hide any of the light from receivers with t in [t_min, t_max] and w of w_r or more;
+// `lo` is its first texel, `side` its side in texels.
+bool is_felt(Node node, vec2 lo, float side, vec2 t_min, vec2 t_max, float w_r, vec2 scale)
+{
+    if (node.count == 0.0 || node.w_max <= w_r) {
+        return false;
+    }
+    // The least magnification gives the widest window of occluder texels that the light covers.
+    vec2 window = 0.5 * (node.w_max - w_r) / scale;
+    vec2 gap = max(lo - t_max, t_min - (lo + side));
+    return gap.x < window.x && gap.y < window.y;
+}
+
 const int OUTSIDE = 0; // hides nothing of the light from any of the receivers
 const int INSIDE = 1;  // the series serves all of the receivers
 const int MIXED = 2;   // look closer
@@ -61,16 +74,10 @@ const int MIXED = 2;   // look closer
 int classify(Node node, vec2 lo, float side, vec2 t_min, vec2 t_max, vec2 w_r, vec2 scale,
              float spread)
 {
-    if (node.count == 0.0 || node.w_max <= w_r.x) {
+    if (!is_felt(node, lo, side, t_min, t_max, w_r.x, scale)) {
         return OUTSIDE;
     }
     vec2 hi = lo + side;
-    // The least magnification gives the widest window of occluder texels that the light covers.
-    vec2 window = 0.5 * (node.w_max - w_r.x) / scale;
-    vec2 gap = max(lo - t_max, t_min - hi);
-    if (gap.x >= window.x || gap.y >= window.y) {
-        return OUTSIDE;
-    }
     vec2 core = 0.5 * (node.w_min - w_r.y) / scale;
     vec2 reach = max(hi - t_min, t_max - lo);
     float deviation = max(node.w_max - node.mean, node.mean - node.w_min);

@@ -230,7 +230,9 @@ mod tests {
                 assert!(names.is_empty(), "{names:?}");
                 continue;
             }
-            assert_eq!(names.len(), 1, "{words}: {names:?}");
+            // Where tiles are sorted first, that takes two rows more.
+            let tiles = names.iter().filter(|n| n.starts_with("visibility.tiles")).count();
+            assert_eq!(names.len() - tiles, 1, "{words}: {names:?}");
         }
         // Each point's map is drawn where the one before was.
         let many = again("samples=2", T::ManyLights);

@@ -83,6 +83,8 @@ fn the_rows_that_settings_call_for_run_in_order() {
             "depth_layers.back",
             "soft_shadow_map.blocks",
             "soft_shadow_map.superblocks",
+            "visibility.tiles_start",
+            "visibility.tiles",
             "soft_shadow_map.gather_pixels"
         ]
     );
@@ -123,7 +125,7 @@ fn without_anything_to_shadow_only_the_lit_row_runs_and_says_why() {
         let plan = make(&description(&[]), &frame(meshes));
         assert_eq!(ran(&plan), ["visibility.lit"]);
         assert!(plan.plan.table().contains(why), "{why}: {}", plan.plan.table());
-        assert_eq!(plan.plan.skipped.len(), 6);
+        assert_eq!(plan.plan.skipped.len(), 8);
     }
 }
 

@@ -44,7 +44,7 @@ impl Remade {
 
 impl Objects {
     /// Makes every transient resource that a row touches.
-    /// With `inspect` every image can be copied from.
+    /// With `inspect` every one of them can be copied from.
     pub fn new(
         host: &Host,
         allocator: &mut dyn Allocator,
@@ -91,7 +91,7 @@ impl Objects {
             }
             Shape::Buffer { bytes } => {
                 Owned::new(resource.name, host, allocator, |owned, host, allocator| {
-                    owned.buffer(host, allocator, graph, id, bytes)
+                    owned.buffer(host, allocator, graph, id, (bytes, inspect))
                 })
             }
         }
@@ -238,12 +238,15 @@ impl Owned {
         allocator: &mut dyn Allocator,
         graph: &Graph,
         id: ResourceId,
-        bytes: u64,
+        (bytes, inspect): (u64, bool),
     ) -> Result<(), Error> {
         let resource = graph.resource(id);
-        let usage = graph
+        let mut usage = graph
             .uses_of(id)
             .fold(vk::BufferUsageFlags::empty(), |usage, access| usage | access.buffer_usage());
+        if inspect {
+            usage |= vk::BufferUsageFlags::TRANSFER_SRC;
+        }
         let create = vk::BufferCreateInfo::default().size(bytes).usage(usage);
         let doing = || format!("creating {}", resource.name);
         // SAFETY: the device is valid (Host::borrow), and no row asks for a buffer of no bytes.

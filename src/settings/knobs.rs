@@ -226,6 +226,15 @@ pub const KNOBS: &[Knob] = &[
                 rays are cut to the heights that matter; off is for measuring what that saves",
     },
     Knob {
+        key: "classify",
+        techniques: &[Technique::SoftShadowMap],
+        unit: "switch",
+        range: "on, off",
+        default: "on",
+        about: "whether tiles of pixels before which no occluder lies are told at once, with \
+                receivers=pixels; the image is the same, and off is for measuring what that saves",
+    },
+    Knob {
         key: "filter",
         techniques: &[Technique::RayMarch],
         unit: "switch",

@@ -146,7 +146,10 @@ impl Settings {
             "hash" => r.hash = choose(key, value, Hash::ALL)?,
             "levels" => r.levels = choose(key, value, nbuffer::Kind::ALL)?,
             "projection" => r.projection = choose(key, value, Projection::ALL)?,
-            "classify" => r.classify = choose(key, value, RayMarch::SWITCH)?,
+            "classify" if technique == Technique::RayMarch => {
+                r.classify = choose(key, value, RayMarch::SWITCH)?;
+            }
+            "classify" => s.classify = choose(key, value, RayMarch::SWITCH)?,
             "filter" => r.filter = choose(key, value, RayMarch::SWITCH)?,
             "slices" => o.slices = number(key, value)?,
             "placement" => o.placement = choose(key, value, Placement::ALL)?,
@@ -194,7 +197,10 @@ impl Settings {
             "hash" => name_of(Hash::ALL, r.hash),
             "levels" => name_of(nbuffer::Kind::ALL, r.levels),
             "projection" => name_of(Projection::ALL, r.projection),
-            "classify" => name_of(RayMarch::SWITCH, r.classify),
+            "classify" if self.technique == Technique::RayMarch => {
+                name_of(RayMarch::SWITCH, r.classify)
+            }
+            "classify" => name_of(RayMarch::SWITCH, s.classify),
             "filter" => name_of(RayMarch::SWITCH, r.filter),
             "slices" => o.slices.to_string(),
             "placement" => name_of(Placement::ALL, o.placement),

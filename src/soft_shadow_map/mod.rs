@@ -75,6 +75,7 @@
 //! some umbra there. Other drivers have no such limit.
 
 mod passes;
+mod pixels;
 pub mod push;
 mod settings;
 pub mod twin;

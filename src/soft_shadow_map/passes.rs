@@ -1,6 +1,6 @@
 //! The rows of soft shadow maps.
 
-use super::{Accumulate, Receivers, Settings, Sides, push, spread_of};
+use super::{Accumulate, Receivers, Settings, Sides, pixels, push, spread_of};
 use crate::RectangleLight;
 use crate::depth_layers::{DepthLayers, MapView, Wanted};
 use crate::graph::{
@@ -53,16 +53,16 @@ pub fn wanted(settings: &Settings, map: u32) -> Wanted {
 
 /// The occluder map's nodes, as resources and sizes.
 #[derive(Clone, Copy)]
-struct Nodes {
-    texels: ResourceId,
+pub(super) struct Nodes {
+    pub texels: ResourceId,
     blocks: ResourceId,
     /// Moments of any rectangle of a block's texels.
-    sums: ResourceId,
+    pub sums: ResourceId,
     /// Superblocks with their blocks.
-    families: ResourceId,
+    pub families: ResourceId,
     /// Blocks a row, a multiple of a superblock's.
     block_row: u32,
-    superblock_row: u32,
+    pub superblock_row: u32,
 }
 
 /// Adds the rows that turn depth layers into `visibility`.
@@ -97,12 +97,12 @@ pub fn declare(
             let resolve = visibility::Resolve { receiver_depth, view, maps: both, mean };
             visibility::resolve(graph, visibility, &resolve, inputs.gbuffer, inputs.need);
         }
-        _ => gather_pixels(graph, &nodes, visibility, settings, inputs),
+        _ => pixels::gather(graph, &nodes, visibility, settings, inputs),
     }
 }
 
 /// The sides that are summed apart: 0 front, 1 back.
-fn sides(settings: &Settings) -> &'static [u32] {
+pub(super) fn sides(settings: &Settings) -> &'static [u32] {
     if matches!(settings.sides, Sides::Two | Sides::Mean) { &[0, 1] } else { &[0] }
 }
 
@@ -188,7 +188,7 @@ pub(crate) fn receiver_grid(view: &MapView, occluders: &MapView) -> ([f32; 2], [
     (step.map(|s| s as f32), zero)
 }
 
-fn scale_of(inputs: &Inputs) -> [f32; 2] {
+pub(super) fn scale_of(inputs: &Inputs) -> [f32; 2] {
     inputs.occluders.scale(inputs.light).map(|s| s as f32)
 }
 
@@ -359,47 +359,4 @@ fn blend_map(
         need: inputs.need.clone(),
     });
     map
-}
-
-fn gather_pixels(
-    graph: &mut Graph,
-    nodes: &Nodes,
-    visibility: ResourceId,
-    settings: &Settings,
-    inputs: &Inputs,
-) {
-    let gbuffer = inputs.gbuffer;
-    let [width, height] = gbuffer.extent;
-    let occluders = inputs.occluders;
-    let two = i32::from(sides(settings).len() == 2);
-    let mean = i32::from(settings.sides == Sides::Mean);
-    graph.push(Pass::compute(
-        "soft_shadow_map.gather_pixels",
-        shaders::GATHER_PIXELS,
-        // 8×8 invocations of 2×2 pixels.
-        [width.div_ceil(16), height.div_ceil(16), 1],
-        Push::new(&push::GatherPixels {
-            light_from_ndc: gbuffer.light_from_ndc,
-            scale: scale_of(inputs),
-            texels_per_uv: occluders.texels_per_uv().map(|x| x as f32),
-            first: occluders.first().map(|x| x as f32),
-            extent: [width as i32, height as i32],
-            background: gbuffer.background,
-            w_max: (1.0 / occluders.near) as f32,
-            spread: spread_of(settings.tolerance),
-            snap: inputs.snap,
-            depth_error: inputs.depth_error as f32,
-            row: nodes.superblock_row as i32,
-            flags: i32::from(gbuffer.mask.is_some()) | two << 1 | mean << 2,
-        }),
-        vec![
-            Use::bound(0, gbuffer.depth, Access::SampledCompute),
-            Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
-            Use::bound(2, nodes.texels, Access::BufferReadCompute),
-            Use::bound(3, nodes.sums, Access::BufferReadCompute),
-            Use::bound(4, nodes.families, Access::BufferReadCompute),
-            Use::bound(5, visibility, Access::ImageWrite),
-        ],
-        inputs.need,
-    ));
 }

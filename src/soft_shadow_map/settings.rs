@@ -72,6 +72,8 @@ pub struct Settings {
     /// The most that the gather's series may add to the error of the visible fraction, 0 to 0.1;
     /// 1e-4 by default. 0 uses it only where it is exact.
     pub tolerance: f32,
+    /// Whether tiles of pixels that no occluder can be felt from are left out of the gather, at the pixels.
+    pub classify: bool,
 }
 
 impl Default for Settings {
@@ -82,6 +84,7 @@ impl Default for Settings {
             sides: Sides::default(),
             accumulate: Accumulate::default(),
             tolerance: 1e-4,
+            classify: true,
         }
     }
 }

@@ -155,21 +155,25 @@ pub struct Tile<T> {
     pub w: [T; 2],
 }
 
+/// The twin of `is_felt` in `node.glsl`: whether a node could hide any of the light from a tile.
+pub fn is_felt<T: Float>(node: &Node<T>, tile: &Tile<T>, scale: [T; 2]) -> bool {
+    let w_max = node.w[2];
+    let along = |i: usize| {
+        let hi = node.lo[i] + node.side;
+        let gap = (node.lo[i] - tile.t_max[i]).max(tile.t_min[i] - hi);
+        gap < half::<T>() * (w_max - tile.w[0]) / scale[i]
+    };
+    node.count > T::zero() && w_max > tile.w[0] && along(0) && along(1)
+}
+
 /// The twin of `classify` in `node.glsl`.
 pub fn classify<T: Float>(node: &Node<T>, tile: &Tile<T>, scale: [T; 2], spread: T) -> Kind {
     let [mean, w_min, w_max] = node.w;
-    if node.count == T::zero() || w_max <= tile.w[0] {
+    if !is_felt(node, tile, scale) {
         return Kind::Outside;
     }
     let h = half::<T>();
     let hi = [0, 1].map(|i| node.lo[i] + node.side);
-    let felt = |i: usize| {
-        let gap = (node.lo[i] - tile.t_max[i]).max(tile.t_min[i] - hi[i]);
-        gap < h * (w_max - tile.w[0]) / scale[i]
-    };
-    if !(felt(0) && felt(1)) {
-        return Kind::Outside;
-    }
     let within = |i: usize| {
         let reach = (hi[i] - tile.t_min[i]).max(tile.t_max[i] - node.lo[i]);
         reach <= h * (w_min - tile.w[1]) / scale[i]
@@ -208,6 +212,42 @@ mod tests {
         let aside = patch_occlusion([0.5, -0.5], [1.5, 0.5], w_o, [0.0; 2], w_r, [texel; 2]);
         assert!((aside - 0.125).abs() < 1e-15);
         assert_eq!(patch_occlusion([-0.5; 2], [0.5; 2], w_r, [0.0; 2], w_o, [texel; 2]), 0.0);
+    }
+
+    /// A node that a tile does not feel hides nothing from any of its receivers, in floats as they are.
+    #[test]
+    fn what_is_not_felt_hides_nothing() {
+        let mut seed = 1_u32;
+        let mut random = move |low: f32, high: f32| {
+            seed = seed.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+            low + (high - low) * (seed >> 8) as f32 / 16_777_216.0
+        };
+        let (mut apart, mut felt) = (0, 0);
+        for _ in 0..20_000 {
+            let corner = [random(0.0, 248.0).floor(), random(0.0, 248.0).floor()];
+            let w = [0.0, random(0.3, 1.0), random(1.0, 2.0)];
+            let node = Node { count: 3.0, w, lo: corner, side: 8.0 };
+            let t_min = corner.map(|c| c + random(-40.0, 40.0));
+            let t_max = [0, 1].map(|i| t_min[i] + random(0.0, 9.0));
+            let w_near = random(0.1, 2.1);
+            let tile = Tile { t_min, t_max, w: [w_near, w_near + random(0.0, 0.2)] };
+            let scale = [random(0.002, 0.05), random(0.002, 0.05)];
+            if is_felt(&node, &tile, scale) {
+                felt += 1;
+                continue;
+            }
+            apart += 1;
+            for _ in 0..8 {
+                let within = |i: usize, share: f32| t_min[i] + (t_max[i] - t_min[i]) * share;
+                let t = [within(0, random(0.0, 1.0)), within(1, random(0.0, 1.0))];
+                let lo = [0, 1].map(|i| node.lo[i] + random(0.0, 8.0).floor());
+                let hi = lo.map(|x| x + 1.0);
+                let (w_o, w_r) = (random(w[1], w[2]), random(tile.w[0], tile.w[1]));
+                let hidden = patch_occlusion(lo, hi, w_o, t, w_r, scale);
+                assert_eq!(hidden, 0.0, "{node:?} {tile:?} {t:?} {w_r} {lo:?} {w_o}");
+            }
+        }
+        assert!(apart > 2000 && felt > 1000, "{apart} apart, {felt} felt");
     }
 
     #[test]

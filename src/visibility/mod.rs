@@ -4,6 +4,7 @@
 //! receives. Techniques that work at the pixels write it themselves; those that work in the light's
 //! space are resolved onto the pixels here.
 
+pub(crate) mod tiles;
 pub mod twin;
 
 use crate::depth_layers::MapView;

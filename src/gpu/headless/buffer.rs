@@ -56,6 +56,32 @@ impl HostBuffer {
         Ok(new)
     }
 
+    /// A copy of all that a buffer holds which was made to be copied from and is not in use.
+    pub(super) fn copy_of(
+        device: &HeadlessDevice,
+        name: &str,
+        source: vk::Buffer,
+        bytes: u64,
+    ) -> Result<Self, Error> {
+        let staging = Self::new(device, name, bytes, vk::BufferUsageFlags::TRANSFER_DST)?;
+        device.submit_and_wait(|cmd| {
+            let region = vk::BufferCopy::default().size(bytes);
+            let barrier = vk::MemoryBarrier::default()
+                .src_access_mask(vk::AccessFlags::MEMORY_WRITE)
+                .dst_access_mask(vk::AccessFlags::TRANSFER_READ);
+            let (all, copy) =
+                (vk::PipelineStageFlags::ALL_COMMANDS, vk::PipelineStageFlags::TRANSFER);
+            let none = vk::DependencyFlags::empty();
+            let raw = device.device();
+            // SAFETY: recording; the barrier names stages that every queue has.
+            unsafe { raw.cmd_pipeline_barrier(cmd, all, copy, none, &[barrier], &[], &[]) };
+            // SAFETY: recording; both buffers hold that many bytes.
+            unsafe { raw.cmd_copy_buffer(cmd, source, staging.buffer, &[region]) };
+            Ok(())
+        })?;
+        Ok(staging)
+    }
+
     /// A buffer that holds `data`.
     ///
     /// # Errors

@@ -1,8 +1,12 @@
 //! A scene, a G-buffer and a node on one device: what tests, benches and the render example run.
 
 use super::gbuffer::MASK;
-use super::{GBuffer, GBufferPainter, HeadlessDevice, ImageSource, SceneBuffers, View, read_image};
-use crate::graph::Scope;
+use super::{
+    GBuffer, GBufferPainter, HeadlessDevice, HostBuffer, ImageSource, SceneBuffers, View,
+    read_image,
+};
+use crate::gpu::objects::Object;
+use crate::graph::{Scope, Shape};
 use crate::planner::{Auto, Choice};
 use crate::scene::{AreaLight, Instance, Scene};
 use crate::{
@@ -288,6 +292,25 @@ impl Stage {
             layer: 0,
         };
         Ok((read_image(&self.device, &source, image.layout)?, image.extent))
+    }
+
+    /// The same of one of its buffers.
+    ///
+    /// # Errors
+    /// [`Error::Frame`] where the plan has no buffer of that name; otherwise as [`HostBuffer::new`].
+    pub fn inspect_buffer<T: bytemuck::AnyBitPattern>(
+        &mut self,
+        plan: &FramePlan,
+        name: &str,
+    ) -> Result<Vec<T>, Error> {
+        let mut resources = plan.plan.graph.resources().iter();
+        let found = resources.find(|r| r.name == name).map(|r| r.shape);
+        match (found, self.node()?.object(plan, name)) {
+            (Some(Shape::Buffer { bytes }), Object::Buffer(buffer)) => {
+                Ok(HostBuffer::copy_of(&self.device, name, buffer, bytes)?.read())
+            }
+            _ => Err(Error::Frame(format!("the plan has no buffer {name}"))),
+        }
     }
 
     fn drop_node(&mut self) {

@@ -1,0 +1,58 @@
+// Whether receivers feel any occluder. The including shader declares the buffer `nodes`.
+
+#ifndef SOFT_SHADOW_MAP_FELT_GLSL
+#define SOFT_SHADOW_MAP_FELT_GLSL
+
+#include "soft_shadow_map/node.glsl"
+#include "visibility/tile.glsl"
+
+// The first superblock and, behind it, the last that any occluder could be felt from.
+ivec4 superblocks_around(Tile tile, int row, float w_max, vec2 scale)
+{
+    vec2 widest = 0.5 * (w_max - tile.w.x) / scale;
+    float end = float(row - 1);
+    return ivec4(clamp(floor((tile.t_min - widest) / float(SUPERBLOCK)), 0.0, end),
+                 clamp(floor((tile.t_max + widest) / float(SUPERBLOCK)), 0.0, end));
+}
+
+// Nodes that are looked at before a tile is taken to feel something: a walk that takes longer is not worth its
+// while, and Mesa's CPU driver would cut it off.
+const int MOST_NODES = 4096;
+
+// The same walk as the gather's, but by all of a tile's receivers at once: false only where the gather of each
+// of them adds nothing.
+bool is_felt_by(Tile tile, int row, int sides, float w_max, vec2 scale)
+{
+    ivec4 around = superblocks_around(tile, row, w_max, scale);
+    int left = MOST_NODES - sides * (around.z - around.x + 1) * (around.w - around.y + 1);
+    if (left < 0) {
+        return true;
+    }
+    for (int side = 0; side < sides; ++side) {
+        for (int y = around.y; y <= around.w; ++y) {
+            for (int x = around.x; x <= around.z; ++x) {
+                int index = ((side * row + y) * row + x) * FAMILY;
+                ivec2 first = ivec2(x, y) * FAN;
+                Node whole = unpack_node(nodes[2 * index], nodes[2 * index + 1]);
+                bool felt = is_felt(whole, vec2(first * BLOCK), float(SUPERBLOCK), tile.t_min, tile.t_max,
+                                    tile.w.x, scale);
+                uint children = felt ? whole.mask.x : 0u;
+                while (children != 0u) {
+                    int child = findLSB(int(children));
+                    children &= children - 1u;
+                    left -= 1;
+                    int at = index + 1 + child;
+                    Node block = unpack_node(nodes[2 * at], uvec4(0u));
+                    vec2 lo = vec2((first + ivec2(child % FAN, child / FAN)) * BLOCK);
+                    if (left < 0 || is_felt(block, lo, float(BLOCK), tile.t_min, tile.t_max, tile.w.x,
+                                            scale)) {
+                        return true;
+                    }
+                }
+            }
+        }
+    }
+    return false;
+}
+
+#endif

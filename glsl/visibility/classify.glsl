@@ -1,0 +1,54 @@
+// Sorts tiles of pixels: those that are lit are done here, the others are listed. One invocation a tile.
+//
+// The including shader declares `gbuffer_depth`, `gbuffer_mask`, `visibility`, `push` with `extent`, and
+//     GBuffer gbuffer();
+//     vec2 place_of(vec3 position, float w);
+//     float nearest_w();           no occluder is nearer than 1/nearest_w
+//     bool is_felt_in(Tile tile);  whether any occluder may be felt by any of its receivers
+
+#ifndef VISIBILITY_CLASSIFY_GLSL
+#define VISIBILITY_CLASSIFY_GLSL
+
+#include "visibility/tile.glsl"
+
+void classify_tile(ivec2 tile)
+{
+    ivec2 first = tile * TILE;
+    if (any(greaterThanEqual(first, push.extent))) {
+        return;
+    }
+    GBuffer g = gbuffer();
+    Tile bounds = empty_tile();
+    bool blocks = false; // whether some of its pixels may hide light from themselves
+    for (int i = 0; i < TILE * TILE; ++i) {
+        Receiver r = receiver_without_normal(g, first + ivec2(i % TILE, i / TILE));
+        // Behind the light's plane there is nothing to hide.
+        if (r.receives && r.position.z > 0.0) {
+            blocks = blocks || r.blocks;
+            float w = 1.0 / r.position.z;
+            // Nothing lies before what is nearer the light than every occluder.
+            if (w < nearest_w()) {
+                bounds = with_receiver(bounds, place_of(r.position, w), w);
+            }
+        }
+    }
+    bool felt = !is_empty_tile(bounds) && is_felt_in(rounded_tile(bounds));
+    if (felt || blocks) {
+        uint at = atomicAdd(count, 1u);
+        tiles[at] = tile_word(tile, felt);
+        if (at % TILES_A_GROUP == 0u) {
+            uvec2 reach = groups_with(at);
+            atomicMax(groups[0], reach.x);
+            atomicMax(groups[1], reach.y);
+        }
+        return;
+    }
+    for (int i = 0; i < TILE * TILE; ++i) {
+        ivec2 p = first + ivec2(i % TILE, i / TILE);
+        if (all(lessThan(p, push.extent))) {
+            imageStore(visibility, p, vec4(1.0));
+        }
+    }
+}
+
+#endif

@@ -1,0 +1,43 @@
+// Tiles of pixels, and the list of those that are not done yet.
+
+#ifndef VISIBILITY_TILE_LIST_GLSL
+#define VISIBILITY_TILE_LIST_GLSL
+
+// Pixels a side.
+const int TILE = 8;
+// Listed tiles a workgroup of 64 invocations, each four pixels.
+const uint TILES_A_GROUP = uint(256 / (TILE * TILE));
+// Workgroups a row of an indirect dispatch: less than what every device takes (65,535).
+const uint GROUPS_A_ROW = 16384u;
+
+// A listed tile is one word: x, y, and whether any occluder may be felt there. Where none is, what its pixels'
+// own surfaces hide is all there is to tell.
+uint tile_word(ivec2 tile, bool felt)
+{
+    return uint(tile.x) | uint(tile.y) << 15u | (felt ? 1u << 30u : 0u);
+}
+
+bool is_felt_tile(uint word)
+{
+    return (word & 1u << 30u) != 0u;
+}
+
+ivec2 first_pixel(uint word)
+{
+    return ivec2(word & 0x7fffu, word >> 15u & 0x7fffu) * TILE;
+}
+
+// The place in the list of the tiles that a workgroup works at.
+uint tile_in_list(uvec2 group, uint nth)
+{
+    return (group.y * GROUPS_A_ROW + group.x) * TILES_A_GROUP + nth;
+}
+
+// Workgroups in x and y that reach as far as the tile at a place in the list.
+uvec2 groups_with(uint at)
+{
+    uint group = at / TILES_A_GROUP;
+    return uvec2(min(group + 1u, GROUPS_A_ROW), group / GROUPS_A_ROW + 1u);
+}
+
+#endif

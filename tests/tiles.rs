@@ -1,0 +1,202 @@
+//! Tiles of pixels that are told at once: the image is what it is without, to the bit.
+
+// A test says what went wrong by panicking.
+#![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
+
+use antumbra::gpu::headless::{HeadlessDevice, View};
+use antumbra::scene::{Camera, Role, Scene, generate};
+use antumbra::visibility::twin::{Bounds, listed_tile, rounded_tile};
+use antumbra_tests::compare::Tolerance;
+use antumbra_tests::measure::{Setup, model};
+use antumbra_tests::{Function, device};
+use num_traits::Float;
+use proptest::prelude::Strategy;
+
+/// What a frame with tiles has listed: a word a tile.
+struct Listed {
+    image: Vec<f32>,
+    tiles: Vec<u32>,
+}
+
+fn listed(device: &HeadlessDevice, setup: &Setup, words: &str) -> Listed {
+    let mut stage = setup.stage(device, words);
+    let plan = stage.plan(&setup.light(), setup.window).unwrap();
+    stage.run(&plan).unwrap();
+    let list: Vec<u32> = stage.inspect_buffer(&plan, "visibility.tile_list").unwrap();
+    let groups: Vec<u32> = stage.inspect_buffer(&plan, "visibility.tile_arguments").unwrap();
+    let tiles = list[1..][..list[0] as usize].to_vec();
+    // As many workgroups as the list takes, four tiles each.
+    assert_eq!(groups[0] * groups[1], list[0].div_ceil(4), "{words}");
+    Listed { image: stage.visibility().unwrap(), tiles }
+}
+
+/// A view by the scene's own camera, of a size that is no multiple of a tile's.
+fn framed(scene: &Scene) -> Setup<'_> {
+    let extent = [157, 99];
+    let view = View::perspective(&Camera::framing(scene, 157.0 / 99.0), extent);
+    Setup { scene, view, extent, window: None, occluders_seen: true }
+}
+
+/// What a technique with tiles makes of every scene and light, with and without.
+fn same_with_and_without(all_words: &[&str]) {
+    let device = device();
+    for side in [0.05, 0.5, 2.0] {
+        let light = || generate::square_light(side).unwrap();
+        let tilted = generate::rectangle_light(side, 0.5 * side, 0.4).unwrap();
+        let bunny = generate::normalized(&model("bunny"), light()).unwrap();
+        let mut blocks = bunny.clone();
+        blocks.instances.iter_mut().for_each(|i| i.role = Role::Both);
+        let scenes = [
+            ("card", generate::card(tilted)),
+            ("box", generate::tall_box(light())),
+            ("foliage", generate::foliage(light(), 100, 3).with_occluders_as(Role::Both)),
+            ("bunny", bunny.with_occluders_as(Role::Both)),
+            ("all block", blocks),
+        ];
+        for (name, scene) in &scenes {
+            let mut setups =
+                vec![("framed", framed(scene)), ("ground", Setup::ground(scene, 4.0, 120))];
+            // A part of the occluders alone.
+            let window = Some([[-0.1, -0.2], [0.3, 0.1]]);
+            setups.push(("window", Setup { window, ..framed(scene) }));
+            for (seen, setup) in &setups {
+                for words in all_words {
+                    let with = listed(&device, setup, words);
+                    let without = format!("{words} classify=off");
+                    let mut stage = setup.stage(&device, &without);
+                    let plan = stage.plan(&setup.light(), setup.window).unwrap();
+                    stage.run(&plan).unwrap();
+                    let without = stage.visibility().unwrap();
+                    let [width, height] = setup.extent;
+                    let all = (width.div_ceil(8) * height.div_ceil(8)) as usize;
+                    let what = format!("{name} {seen}, L = {side}, {words}");
+                    let pairs = with.image.iter().zip(&without);
+                    let differ = pairs.filter(|(a, b)| a.to_bits() != b.to_bits()).count();
+                    assert_eq!(differ, 0, "{what}: tiles change the image");
+                    // Each tile is listed once or not at all; what is not listed is lit.
+                    let mut there = vec![false; all];
+                    let mut plain = 0;
+                    for word in &with.tiles {
+                        let ([x, y], felt) = listed_tile(*word);
+                        let at = (y / 8 * width.div_ceil(8) + x / 8) as usize;
+                        assert!(!there[at], "{what}: tile {x}, {y} is listed twice");
+                        there[at] = true;
+                        plain += usize::from(!felt);
+                    }
+                    for (i, v) in without.iter().enumerate() {
+                        let (x, y) = (i as u32 % width, i as u32 / width);
+                        if !there[(y / 8 * width.div_ceil(8) + x / 8) as usize] {
+                            assert_eq!(*v, 1.0, "{what}: {x}, {y} was taken to be lit");
+                        }
+                    }
+                    let listed = with.tiles.len();
+                    println!("{what}: {listed} of {all} tiles listed, {plain} without occluders");
+                    assert!(listed > 0 || *seen == "window", "{what}: nothing is shadowed");
+                    if side < 1.0 {
+                        assert!(listed - plain < all, "{what}: no tile was spared");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn soft_shadow_maps_are_the_same_with_tiles() {
+    same_with_and_without(&[
+        "map=96 sides=mean",
+        "map=65 sides=one",
+        "map=64 sides=two tolerance=0.01",
+    ]);
+}
+
+/// What no occluder can be felt from takes no workgroup.
+#[test]
+fn a_view_of_lit_ground_lists_nothing() {
+    let device = device();
+    let scene = generate::card(generate::square_light(0.4).unwrap());
+    let mut setup = Setup::ground(&scene, 1.0, 64);
+    let aside = glam::DMat4::from_translation(glam::DVec3::new(-6.0, 0.0, 0.0));
+    setup.view = View { clip_from_world: setup.view.clip_from_world * aside };
+    for words in ["map=64"] {
+        let listed = listed(&device, &setup, words);
+        assert!(listed.tiles.is_empty(), "{words}");
+        assert!(listed.image.iter().all(|v| *v == 1.0), "{words}");
+    }
+}
+
+#[test]
+fn bounds_are_rounded_outwards() {
+    fn twin<T: Float>(x: &[T]) -> Vec<T> {
+        let b = rounded_tile(&Bounds { t_min: [x[0], x[1]], t_max: [x[2], x[3]], w: [x[4], x[5]] });
+        vec![b.t_min[0], b.t_min[1], b.t_max[0], b.t_max[1], b.w[0], b.w[1]]
+    }
+    let glue = "void rounded(vec2 t_min, vec2 t_max, vec2 w, out vec2 a, out vec2 b, out vec2 c) { \
+                Tile t = rounded_tile(Tile(t_min, t_max, w)); a = t.t_min; b = t.t_max; c = t.w; }";
+    let prototype =
+        "void rounded(vec2 t_min, vec2 t_max, vec2 w, out vec2 a, out vec2 b, out vec2 c)";
+    let at = || (-500.0..900.0_f32, -500.0..900.0_f32);
+    let cases = (at(), at(), (0.0..4.0_f32, 0.0..4.0_f32));
+    let test = Function::new("visibility/tile.glsl", prototype).glue(glue).random(5_000, cases);
+    let device = device();
+    for case in test.outputs(&device) {
+        let (i, o) = (&case.input, &case.output);
+        // A part in a thousand of a texel is more than what t is rounded to here.
+        assert!(o[0] < i[0] && o[1] < i[1] && o[2] > i[2] && o[3] > i[3], "{i:?}: {o:?}");
+        assert!(o[4] <= i[4] && o[5] >= i[5], "{i:?}: {o:?}");
+    }
+    // One sum of numbers up to 900 may round otherwise where it is contracted.
+    test.f32(Tolerance::absolute(1.3e-4), twin::<f32>)
+        .f64(Tolerance::absolute(1.3e-4), twin::<f64>)
+        .check(&device);
+}
+
+#[test]
+fn receivers_widen_bounds() {
+    let glue = "void widened(vec3 a, vec3 b, out vec2 t_min, out vec2 t_max, out vec2 w) { \
+                Tile t = with_receiver(with_receiver(empty_tile(), a.xy, a.z), b.xy, b.z); \
+                t_min = t.t_min; t_max = t.t_max; w = is_empty_tile(empty_tile()) && !is_empty_tile(t) \
+                ? t.w : vec2(0.0); }";
+    let prototype = "void widened(vec3 a, vec3 b, out vec2 t_min, out vec2 t_max, out vec2 w)";
+    let receiver = || (-300.0..600.0_f32, -300.0..600.0_f32, 0.01..5.0_f32);
+    Function::new("visibility/tile.glsl", prototype)
+        .glue(glue)
+        .random(2_000, (receiver(), receiver()))
+        .f32(Tolerance::exact(), |x| {
+            let (low, high) = (|i: usize| x[i].min(x[i + 3]), |i: usize| x[i].max(x[i + 3]));
+            vec![low(0), low(1), high(0), high(1), low(2), high(2)]
+        })
+        .check(&device());
+}
+
+/// A word says where a tile is, and as many workgroups as are dispatched reach every place in the list.
+#[test]
+fn the_list_holds_every_tile_of_the_largest_image() {
+    let device = device();
+    let glue = "uint word(int x, int y, bool felt) { return tile_word(ivec2(x, y), felt); }";
+    Function::new("visibility/tile_list.glsl", "uint word(int x, int y, bool felt)")
+        .glue(glue)
+        .case((4095, 4095, true))
+        .random(2_000, (0..4096_i32, 0..4096_i32, proptest::bool::ANY))
+        .bits(|x| vec![x[0] | x[1] << 15 | x[2] << 30])
+        .check(&device);
+    assert_eq!(listed_tile(3 | 5 << 15 | 1 << 30), ([24, 40], true));
+    assert_eq!(listed_tile(3 | 5 << 15), ([24, 40], false));
+    // The place of each of a group's tiles, and that the group is dispatched.
+    let glue = "uvec3 reached(uint at) { uvec2 n = groups_with(at); uint group = at / TILES_A_GROUP; \
+                uvec2 id = uvec2(group % GROUPS_A_ROW, group / GROUPS_A_ROW); \
+                return uvec3(tile_in_list(id, at % TILES_A_GROUP), n); }";
+    let largest = 4096 * 4096_u32;
+    Function::new("visibility/tile_list.glsl", "uvec3 reached(uint at)")
+        .glue(glue)
+        .case(0_u32)
+        .case(largest - 1)
+        .random(2_000, (0..largest).prop_map(|at| at))
+        .bits(|x| {
+            let group = x[0] / 4;
+            vec![x[0], (group + 1).min(16384), group / 16384 + 1]
+        })
+        .check(&device);
+    // Both stay under what every device dispatches.
+    assert!(largest / 4 / 16384 < 65535);
+}
