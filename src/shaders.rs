@@ -46,6 +46,12 @@ pub const TAKE: Module = module!("depth_layers/take.comp");
 pub const HARD: Module = module!("baseline/hard.comp");
 /// Percentage-closer soft shadows.
 pub const PCSS: Module = module!("baseline/pcss.comp");
+/// The same at the pixels of listed tiles.
+pub const PCSS_TILES: Module = module!("baseline/pcss_tiles.comp");
+/// Which tiles of pixels find no blocker.
+pub const PCSS_SORT: Module = module!("baseline/tiles.comp");
+/// The largest w of squares of texels.
+pub const NEAREST: Module = module!("baseline/nearest.comp");
 /// The least and largest w of 2×2 texels.
 pub const FINEST_LEVEL: Module = module!("baseline/finest_level.comp");
 /// A level of those from the one before.
@@ -195,6 +201,9 @@ pub const ALL: &[Module] = &[
     TAKE,
     HARD,
     PCSS,
+    PCSS_TILES,
+    PCSS_SORT,
+    NEAREST,
     FINEST_LEVEL,
     NEXT_LEVEL,
     BACK_PROJECTION,

@@ -26,6 +26,7 @@ fn descriptions() -> Vec<(String, Description)> {
         "receivers=map accumulate=blend-fp16 sides=one",
         "technique=hard",
         "technique=pcss taps=8",
+        "technique=pcss map=1000 classify=off",
         "technique=back-projection map=100",
         "technique=many-lights samples=3 map=65",
         "technique=ray-march",

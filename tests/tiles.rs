@@ -25,8 +25,9 @@ fn listed(device: &HeadlessDevice, setup: &Setup, words: &str) -> Listed {
     let list: Vec<u32> = stage.inspect_buffer(&plan, "visibility.tile_list").unwrap();
     let groups: Vec<u32> = stage.inspect_buffer(&plan, "visibility.tile_arguments").unwrap();
     let tiles = list[1..][..list[0] as usize].to_vec();
-    // As many workgroups as the list takes, four tiles each.
-    assert_eq!(groups[0] * groups[1], list[0].div_ceil(4), "{words}");
+    // As many workgroups as the list takes.
+    let a_group = if words.contains("pcss") { 1 } else { 4 };
+    assert_eq!(groups[0] * groups[1], list[0].div_ceil(a_group), "{words}");
     Listed { image: stage.visibility().unwrap(), tiles }
 }
 
@@ -110,6 +111,11 @@ fn soft_shadow_maps_are_the_same_with_tiles() {
     ]);
 }
 
+#[test]
+fn percentage_closer_soft_shadows_are_the_same_with_tiles() {
+    same_with_and_without(&["technique=pcss map=96", "technique=pcss map=300 taps=64"]);
+}
+
 /// What no occluder can be felt from takes no workgroup.
 #[test]
 fn a_view_of_lit_ground_lists_nothing() {
@@ -118,7 +124,7 @@ fn a_view_of_lit_ground_lists_nothing() {
     let mut setup = Setup::ground(&scene, 1.0, 64);
     let aside = glam::DMat4::from_translation(glam::DVec3::new(-6.0, 0.0, 0.0));
     setup.view = View { clip_from_world: setup.view.clip_from_world * aside };
-    for words in ["map=64"] {
+    for words in ["map=64", "technique=pcss map=64"] {
         let listed = listed(&device, &setup, words);
         assert!(listed.tiles.is_empty(), "{words}");
         assert!(listed.image.iter().all(|v| *v == 1.0), "{words}");

@@ -16,7 +16,7 @@ use glam::{DMat4, DVec3};
 use technique::table::{Table, median};
 use technique::{Options, Ready, Study, in_turns, make_tables, scene, settings};
 
-const STUDIES: [Study; 1] = [("soft_shadow_map", soft_shadow_map)];
+const STUDIES: [Study; 2] = [("soft_shadow_map", soft_shadow_map), ("pcss", pcss)];
 
 const EXTENT: [u32; 2] = [640, 480];
 
@@ -95,7 +95,7 @@ fn compared(
                 let lit = on.iter().filter(|v| **v == 1.0).count() as f64 / on.len() as f64;
                 let times = in_turns(&mut pair, options.rounds);
                 let without = ms(&times[0], &[pass]);
-                let tiles = ms(&times[1], &["tiles_start", "tiles", "occluder_tiles"]);
+                let tiles = ms(&times[1], &["tiles_start", "tiles", "baseline.nearest"]);
                 let listed = ms(&times[1], &[pass]);
                 table.row(vec![
                     (*scene_name).into(),
@@ -116,4 +116,8 @@ fn compared(
 fn soft_shadow_map(device: &HeadlessDevice, options: &Options) -> Table {
     let name = "soft_shadow_map";
     compared(name, Technique::SoftShadowMap, "", "gather_pixels", device, options)
+}
+
+fn pcss(device: &HeadlessDevice, options: &Options) -> Table {
+    compared("pcss", Technique::Pcss, "", "baseline.pcss", device, options)
 }

@@ -5,8 +5,10 @@
 
 // Pixels a side.
 const int TILE = 8;
-// Listed tiles a workgroup of 64 invocations, each four pixels.
-const uint TILES_A_GROUP = uint(256 / (TILE * TILE));
+// Listed tiles a workgroup of 64 invocations: of four pixels each, unless the including shader says one.
+#ifndef TILES_A_GROUP
+#define TILES_A_GROUP uint(256 / (TILE * TILE))
+#endif
 // Workgroups a row of an indirect dispatch: less than what every device takes (65,535).
 const uint GROUPS_A_ROW = 16384u;
 

@@ -53,19 +53,10 @@ pub struct Inputs<'a> {
     pub need: &'a Need,
 }
 
-/// Adds the row that turns the map from the light's centre into visibility, as `pixels.glsl` has it;
-/// `count` and the uses beyond the common ones are the technique's own.
-fn one_map(
-    graph: &mut Graph,
-    name: &'static str,
-    shader: Module,
-    (front, visibility): (ResourceId, ResourceId),
-    count: u32,
-    more: &[Use],
-    inputs: &Inputs,
-) {
+/// What `push.glsl` says; `count` is the technique's own.
+fn pixel_push(count: u32, inputs: &Inputs) -> Push {
     let Inputs { occluders, gbuffer, .. } = inputs;
-    let push = push::Pixels {
+    Push::new(&push::Pixels {
         light_from_ndc: gbuffer.light_from_ndc,
         texels_per_uv: occluders.texels_per_uv().map(|x| x as f32),
         first: occluders.first().map(|x| x as f32),
@@ -78,14 +69,32 @@ fn one_map(
         map: occluders.side as i32,
         masked: i32::from(gbuffer.mask.is_some()),
         count: count as i32,
-    };
-    let mut uses = vec![
+    })
+}
+
+/// What the passes over the pixels read: `pixels.glsl`, but for the image that they write.
+fn pixel_uses(front: ResourceId, gbuffer: &GBuffer) -> Vec<Use> {
+    vec![
         Use::bound(0, gbuffer.depth, Access::SampledCompute),
         Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
         Use::bound(2, front, Access::SampledCompute),
-        Use::bound(3, visibility, Access::ImageWrite),
-    ];
+    ]
+}
+
+/// Adds the row that turns the map from the light's centre into visibility, as `pixels.glsl` has it;
+/// `count` and the uses beyond the common ones are the technique's own.
+fn one_map(
+    graph: &mut Graph,
+    name: &'static str,
+    shader: Module,
+    (front, visibility): (ResourceId, ResourceId),
+    count: u32,
+    more: &[Use],
+    inputs: &Inputs,
+) {
+    let mut uses = pixel_uses(front, inputs.gbuffer);
+    uses.push(Use::bound(3, visibility, Access::ImageWrite));
     uses.extend(more);
-    let push = Push::new(&push);
-    graph.push(Pass::compute(name, shader, grid(gbuffer.extent), push, uses, inputs.need));
+    let (groups, push) = (grid(inputs.gbuffer.extent), pixel_push(count, inputs));
+    graph.push(Pass::compute(name, shader, groups, push, uses, inputs.need));
 }

@@ -21,22 +21,75 @@
 //! the receiver-plane bias of this room. What the pixel's own surface hides of the light is a closed form,
 //! and the taps that stand for the rest of the light say how much of that is hidden.
 //!
+//! **Tiles.** Where nothing in the part of the map that a tile's pixels search lies before any of them, there is
+//! no blocker to be found, and no tap is taken; see `visibility/tiles.rs`. The largest w of squares of the map's
+//! texels tells that.
+//!
 //! **Limits.** One distance stands for all blockers, so shadows of things behind each other are wrong
 //! where they overlap; blockers beside the light's view of the pixel count in the mean. The error does
 //! not vanish with more taps. Pixels are turned apart, so that few taps show as grain.
 
-use super::{Inputs, one_map};
-use crate::graph::{Graph, ResourceId};
+use super::push::FinestLevel;
+use super::{Inputs, Settings, one_map, pixel_push, pixel_uses};
+use crate::graph::{Access, Graph, Pass, Push, ResourceId, Use};
 use crate::shaders;
+use crate::visibility::grid;
+use crate::visibility::tiles::Tiles;
 
-/// Adds the row that turns the map `front` into `visibility`, with `taps` to search and as many to
-/// filter.
+const NAME: &str = "baseline.pcss";
+
+/// Nodes a side of the map, as in `nearest.glsl`.
+fn nodes_a_row(map: u32) -> u32 {
+    map.div_ceil(map.div_ceil(32).max(8))
+}
+
+/// Adds the rows that turn the map `front` into `visibility`, with as many taps to search as to filter.
 pub fn declare(
     graph: &mut Graph,
     front: ResourceId,
     visibility: ResourceId,
-    taps: u32,
+    settings: &Settings,
     inputs: &Inputs,
 ) {
-    one_map(graph, "baseline.pcss", shaders::PCSS, (front, visibility), taps, &[], inputs);
+    let taps = settings.taps;
+    if !settings.classify {
+        one_map(graph, NAME, shaders::PCSS, (front, visibility), taps, &[], inputs);
+        return;
+    }
+    let Inputs { gbuffer, occluders, need, .. } = *inputs;
+    let map = occluders.side;
+    let row = nodes_a_row(map);
+    let nearest = graph.buffer("baseline.nearest", 4 * u64::from(row * row));
+    graph.push(Pass::compute(
+        "baseline.nearest",
+        shaders::NEAREST,
+        grid([row; 2]),
+        Push::new(&FinestLevel { map: map as i32, inv_near: (1.0 / occluders.near) as f32 }),
+        vec![
+            Use::bound(0, front, Access::SampledCompute),
+            Use::bound(1, nearest, Access::BufferWriteCompute),
+        ],
+        need,
+    ));
+    let push = pixel_push(taps, inputs);
+    let tiles = Tiles::start(graph, gbuffer.extent, need);
+    let nearest = Use::bound(2, nearest, Access::BufferReadCompute);
+    tiles.sort(graph, shaders::PCSS_SORT, push, (nearest, visibility), gbuffer, need);
+    let mut uses = pixel_uses(front, gbuffer);
+    uses.push(Use::bound(3, visibility, Access::ImageUpdate));
+    tiles.run(graph, (NAME, shaders::PCSS_TILES), push, uses, 4, need);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_map_has_few_nodes_that_cover_it() {
+        for map in 16..=4096 {
+            let row = nodes_a_row(map);
+            let side = map.div_ceil(32).max(8);
+            assert!(row <= 32 && row * side >= map && (row - 1) * side < map, "{map}");
+        }
+    }
 }

@@ -2,7 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-/// `pixels.glsl`, for every technique with one occluder map.
+/// `push.glsl`, for every technique with one occluder map.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Pixels {
@@ -32,7 +32,7 @@ pub struct Pixels {
     pub count: i32,
 }
 
-/// `finest_level.comp`
+/// `finest_level.comp` and `nearest.comp`
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct FinestLevel {

@@ -9,11 +9,13 @@ pub struct Settings {
     pub samples: u32,
     /// Many lights: which random places the points take; 0 puts them into the middle of their cells.
     pub seed: u32,
+    /// PCSS: whether tiles of pixels before which no occluder lies are told at once; on by default.
+    pub classify: bool,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { taps: 16, samples: 256, seed: 1 }
+        Self { taps: 16, samples: 256, seed: 1, classify: true }
     }
 }
 

@@ -333,8 +333,8 @@ pub(super) fn build(
         }
         Technique::Pcss => {
             let front = *nearest.insert(layers(&mut graph).front);
-            let taps = settings.baseline.taps;
-            baseline::pcss::declare(&mut graph, front, visibility, taps, &baseline);
+            let settings = &settings.baseline;
+            baseline::pcss::declare(&mut graph, front, visibility, settings, &baseline);
         }
         Technique::BackProjection => {
             let front = *nearest.insert(layers(&mut graph).front);

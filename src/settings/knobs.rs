@@ -227,12 +227,12 @@ pub const KNOBS: &[Knob] = &[
     },
     Knob {
         key: "classify",
-        techniques: &[Technique::SoftShadowMap],
+        techniques: &[Technique::SoftShadowMap, Technique::Pcss],
         unit: "switch",
         range: "on, off",
         default: "on",
-        about: "whether tiles of pixels before which no occluder lies are told at once, with \
-                receivers=pixels; the image is the same, and off is for measuring what that saves",
+        about: "whether tiles of pixels before which no occluder lies are told at once, where pixels are \
+                what is computed; the image is the same, and off is for measuring what that saves",
     },
     Knob {
         key: "filter",

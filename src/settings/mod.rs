@@ -149,6 +149,9 @@ impl Settings {
             "classify" if technique == Technique::RayMarch => {
                 r.classify = choose(key, value, RayMarch::SWITCH)?;
             }
+            "classify" if technique == Technique::Pcss => {
+                self.baseline.classify = choose(key, value, RayMarch::SWITCH)?;
+            }
             "classify" => s.classify = choose(key, value, RayMarch::SWITCH)?,
             "filter" => r.filter = choose(key, value, RayMarch::SWITCH)?,
             "slices" => o.slices = number(key, value)?,
@@ -199,6 +202,9 @@ impl Settings {
             "projection" => name_of(Projection::ALL, r.projection),
             "classify" if self.technique == Technique::RayMarch => {
                 name_of(RayMarch::SWITCH, r.classify)
+            }
+            "classify" if self.technique == Technique::Pcss => {
+                name_of(RayMarch::SWITCH, self.baseline.classify)
             }
             "classify" => name_of(RayMarch::SWITCH, s.classify),
             "filter" => name_of(RayMarch::SWITCH, r.filter),
