@@ -3,8 +3,10 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
+use antumbra::baseline::twin::nodes_around;
 use antumbra::gpu::headless::{HeadlessDevice, View};
 use antumbra::scene::{Camera, Role, Scene, generate};
+use antumbra::soft_shadow_map::twin::{Node, Tile, is_felt, superblocks_around};
 use antumbra::visibility::twin::{Bounds, listed_tile, rounded_tile};
 use antumbra_tests::compare::Tolerance;
 use antumbra_tests::measure::{Setup, model};
@@ -171,6 +173,63 @@ fn receivers_widen_bounds() {
         .f32(Tolerance::exact(), |x| {
             let (low, high) = (|i: usize| x[i].min(x[i + 3]), |i: usize| x[i].max(x[i + 3]));
             vec![low(0), low(1), high(0), high(1), low(2), high(2)]
+        })
+        .check(&device());
+}
+
+/// Nodes, tiles and the light as scenes have them, powers of two where a division must not be rounded.
+fn nodes_and_tiles() -> impl Strategy<Value = ((f32, f32, f32), [f32; 4], (f32, f32), (f32, f32))> {
+    let node = (0..32_u32, 0..32_u32, 0.1..1.5_f32)
+        .prop_map(|(x, y, w_max)| (x as f32 * 8.0, y as f32 * 8.0, w_max));
+    let tile = (-60.0..320.0_f32, -60.0..320.0_f32, 0.0..9.0_f32, 0.0..9.0_f32)
+        .prop_map(|(x, y, width, height)| [x, y, x + width, y + height]);
+    let scale = (0..6_i32, 0..6_i32).prop_map(|(x, y)| (2f32.powi(-x - 6), 2f32.powi(-y - 6)));
+    (node, tile, (0.05..1.0_f32, 0.05..0.5_f32), scale)
+}
+
+#[test]
+fn nodes_that_are_felt() {
+    let glue = "bool felt(vec3 node, vec4 t, vec2 w, vec2 scale) { \
+                return is_felt(Node(1.0, 0.0, 0.0, node.z, 0.0, 0.0, uvec2(0u)), node.xy, 8.0, t.xy, t.zw, \
+                w.x, scale); }";
+    let prototype = "bool felt(vec3 node, vec4 t, vec2 w, vec2 scale)";
+    fn tile(x: &[f32]) -> Tile<f32> {
+        Tile { t_min: [x[3], x[4]], t_max: [x[5], x[6]], w: [x[7], x[7] + x[8]] }
+    }
+    let test = Function::new("soft_shadow_map/node.glsl", prototype)
+        .glue(glue)
+        .random(20_000, nodes_and_tiles());
+    let device = device();
+    let felt = test.outputs(&device).iter().filter(|c| c.output[0] == 1.0).count();
+    assert!((2_000..18_000).contains(&felt), "{felt}");
+    test.f32(Tolerance::exact(), |x| {
+        let node = Node { count: 1.0, w: [0.0, 0.0, x[2]], lo: [x[0], x[1]], side: 8.0 };
+        vec![f32::from(is_felt(&node, &tile(x), [x[9], x[10]]))]
+    })
+    .check(&device);
+
+    let glue = "ivec4 around(vec3 node, vec4 t, vec2 w, vec2 scale) { \
+                return superblocks_around(t.xy, t.zw, w.x, 8, node.z, scale); }";
+    Function::new(
+        "soft_shadow_map/node.glsl",
+        "ivec4 around(vec3 node, vec4 t, vec2 w, vec2 scale)",
+    )
+    .glue(glue)
+    .random(20_000, nodes_and_tiles())
+    .f32(Tolerance::exact(), |x| superblocks_around(&tile(x), 8.0, x[2], [x[9], x[10]]).concat())
+    .check(&device);
+}
+
+#[test]
+fn nodes_of_a_searched_part_of_the_map() {
+    let part = (-500.0..1500.0_f32, -500.0..1500.0_f32, 0.0..400.0_f32, 0.0..400.0_f32)
+        .prop_map(|(x, y, width, height)| ([x, y], [x + width, y + height]));
+    Function::new("baseline/nearest.glsl", "ivec4 nodes_around(int map, vec2 lo, vec2 hi)")
+        .random(20_000, (16..4097_i32, part))
+        // No case lies within the rounding of a division of the edge of a node.
+        .f32(Tolerance::exact(), |x| {
+            let all = nodes_around(x[0] as u32, [x[1], x[2]], [x[3], x[4]]);
+            all.concat().iter().map(|&i| i as f32).collect()
         })
         .check(&device());
 }

@@ -6,15 +6,6 @@
 #include "soft_shadow_map/node.glsl"
 #include "visibility/tile.glsl"
 
-// The first superblock and, behind it, the last that any occluder could be felt from.
-ivec4 superblocks_around(Tile tile, int row, float w_max, vec2 scale)
-{
-    vec2 widest = 0.5 * (w_max - tile.w.x) / scale;
-    float end = float(row - 1);
-    return ivec4(clamp(floor((tile.t_min - widest) / float(SUPERBLOCK)), 0.0, end),
-                 clamp(floor((tile.t_max + widest) / float(SUPERBLOCK)), 0.0, end));
-}
-
 // Nodes that are looked at before a tile is taken to feel something: a walk that takes longer is not worth its
 // while, and Mesa's CPU driver would cut it off.
 const int MOST_NODES = 4096;
@@ -23,7 +14,7 @@ const int MOST_NODES = 4096;
 // of them adds nothing.
 bool is_felt_by(Tile tile, int row, int sides, float w_max, vec2 scale)
 {
-    ivec4 around = superblocks_around(tile, row, w_max, scale);
+    ivec4 around = superblocks_around(tile.t_min, tile.t_max, tile.w.x, row, w_max, scale);
     int left = MOST_NODES - sides * (around.z - around.x + 1) * (around.w - around.y + 1);
     if (left < 0) {
         return true;

@@ -65,6 +65,16 @@ bool is_felt(Node node, vec2 lo, float side, vec2 t_min, vec2 t_max, float w_r, 
     return gap.x < window.x && gap.y < window.y;
 }
 
+// The first superblock and, behind it, the last that receivers with t in [t_min, t_max] and w of w_r or more could
+// feel an occluder in; none is nearer than 1/w_max, and a row has `row` superblocks.
+ivec4 superblocks_around(vec2 t_min, vec2 t_max, float w_r, int row, float w_max, vec2 scale)
+{
+    vec2 widest = 0.5 * (w_max - w_r) / scale;
+    float end = float(row - 1);
+    return ivec4(clamp(floor((t_min - widest) / float(SUPERBLOCK)), 0.0, end),
+                 clamp(floor((t_max + widest) / float(SUPERBLOCK)), 0.0, end));
+}
+
 const int OUTSIDE = 0; // hides nothing of the light from any of the receivers
 const int INSIDE = 1;  // the series serves all of the receivers
 const int MIXED = 2;   // look closer

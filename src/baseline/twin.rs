@@ -81,6 +81,18 @@ pub fn level_of(texels: u32) -> u32 {
     if texels <= 4 { 1 } else { (texels - 1).ilog2() }
 }
 
+/// The nodes of a map of `map` texels a side that hold texels from `lo` to `hi`, as in `nearest.glsl`: columns and
+/// rows, first and last; the first behind the last where there are none.
+pub fn nodes_around(map: u32, lo: [f32; 2], hi: [f32; 2]) -> [[i32; 2]; 2] {
+    let side = map.div_ceil(32).max(8);
+    let end = (map.div_ceil(side) - 1) as f32;
+    let node = |t: f32| (t / side as f32).floor();
+    [
+        lo.map(|t| node(t).max(0.0).min(end + 1.0) as i32),
+        hi.map(|t| node(t).max(-1.0).min(end) as i32),
+    ]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

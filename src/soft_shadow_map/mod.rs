@@ -43,6 +43,10 @@
 //! pixel's own rises above its plane within a texel (0.15 of its diagonal, measured); there is nothing
 //! to tune.
 //!
+//! **Tiles.** What lies before none of a tile's pixels within the light's window is asked once for all of them,
+//! by the same nodes (`visibility/tiles.rs`); the gather runs for the other tiles. The order of the walk is the
+//! gather's own, and what it leaves out adds exactly 0 to each pixel's sum.
+//!
 //! **The mean of both sides.** The paper merges the shadows of the nearest and of the furthest faces by
 //! their maximum (section 3.5). But neighbouring patches at different distances overlap or leave a gap
 //! that grows with their step in w (eq. 3), and on a solid that bulges the steps of its back are those of

@@ -166,6 +166,23 @@ pub fn is_felt<T: Float>(node: &Node<T>, tile: &Tile<T>, scale: [T; 2]) -> bool 
     node.count > T::zero() && w_max > tile.w[0] && along(0) && along(1)
 }
 
+/// The twin of `superblocks_around` in `node.glsl`: columns and rows of superblocks of 32 texels, first and last,
+/// that hold all that a tile could feel of occluders up to `w_max`.
+pub fn superblocks_around<T: Float>(
+    tile: &Tile<T>,
+    row: T,
+    w_max: T,
+    scale: [T; 2],
+) -> [[T; 2]; 2] {
+    let side = T::from(32.0).unwrap_or_else(T::nan);
+    let cell = |t: T| clamp((t / side).floor(), T::zero(), row - T::one());
+    let widest = [0, 1].map(|i| half::<T>() * (w_max - tile.w[0]) / scale[i]);
+    [
+        [0, 1].map(|i| cell(tile.t_min[i] - widest[i])),
+        [0, 1].map(|i| cell(tile.t_max[i] + widest[i])),
+    ]
+}
+
 /// The twin of `classify` in `node.glsl`.
 pub fn classify<T: Float>(node: &Node<T>, tile: &Tile<T>, scale: [T; 2], spread: T) -> Kind {
     let [mean, w_min, w_max] = node.w;
