@@ -19,22 +19,21 @@ pub(super) fn gather(
     let gbuffer = inputs.gbuffer;
     let [width, height] = gbuffer.extent;
     let push = Push::new(&pixel_push(nodes, settings, inputs));
+    let write = if settings.classify { Access::ImageUpdate } else { Access::ImageWrite };
     let uses = vec![
         Use::bound(0, gbuffer.depth, Access::SampledCompute),
         Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
         Use::bound(2, nodes.texels, Access::BufferReadCompute),
         Use::bound(3, nodes.sums, Access::BufferReadCompute),
         Use::bound(4, nodes.families, Access::BufferReadCompute),
+        Use::bound(5, visibility, write),
     ];
-    let write = |access| Use::bound(5, visibility, access);
     if settings.classify {
         let tiles = Tiles::start(graph, gbuffer.extent, inputs.need);
         let families = Use::bound(2, nodes.families, Access::BufferReadCompute);
         tiles.sort(graph, shaders::TILES, push, (families, visibility), gbuffer, inputs.need);
-        let uses = [&uses[..], &[write(Access::ImageUpdate)]].concat();
         tiles.run(graph, (NAME, shaders::GATHER_TILES), push, uses, 6, inputs.need);
     } else {
-        let uses = [&uses[..], &[write(Access::ImageWrite)]].concat();
         // 8×8 invocations of 2×2 pixels.
         let groups = [width.div_ceil(16), height.div_ceil(16), 1];
         graph.push(Pass::compute(NAME, shaders::GATHER_PIXELS, groups, push, uses, inputs.need));
