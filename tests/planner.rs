@@ -58,12 +58,16 @@ const SSM: &[&str] = &[
     "depth_layers.back",
     "soft_shadow_map.blocks",
     "soft_shadow_map.superblocks",
+    "visibility.tiles_start",
+    "visibility.tiles",
     "soft_shadow_map.gather_pixels",
 ];
 const SSM_FRONT: &[&str] = &[
     "depth_layers.front",
     "soft_shadow_map.blocks",
     "soft_shadow_map.superblocks",
+    "visibility.tiles_start",
+    "visibility.tiles",
     "soft_shadow_map.gather_pixels",
 ];
 const HARD: &[&str] = &["depth_layers.front", "baseline.hard"];
