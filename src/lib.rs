@@ -55,6 +55,7 @@
 //! |---|---|
 //! | host the node | [`embedding`], then [`node`], [`frame`], [`gpu::Host`], [`gpu::Allocator`], [`light`] |
 //! | turn its knobs | [`settings`] |
+//! | ask for an error or a time instead | [`planner`] |
 //! | follow a technique | its module: the idea, the paper's sections, where it departs, its limits |
 //! | see what a frame does | [`graph`], [`graph::Plan::table`], [`graph::Plan::graphviz`] |
 //! | load or make scenes | [`scene`] |

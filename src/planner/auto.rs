@@ -115,6 +115,21 @@ impl Auto {
         Ok(all.swap_remove(0))
     }
 
+    /// The same for a light with an area whose situation is known, on a node that takes every technique, at so many pixels:
+    /// for studying how it chooses.
+    pub fn choose_in(&mut self, situation: &Situation, [width, height]: [u32; 2]) -> Choice {
+        self.held.resize(1, Held::default());
+        let sound = self.budget.sound();
+        let pixels = f64::from(width) * f64::from(height);
+        let triangles = situation.triangles as f64;
+        let likeness = Likeness::of(situation);
+        let expected = expect(Table::own(), &self.costs, &likeness, pixels, triangles);
+        match share(std::slice::from_ref(&expected), &sound)[0] {
+            Some(best) => self.settle(0, situation, &expected, best, &sound),
+            None => self.nothing(0, &Settings::default()),
+        }
+    }
+
     /// The same for several lights, which share `max_ms` by what more time would better.
     ///
     /// # Errors
@@ -161,7 +176,7 @@ impl Auto {
         let mut choices = Vec::with_capacity(frames.len());
         for (i, (frame, situation)) in frames.iter().zip(&situations).enumerate() {
             choices.push(match (situation, picked[i]) {
-                (None, _) => self.nothing(i, description),
+                (None, _) => self.nothing(i, &description.settings),
                 (Some(s), Some(best)) => self.settle(i, s, &expected[i], best, &sound),
                 (Some(s), None) => self.of_line(i, frame, s, &sound),
             });
@@ -177,10 +192,10 @@ impl Auto {
     }
 
     /// Nothing can be shadowed: what is there stays, and costs nothing.
-    fn nothing(&mut self, light: usize, description: &Description) -> Choice {
+    fn nothing(&mut self, light: usize, settings: &Settings) -> Choice {
         let held = &mut self.held[light];
         held.expected = None;
-        let settings = held.settings.unwrap_or(description.settings);
+        let settings = held.settings.unwrap_or(*settings);
         Choice { settings, error: None, ms: None, alike: None, changed: false, problem: None }
     }
 

@@ -5,7 +5,9 @@ use crate::groups::{self, CHOICE, Group};
 use crate::options::Options;
 use crate::store::{Row, Store};
 use antumbra::gpu::headless::{HeadlessDevice, HeadlessOptions, Stage, probe};
-use antumbra::planner::{COLUMNS, Likeness, Measured, PROBE, Situation};
+use antumbra::planner::{
+    Auto, Budget, CANDIDATES, COLUMNS, Costs, Likeness, Measured, PROBE, Situation,
+};
 use antumbra::scene::Instance;
 use antumbra::{Settings, Technique};
 use std::path::Path;
@@ -67,6 +69,78 @@ pub fn write(options: &Options) -> Result<(), Problem> {
     let path = Options::root().join("src/planner/table.csv");
     write_to(&path, &text)?;
     println!("{}", path.display());
+    Ok(())
+}
+
+/// The errors that are asked for in [`exam`].
+const ASKED: [f64; 4] = [0.05, 0.03, 0.02, 0.01];
+
+/// How the crate's present table would have chosen in the views that were measured now: how often the error that was
+/// promised is kept, and the time of the choice over that of the fastest that is good enough.
+///
+/// # Errors
+/// A sentence where the run cannot be read.
+pub fn exam(options: &Options) -> Result<(), Problem> {
+    let (_, rows) = Store::read(&options.out.join("measured.jsonl"))?;
+    let device = HeadlessDevice::new(&HeadlessOptions::default()).map_err(|e| e.to_string())?;
+    let mut views = Vec::new();
+    for group in groups::choices(&CHOICE) {
+        let own: Vec<&Row> =
+            rows.iter().filter(|r| r.scene == group.scene && r.light == group.light).collect();
+        if !own.is_empty() {
+            views.push((group.key(), situation(&device, &group)?, own));
+        }
+    }
+    println!(
+        "| asked | promised in | kept | rightly not promised | time over the best: median, 90 % |"
+    );
+    println!("|---|---|---|---|---|");
+    for asked in ASKED {
+        let (mut promised, mut kept, mut right) = (0, 0, 0);
+        let mut ratios = Vec::new();
+        for (key, situation, rows) in &views {
+            let of = |settings: &Settings| {
+                let same = |r: &&&Row| {
+                    CANDIDATES.iter().any(|c| {
+                        c.technique.name() == r.technique
+                            && c.words == r.settings
+                            && c.settings() == *settings
+                    })
+                };
+                let (errors, times) = rows.iter().find(same)?.measured()?;
+                let error = (errors.mean_abs_error - errors.noise_floor).max(0.0);
+                Some((error, times.passes.iter().map(|(_, ms)| ms).sum::<f64>()))
+            };
+            let all = CANDIDATES.iter().filter_map(|c| of(&c.settings()));
+            let best = all.filter(|x| x.0 <= asked).map(|x| x.1).min_by(f64::total_cmp);
+            let budget = Budget { max_error: Some(asked), max_ms: None };
+            let choice = Auto::new(budget, Costs::default()).choose_in(situation, CHOICE.view);
+            if choice.problem.is_some() {
+                right += u32::from(best.is_none());
+                continue;
+            }
+            promised += 1;
+            let Some((error, ms)) = of(&choice.settings) else { continue };
+            if error <= asked {
+                kept += 1;
+            } else {
+                println!("<!-- {key}: asked {asked}, {choice}, found {error:.4} -->");
+            }
+            ratios.extend(best.map(|best| ms / best));
+        }
+        ratios.sort_by(f64::total_cmp);
+        let at = |share: f64| {
+            let i = (share * ratios.len().saturating_sub(1) as f64).round() as usize;
+            ratios.get(i).copied().unwrap_or(f64::NAN)
+        };
+        let not = views.len() - promised;
+        println!(
+            "| {asked} | {promised} of {} | {kept} | {right} of {not} | {:.2}, {:.2} |",
+            views.len(),
+            at(0.5),
+            at(0.9)
+        );
+    }
     Ok(())
 }
 

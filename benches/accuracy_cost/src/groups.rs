@@ -241,9 +241,9 @@ pub fn all(scale: &Scale, own: &[SceneSpec]) -> Vec<Group> {
     groups
 }
 
-/// The scenes that `auto` is made from beyond the report's: things that stand on each other and things that
-/// touch.
-const MORE_SCENES: [&str; 2] = ["spheres", "contact"];
+/// The scenes that `auto` is made from beyond the report's: what touches, and what shadows itself.
+const MORE_SCENES: [&str; 4] =
+    ["spheres", "contact", "spheres on themselves", "suzanne on herself"];
 
 /// Everything that `auto` chooses among, in every view.
 pub fn choices(scale: &Scale) -> Vec<Group> {

@@ -27,6 +27,9 @@ pub struct Options {
     /// Measure nothing: make of what `--choices` has measured in --out the table that `auto` chooses by
     #[arg(long, conflicts_with = "report")]
     pub write_choices: bool,
+    /// Measure nothing: how the table that `auto` chooses by does in what `--choices` has measured in --out
+    #[arg(long, conflicts_with = "report")]
+    pub exam: bool,
     /// Measure nothing: make the report anew of what was measured, by whatever commit
     #[arg(long)]
     pub report: bool,

@@ -29,6 +29,10 @@ pub fn run(options: &Options) -> Result<bool, Problem> {
         println!("{}", page.display());
         return Ok(true);
     }
+    if options.exam {
+        choices::exam(options)?;
+        return Ok(true);
+    }
     if options.write_choices {
         choices::write(options)?;
         return Ok(true);

@@ -182,6 +182,10 @@ pub fn made(name: &str, light: RectangleLight) -> Result<Scene, Problem> {
         "hills" => over_hills(light)?,
         "spheres" => generate::spheres(light),
         "contact" => generate::contact(light),
+        "spheres on themselves" => generate::spheres(light).with_occluders_as(Role::Both),
+        "suzanne on herself" => generate::normalized(&committed("suzanne")?, light)
+            .map_err(|e| format!("suzanne: {e}"))?
+            .with_occluders_as(Role::Both),
         curtis::CUBE => curtis::elongated_cube(light),
         curtis::DRAGON => curtis::dragon(light)?,
         model => {

@@ -3,6 +3,10 @@
 use super::*;
 use crate::frame::{Left, plan_with};
 
+/// Rows of a soft shadow map, and those of them that look at pixels.
+const ALL: usize = 7;
+const PIXELS: usize = 3;
+
 /// What a node does with its plans, without a device.
 struct Node {
     description: Description,
@@ -139,18 +143,18 @@ fn a_frame_has_the_rows_of_the_settings_that_it_chooses() {
 fn all_lights_may_be_planned_before_the_first_is_recorded() {
     let meshes = meshes();
     let mut node = Node::new(3, Vec::new());
-    assert_eq!(node.all(&frames(&meshes, 3, 1, 1)), [5; 3]);
+    assert_eq!(node.all(&frames(&meshes, 3, 1, 1)), [ALL; 3]);
     assert_eq!(node.all(&frames(&meshes, 3, 1, 1)), [0; 3], "idle");
     // The camera moves: the one set of maps is drawn by each light in turn.
-    assert_eq!(node.all(&frames(&meshes, 3, 1, 2)), [5; 3]);
-    assert_eq!(node.all(&frames(&meshes, 3, 1, 3)), [5; 3]);
+    assert_eq!(node.all(&frames(&meshes, 3, 1, 2)), [ALL; 3]);
+    assert_eq!(node.all(&frames(&meshes, 3, 1, 3)), [ALL; 3]);
     // One light moves; the others have their pixels.
     let mut next = frames(&meshes, 3, 1, 3);
     next[1].revision = Some(2);
-    assert_eq!(node.all(&next), [0, 5, 0]);
+    assert_eq!(node.all(&next), [0, ALL, 0]);
     // And its maps stay, while it alone draws them.
     next[1].view_revision = Some(4);
-    assert_eq!(node.all(&next), [0, 1, 0]);
+    assert_eq!(node.all(&next), [0, PIXELS, 0]);
 }
 
 #[test]
@@ -163,10 +167,10 @@ fn maps_are_kept_for_a_light_that_has_settings_to_itself() {
         both[1].settings_index = 1;
         both
     };
-    assert_eq!(node.all(&both(1)), [5, 2]);
-    assert_eq!(node.all(&both(2)), [1, 1]);
+    assert_eq!(node.all(&both(1)), [ALL, 2]);
+    assert_eq!(node.all(&both(2)), [PIXELS, 1]);
     // The same numbers by other settings are other pixels.
-    assert_eq!(node.all(&frames(&meshes, 2, 1, 2)), [0, 5]);
+    assert_eq!(node.all(&frames(&meshes, 2, 1, 2)), [0, ALL]);
 }
 
 #[test]
@@ -175,25 +179,32 @@ fn maps_of_one_light_are_never_anothers() {
     let mut node = Node::new(2, Vec::new());
     let [a, b] = frames(&meshes, 2, 1, 1).try_into().unwrap();
     let moved = |f| Frame { view_revision: Some(2), ..f };
-    assert_eq!(node.all(&[a]), [5]);
-    assert_eq!(node.all(&[moved(b)]), [5], "the same number, of another light");
-    assert_eq!(node.all(&[moved(a)]), [5]);
+    assert_eq!(node.all(&[a]), [ALL]);
+    assert_eq!(node.all(&[moved(b)]), [ALL], "the same number, of another light");
+    assert_eq!(node.all(&[moved(a)]), [ALL]);
     let counts_on_maps = node.plan(&a);
-    assert_eq!(ran(&counts_on_maps), ["soft_shadow_map.gather_pixels"]);
+    assert_eq!(
+        ran(&counts_on_maps),
+        ["visibility.tiles_start", "visibility.tiles", "soft_shadow_map.gather_pixels"]
+    );
     // Another light draws over them first.
     let drawn = node.plan(&b);
     assert!(node.record(&drawn));
     assert!(!node.record(&counts_on_maps), "stale");
     let again = node.plan(&a);
-    assert_eq!(again.plan.steps.len(), 5);
+    assert_eq!(again.plan.steps.len(), ALL);
     // While that is not recorded, the other light does not count on its maps either.
-    assert_eq!(node.plan(&moved(b)).plan.steps.len(), 5);
+    assert_eq!(node.plan(&moved(b)).plan.steps.len(), ALL);
     assert_eq!(node.all(&[b]), [0]);
-    assert_eq!(node.plan(&Frame { view_revision: Some(3), ..a }).plan.steps.len(), 5);
-    assert_eq!(node.plan(&moved(b)).plan.steps.len(), 5);
+    assert_eq!(node.plan(&Frame { view_revision: Some(3), ..a }).plan.steps.len(), ALL);
+    assert_eq!(node.plan(&moved(b)).plan.steps.len(), ALL);
     let idle = frames(&[], 2, 1, 1);
     node.all(&idle[..1]);
-    assert_eq!(node.all(&[moved(b)]), [1], "the dropped plans of the other light are forgotten");
+    assert_eq!(
+        node.all(&[moved(b)]),
+        [PIXELS],
+        "the dropped plans of the other light are forgotten"
+    );
 }
 
 #[test]
@@ -217,7 +228,7 @@ fn what_is_lit_stays_lit_whatever_the_numbers_say() {
             assert_eq!(node.all(&[Frame { visibility, ..lit }]), [1]);
         }
         // A shadow in between, and the plan from before it is stale.
-        assert_eq!(node.all(&[Frame { meshes: &shadowed, ..lit }]), [5]);
+        assert_eq!(node.all(&[Frame { meshes: &shadowed, ..lit }]), [ALL]);
         assert!(!node.record(&again));
         assert_eq!(node.all(&[lit, lit]), [1, 1]);
         assert!(node.record(&again), "lit again");
@@ -252,6 +263,6 @@ fn of_16_lights_12_that_reach_nothing_cost_what_4_cost() {
         let of = |light_index| Frame { light_index, ..frame(meshes(light_index)) };
         (0..16).map(of).collect::<Vec<_>>()
     };
-    assert_eq!(node.all(&frames()).iter().sum::<usize>(), 4 * 5 + 12);
-    assert_eq!(node.all(&frames()).iter().sum::<usize>(), 4 * 5);
+    assert_eq!(node.all(&frames()).iter().sum::<usize>(), 4 * ALL + 12);
+    assert_eq!(node.all(&frames()).iter().sum::<usize>(), 4 * ALL);
 }
