@@ -54,7 +54,10 @@ fn views(side: f64) -> Vec<(&'static str, Scene, View)> {
     let mut blocks = receiving("bunny");
     blocks.instances.iter_mut().for_each(|i| i.role = Role::Both);
     let blocking = perspective(&Camera::framing(&blocks, 4.0 / 3.0));
+    // Nothing to be spared: the ground under the bunny, from above.
+    let shadow = (scene("bunny", side), View::map_of_ground(0.2, 8.0));
     vec![
+        ("in shadow", shadow.0, shadow.1),
         ("card afar", card.clone(), afar),
         ("lit ground", card, lit),
         framed("bunny"),
