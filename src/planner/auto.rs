@@ -176,9 +176,10 @@ impl Auto {
         let mut choices = Vec::with_capacity(frames.len());
         for (i, (frame, situation)) in frames.iter().zip(&situations).enumerate() {
             choices.push(match (situation, picked[i]) {
-                (None, _) => self.nothing(i, &description.settings),
                 (Some(s), Some(best)) => self.settle(i, s, &expected[i], best, &sound),
-                (Some(s), None) => self.of_line(i, frame, s, &sound),
+                // What is there stays where it takes the light, and costs nothing.
+                (None, _) if !is_line(frame) => self.nothing(i, &description.settings),
+                (s, _) => self.of_line(i, frame, s.as_ref(), &sound),
             });
         }
         Ok(choices)
@@ -191,7 +192,7 @@ impl Auto {
         }
     }
 
-    /// Nothing can be shadowed: what is there stays, and costs nothing.
+    /// Nothing can be shadowed.
     fn nothing(&mut self, light: usize, settings: &Settings) -> Choice {
         let held = &mut self.held[light];
         held.expected = None;
@@ -240,8 +241,14 @@ impl Auto {
     }
 
     /// A line or a polygon: its technique places samples until what is lost is below an error.
-    fn of_line(&mut self, light: usize, frame: &Frame, s: &Situation, sound: &Sound) -> Choice {
-        let open = if s.open { LINE_OPEN } else { 0.0 };
+    fn of_line(
+        &mut self,
+        light: usize,
+        frame: &Frame,
+        situation: Option<&Situation>,
+        sound: &Sound,
+    ) -> Choice {
+        let open = if situation.is_some_and(|s| s.open) { LINE_OPEN } else { 0.0 };
         let asked = ((sound.max_error - open) / LINE_SHARE).clamp(0.005, 0.1);
         let error = LINE_SHARE * asked + open;
         let defaults = Settings::default();
@@ -259,13 +266,13 @@ impl Auto {
         held.candidate = None;
         held.expected = None;
         let changed = held.settings.replace(settings).is_some_and(|before| before != settings);
-        let met = error <= sound.max_error * 1.0001;
+        let met = error <= sound.max_error * 1.0001 || situation.is_none();
         let problem = (!met).then(|| {
             format!("no error below {error:.3} can be promised for a line or a polygon here")
         });
         Choice {
             settings,
-            error: Some(error),
+            error: situation.map(|_| error),
             ms: None,
             alike: None,
             changed,

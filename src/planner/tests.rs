@@ -304,6 +304,9 @@ fn a_line_is_for_linear_light() {
     assert_eq!(c.settings.technique, Technique::LinearLight);
     assert!(c.problem.is_none() && c.error.unwrap() <= 0.0201, "{c}");
     c.settings.check().unwrap();
+    // With nothing to shadow it must still be something that takes a line.
+    let c = choose(&mut auto(Some(0.02), None), line, &[ground()]);
+    assert_eq!((c.settings.technique, c.error), (Technique::LinearLight, None));
     let c = choose(&mut auto(Some(1e-4), None), line, &meshes);
     assert!(c.problem.unwrap().contains("no error below"));
 }
