@@ -10,23 +10,13 @@
 //! the table has never seen.
 
 use super::budget::Sound;
-use super::table::{Table, View};
-use super::{Budget, CANDIDATES, Costs, Likeness, Situation};
+use super::expected::{Expected, alike, expect, share, unmet};
+use super::table::Table;
+use super::{Budget, CANDIDATES, Choice, Costs, Likeness, Situation};
 use crate::frame::{self, Description, Frame};
-use crate::settings::{KNOBS, Settings, Technique};
+use crate::settings::{Settings, Technique};
+use crate::soft_shadow_map::Sides;
 use crate::{Error, linear_light};
-use std::fmt;
-
-/// Views no further than this from a situation count, and the further the nearest one is the more others do.
-const AS_NEAR: f64 = 0.3;
-const AS_FAR: f64 = 1.6;
-
-/// What a unit of distance to the nearest view adds to the error that is promised, as a share of it. Chosen with
-/// [`AS_FAR`] so that scenes the table has not seen keep promises of 2 % and more in 95 of 100 cases (docs/planner.md).
-const DOUBT: f64 = 0.4;
-
-/// What images of other sizes err by more than the table's, as a share.
-const MARGIN: f64 = 1.05;
 
 /// How much faster another choice must be to replace one that is good enough.
 const FASTER: f64 = 0.8;
@@ -38,35 +28,6 @@ const PATIENCE: u32 = 30;
 /// what is lost between the occluders of open meshes whatever the samples.
 const LINE_SHARE: f64 = 1.4;
 const LINE_OPEN: f64 = 0.012;
-
-/// What to compute a light's shadow with.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Choice {
-    /// Technique and settings.
-    pub settings: Settings,
-    /// The mean error over shadow and penumbra that the model promises, a visible fraction; none where nothing can be
-    /// shadowed.
-    pub error: Option<f64>,
-    /// Milliseconds that the model expects; none where it knows nothing of it.
-    pub ms: Option<f64>,
-    /// Scene and light of the report that the situation is most like.
-    pub alike: Option<[String; 2]>,
-    /// Whether it is another one than in the frame before.
-    pub changed: bool,
-    /// What of the budget makes no sense or cannot be met; the choice is then the nearest to it.
-    pub problem: Option<String>,
-}
-
-/// What a candidate is expected to do.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Expected {
-    /// Its place among [`CANDIDATES`].
-    pub candidate: usize,
-    /// Mean error, a visible fraction.
-    pub error: f64,
-    /// Milliseconds.
-    pub ms: f64,
-}
 
 /// What is remembered of a light.
 #[derive(Clone, Copy, Debug, Default)]
@@ -151,8 +112,9 @@ impl Auto {
             .zip(&situations)
             .map(|(frame, situation)| match situation {
                 Some(s) if !is_line(frame) => {
-                    let can =
-                        |e: &Expected| takes(CANDIDATES[e.candidate].technique, description, s);
+                    let can = |e: &Expected| {
+                        takes(&CANDIDATES[e.candidate].settings(), description, frame, s)
+                    };
                     let likeness = Likeness::of(s);
                     expect(Table::own(), &self.costs, &likeness, pixels, s.triangles as f64)
                         .into_iter()
@@ -173,6 +135,14 @@ impl Auto {
             )
         });
         let sound = Sound { problem: sound.problem.or(too_slow), ..sound };
+        // What is held must fit together too.
+        let held = |(i, best): (usize, &Option<Expected>)| {
+            best.map(|best| self.held_of(i, &expected[i]).unwrap_or(best).ms)
+        };
+        let together: f64 = picked.iter().enumerate().filter_map(held).sum();
+        if together > sound.max_ms {
+            self.held.iter_mut().for_each(|held| held.candidate = None);
+        }
         let mut choices = Vec::with_capacity(frames.len());
         for (i, (frame, situation)) in frames.iter().zip(&situations).enumerate() {
             choices.push(match (situation, picked[i]) {
@@ -182,6 +152,10 @@ impl Auto {
                 (s, _) => self.of_line(i, frame, s.as_ref(), &sound),
             });
         }
+        if description.occluder_maps.is_some() {
+            // They are as large as the host has them.
+            choices.iter_mut().for_each(|c| c.settings.map = description.settings.map);
+        }
         Ok(choices)
     }
 
@@ -190,6 +164,12 @@ impl Auto {
         if let Some((technique, expected)) = self.held.get(light).and_then(|h| h.expected) {
             self.costs.learn(technique, expected, ms);
         }
+    }
+
+    /// What the held choice of a light is expected to do now.
+    fn held_of(&self, light: usize, expected: &[Expected]) -> Option<Expected> {
+        let candidate = self.held.get(light)?.candidate?;
+        expected.iter().find(|e| e.candidate == candidate).copied()
     }
 
     /// Nothing can be shadowed.
@@ -209,15 +189,15 @@ impl Auto {
         best: Expected,
         sound: &Sound,
     ) -> Choice {
+        let kept = self.held_of(light, expected);
         let held = &mut self.held[light];
-        let kept = held.candidate.and_then(|c| expected.iter().find(|e| e.candidate == c));
         let taken = match kept {
             Some(kept) if kept.candidate != best.candidate => {
                 let good = kept.error <= sound.max_error.max(best.error)
                     && kept.ms <= sound.max_ms.max(best.ms);
                 let better = best.ms < FASTER * kept.ms || best.error < FASTER * kept.error;
                 held.waited = if better { held.waited + 1 } else { 0 };
-                if good && held.waited < PATIENCE { *kept } else { best }
+                if good && held.waited < PATIENCE { kept } else { best }
             }
             _ => best,
         };
@@ -281,161 +261,24 @@ impl Auto {
     }
 }
 
-/// What each candidate would do in a situation like this.
-pub(super) fn expect(
-    table: &Table,
-    costs: &Costs,
-    likeness: &Likeness,
-    pixels: f64,
-    triangles: f64,
-) -> Vec<Expected> {
-    let (nearest, like) = alike(table, likeness);
-    let doubt = MARGIN * (1.0 + DOUBT * nearest);
-    let of = |candidate: usize| {
-        let technique = CANDIDATES[candidate].technique;
-        let mut error: f64 = 0.0;
-        let mut ms = 0.0;
-        for view in &like {
-            let measured = &view.measured[candidate];
-            error = error.max(measured.error);
-            ms += costs.ms(technique, measured, pixels, triangles - view.triangles);
-        }
-        Expected { candidate, error: (error * doubt).min(1.0), ms: ms / like.len() as f64 }
-    };
-    // Without a table nothing is known.
-    (0..if like.is_empty() { 0 } else { CANDIDATES.len() }).map(of).collect()
-}
-
 fn is_line(frame: &Frame) -> bool {
     frame.light.is_line() || frame.outline.is_some()
 }
 
-/// The settings of some choices, each once and the most accurate first, as many as a node may have.
-pub(crate) fn distinct(choices: &[Choice]) -> (Settings, Vec<Settings>) {
-    let mut by_error: Vec<&Choice> = choices.iter().collect();
-    by_error.sort_by(|a, b| {
-        let [a, b] = [a, b].map(|c| c.error.unwrap_or(f64::INFINITY));
-        a.total_cmp(&b)
-    });
-    let mut all: Vec<Settings> = Vec::new();
-    for choice in by_error {
-        if !all.contains(&choice.settings) {
-            all.push(choice.settings);
-        }
-    }
-    all.truncate(frame::MOST_SETTINGS);
-    let mut all = all.into_iter();
-    (all.next().unwrap_or_default(), all.collect())
-}
-
-/// The views that are most like a situation, the nearest first, and how far away that one is.
-fn alike<'a>(table: &'a Table, likeness: &Likeness) -> (f64, Vec<&'a View>) {
-    let mut all: Vec<(f64, &View)> =
-        table.views.iter().map(|v| (v.likeness.distance(likeness), v)).collect();
-    all.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let nearest = all.first().map_or(0.0, |v| v.0);
-    all.retain(|v| v.0 <= AS_NEAR + AS_FAR * nearest);
-    (nearest, all.into_iter().map(|v| v.1).collect())
-}
-
-/// Whether a technique takes what a host gives.
-fn takes(technique: Technique, description: &Description, s: &Situation) -> bool {
-    let maps = description.occluder_maps.is_some();
+/// Whether settings take what a host gives.
+fn takes(settings: &Settings, description: &Description, frame: &Frame, s: &Situation) -> bool {
+    let technique = settings.technique;
     let draws = s.host_drawn > 0;
-    match technique {
-        _ if description.light_texture.is_some() => technique == Technique::RayMarch,
+    let maps = description.occluder_maps.is_some();
+    // A promise holds with finer maps than it was made for, and not with coarser ones.
+    let lent = !maps || settings.map <= description.settings.map;
+    let back = !maps || frame.occluder_maps.is_some_and(|m| m.back.is_some());
+    lent && match technique {
+        _ if description.light_texture.is_some() => technique == Technique::RayMarch && back,
         Technique::ManyLights => !maps,
         Technique::OcclusionTextures | Technique::LinearLight => !maps && !draws,
-        Technique::Hard
-        | Technique::Pcss
-        | Technique::BackProjection
-        | Technique::SoftShadowMap
-        | Technique::RayMarch => true,
-    }
-}
-
-/// A candidate for each light: the fastest that is good enough, or, where the time does not reach, what most betters the
-/// lights' errors for it.
-fn share(expected: &[Vec<Expected>], sound: &Sound) -> Vec<Option<Expected>> {
-    let good = |e: &Expected| e.error <= sound.max_error;
-    let fastest = |all: &[Expected], which: &dyn Fn(&Expected) -> bool| {
-        all.iter().filter(|e| which(e)).min_by(|a, b| a.ms.total_cmp(&b.ms)).copied()
-    };
-    let best = |all: &[Expected]| all.iter().min_by(|a, b| a.error.total_cmp(&b.error)).copied();
-    let wanted: Vec<_> =
-        expected.iter().map(|all| fastest(all, &good).or_else(|| best(all))).collect();
-    let sum = |picked: &[Option<Expected>]| picked.iter().flatten().map(|e| e.ms).sum::<f64>();
-    if sum(&wanted) <= sound.max_ms {
-        return wanted;
-    }
-    let mut picked: Vec<_> = expected.iter().map(|all| fastest(all, &|_| true)).collect();
-    loop {
-        let left = sound.max_ms - sum(&picked);
-        // Of every step that fits, the one that takes most error away for its time.
-        let steps = picked.iter().enumerate().flat_map(|(light, now)| {
-            let now = *now;
-            expected[light].iter().filter_map(move |e| {
-                let now = now?;
-                let fits =
-                    e.ms - now.ms <= left && e.error < now.error && !(now.error <= sound.max_error);
-                let gain = (now.error - e.error) / (e.ms - now.ms).max(1e-6);
-                fits.then_some((gain, light, *e))
-            })
-        });
-        let Some((_, light, step)) = steps.max_by(|a, b| a.0.total_cmp(&b.0)) else {
-            return picked;
-        };
-        picked[light] = Some(step);
-    }
-}
-
-/// A sentence where a choice is not what was asked for.
-fn unmet(taken: &Expected, expected: &[Expected], sound: &Sound) -> Option<String> {
-    if taken.ms > sound.max_ms {
-        let (least, most) = (taken.ms, sound.max_ms);
-        return Some(format!(
-            "nothing takes less than {least:.1} ms here, and max_ms is {most}; the fastest is chosen"
-        ));
-    }
-    if taken.error <= sound.max_error || sound.max_error == 0.0 {
-        return None;
-    }
-    let error = taken.error;
-    let could = expected.iter().any(|e| e.error <= sound.max_error);
-    Some(if could {
-        format!(
-            "an error of {} takes more than {} ms; {error:.4} is what the time buys",
-            sound.max_error, sound.max_ms
-        )
-    } else {
-        format!("no error below {error:.4} can be promised here; that is chosen")
-    })
-}
-
-impl fmt::Display for Choice {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "auto: {}", self.settings.technique.name())?;
-        let plain = Settings { technique: self.settings.technique, ..Settings::default() };
-        for knob in KNOBS {
-            let value = self.settings.get(knob.key);
-            if value != plain.get(knob.key)
-                && let Some(value) = value
-            {
-                write!(f, " {}={value}", knob.key)?;
-            }
-        }
-        if let Some(error) = self.error {
-            write!(f, ", error ≤ {error:.4}")?;
-        }
-        if let Some(ms) = self.ms {
-            write!(f, ", {ms:.1} ms expected")?;
-        }
-        if let Some([scene, light]) = &self.alike {
-            write!(f, ", as in {scene} under the {light} light")?;
-        }
-        if let Some(problem) = &self.problem {
-            write!(f, "; {problem}")?;
-        }
-        Ok(())
+        Technique::SoftShadowMap => back || settings.soft_shadow_map.sides == Sides::One,
+        Technique::RayMarch => back,
+        Technique::Hard | Technique::Pcss | Technique::BackProjection => true,
     }
 }

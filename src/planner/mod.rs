@@ -18,19 +18,24 @@
 mod auto;
 mod budget;
 mod candidates;
+mod choice;
 mod costs;
 mod effects;
+mod expected;
 mod likeness;
+mod rules;
 mod situation;
 mod table;
 
-pub(crate) use auto::distinct;
-pub use auto::{Auto, Choice};
+pub use auto::Auto;
 pub use budget::Budget;
 pub use candidates::{CANDIDATES, Candidate};
+pub use choice::Choice;
+pub(crate) use choice::distinct;
 pub use costs::Costs;
-pub use effects::{COUNT, Effect, HARD_PIXELS, Outcome, RULES, Rule, Verdict, Verdicts};
+pub use effects::{HARD_PIXELS, Outcome, Verdict, Verdicts};
 pub use likeness::{Likeness, PARTS};
+pub use rules::{COUNT, Effect, RULES, Rule};
 pub(crate) use situation::Seen;
 pub use situation::Situation;
 pub use table::{COLUMNS, Measured, PIXELS, PROBE, Table, View};
