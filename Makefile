@@ -36,6 +36,7 @@ ifndef QUICK
 	$(CARGO) bench --bench ray_march
 	$(CARGO) bench --bench occlusion_textures
 	$(CARGO) bench --bench linear_light
+	$(CARGO) bench --bench planner
 	$(CARGO) bench --bench tiles
 endif
 

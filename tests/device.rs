@@ -48,7 +48,7 @@ fn a_planted_hazard_is_reported() {
         layout(set = 0, binding = 1, std430) buffer To { uint to[]; };\n\
         void main() { to[gl_GlobalInvocationID.x] = from[gl_GlobalInvocationID.x]; }\n";
     let copy = try_compile("copy.comp", source).unwrap();
-    let options = HeadlessOptions { validation: true, driver: None };
+    let options = HeadlessOptions { validation: true, ..Default::default() };
     let device = HeadlessDevice::new(&options).unwrap();
     let values = HostBuffer::with_data(&device, "values", &[0_u32; 64], STORAGE).unwrap();
     let copies = HostBuffer::with_data(&device, "copies", &[0_u32; 64], STORAGE).unwrap();
@@ -72,7 +72,7 @@ fn a_planted_hazard_is_reported() {
 /// What is never freed is said while the device is destroyed, and the log keeps it.
 #[test]
 fn a_leak_is_reported_after_the_device_is_gone() {
-    let options = HeadlessOptions { validation: true, driver: None };
+    let options = HeadlessOptions { validation: true, ..Default::default() };
     let device = HeadlessDevice::new(&options).unwrap();
     let buffer = HostBuffer::new(&device, "kept", 16, STORAGE).unwrap();
     let fence = vk::FenceCreateInfo::default();

@@ -22,7 +22,7 @@ struct Drawn {
 }
 
 fn open(driver: &str) -> Result<HeadlessDevice, antumbra::Error> {
-    HeadlessDevice::new(&HeadlessOptions { validation: false, driver: Some(driver.into()) })
+    HeadlessDevice::new(&HeadlessOptions { driver: Some(driver.into()), ..Default::default() })
 }
 
 fn draw(device: &HeadlessDevice, setup: &Setup) -> Drawn {

@@ -60,8 +60,10 @@ fn render(options: &Options) -> Result<String, Stop> {
     let camera = scene.camera.unwrap_or_else(|| Camera::framing(&scene, aspect));
     let view = View::perspective(&camera, options.size);
 
-    let device =
-        HeadlessDevice::new(&HeadlessOptions { validation: options.validate, driver: None })?;
+    let device = HeadlessDevice::new(&HeadlessOptions {
+        validation: options.validate,
+        ..Default::default()
+    })?;
     // Before anything is chosen, the technique with the fewest passes.
     let few = Settings { technique: Technique::Hard, ..Settings::default() };
     let mut stage = Stage::new(&device, &scene, &view, options.size, few, |_| true)?;

@@ -323,7 +323,7 @@ fn promises_are_kept_in_the_tables_own_views_and_mostly_in_others() {
             for view in &table.views {
                 let others = table.without(&view.name[0]);
                 let of = if seen { table } else { &others };
-                let expected =
+                let all =
                     expected::expect(of, &Costs::default(), &view.likeness, PIXELS, view.triangles);
                 let good = all.iter().filter(|x| x.error <= e);
                 let Some(best) = good.min_by(|a, b| a.ms.total_cmp(&b.ms)) else { continue };

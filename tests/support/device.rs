@@ -31,7 +31,7 @@ impl TestDevice {
     /// # Panics
     /// As [`device`].
     pub fn new(validation: bool) -> Self {
-        let device = HeadlessDevice::new(&HeadlessOptions { validation, driver: None })
+        let device = HeadlessDevice::new(&HeadlessOptions { validation, ..Default::default() })
             .unwrap_or_else(|error| panic!("{error}"));
         let log = device.message_log();
         Self { device: Some(device), log }

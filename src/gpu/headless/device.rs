@@ -22,10 +22,12 @@ pub struct HeadlessOptions {
     /// variable `ANTUMBRA_DRIVER`, and without that to the kind: discrete GPU, integrated GPU,
     /// virtual GPU, processor.
     pub driver: Option<String>,
+    /// Turn on pipeline statistics where the device has them, for [`HeadlessDevice::count`]; off by default.
+    pub statistics: bool,
 }
 
-/// A device of Vulkan 1.1 with one graphics and compute queue, no optional feature and no device
-/// extension.
+/// A device of Vulkan 1.1 with one graphics and compute queue, no device extension and no optional feature
+/// but the one that [`HeadlessOptions::statistics`] asks for.
 ///
 /// A clone is another handle to the same device; the last one destroys it. Buffers and images made
 /// from it hold a handle each, so they may be dropped in any order. Objects made through
@@ -39,6 +41,7 @@ struct Shared {
     device: Device,
     physical_device: vk::PhysicalDevice,
     properties: vk::PhysicalDeviceProperties,
+    statistics: bool,
     name: String,
     queue: vk::Queue,
     queue_family: u32,
@@ -102,8 +105,14 @@ impl HeadlessDevice {
         let queue_info = [vk::DeviceQueueCreateInfo::default()
             .queue_family_index(queue_family)
             .queue_priorities(&[1.0])];
-        let info = vk::DeviceCreateInfo::default().queue_create_infos(&queue_info);
-        // SAFETY: the family was reported by this device; `info` names no feature or extension.
+        // SAFETY: reported by this instance.
+        let has = unsafe { instance.raw.get_physical_device_features(physical_device) };
+        let statistics = options.statistics && has.pipeline_statistics_query == vk::TRUE;
+        let features = vk::PhysicalDeviceFeatures::default().pipeline_statistics_query(statistics);
+        let info = vk::DeviceCreateInfo::default()
+            .queue_create_infos(&queue_info)
+            .enabled_features(&features);
+        // SAFETY: the family was reported by this device, and so was the one feature that `info` may name.
         let device = unsafe { instance.raw.create_device(physical_device, &info, None) }
             .map_err(Error::vulkan(format!("creating the device {name}")))?;
         let mut device = Device(device, vk::PipelineCache::null());
@@ -135,6 +144,7 @@ impl HeadlessDevice {
             device,
             physical_device,
             properties,
+            statistics,
             name,
             queue,
             queue_family,
@@ -188,6 +198,11 @@ impl HeadlessDevice {
     /// The device's name as the driver gives it.
     pub fn name(&self) -> &str {
         &self.0.name
+    }
+
+    /// Whether pipeline statistics were asked for and are there.
+    pub(super) fn has_statistics(&self) -> bool {
+        self.0.statistics
     }
 
     /// The device's properties.

@@ -21,6 +21,7 @@ mod raster;
 mod readback;
 mod scene;
 mod stage;
+mod statistics;
 mod view;
 
 pub use buffer::HostBuffer;
@@ -34,4 +35,5 @@ pub use messages::MessageLog;
 pub use readback::{ReadbackScheme, ReadbackTimes};
 pub use scene::SceneBuffers;
 pub use stage::{FrameTimes, Stage};
+pub use statistics::Invocations;
 pub use view::View;

@@ -2,8 +2,8 @@
 
 use super::gbuffer::MASK;
 use super::{
-    GBuffer, GBufferPainter, HeadlessDevice, HostBuffer, ImageSource, SceneBuffers, View,
-    read_image,
+    GBuffer, GBufferPainter, HeadlessDevice, HostBuffer, ImageSource, Invocations, SceneBuffers,
+    View, read_image,
 };
 use crate::gpu::objects::Object;
 use crate::graph::{Scope, Shape};
@@ -234,6 +234,16 @@ impl Stage {
         let passes = plans.iter().filter_map(|p| node.timings_of(p.slot, p.light_index));
         let passes = passes.flatten().collect();
         Ok(FrameTimes { frame, record, passes })
+    }
+
+    /// Runs a plan and counts what its shaders do; none where [`HeadlessDevice::count`] counts nothing.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn count(&mut self, plan: &FramePlan) -> Result<Option<Invocations>, Error> {
+        let device = self.device.clone();
+        let node = self.node()?;
+        device.count(|cmd| node.record(cmd, plan))
     }
 
     /// Reads the visible fraction of every pixel, row by row, under light 0.
