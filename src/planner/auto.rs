@@ -30,14 +30,40 @@ const LINE_SHARE: f64 = 1.4;
 const LINE_OPEN: f64 = 0.012;
 
 /// What is remembered of a light.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 struct Held {
     candidate: Option<usize>,
     /// For how many frames another one would have been better.
     waited: u32,
+    /// The error of each candidate, at its worst in the last frames.
+    worst: [f64; CANDIDATES.len()],
     /// What the last frame was to take.
     expected: Option<(Technique, f64)>,
     settings: Option<Settings>,
+}
+
+impl Default for Held {
+    fn default() -> Self {
+        Self {
+            candidate: None,
+            waited: 0,
+            worst: [0.0; CANDIDATES.len()],
+            expected: None,
+            settings: None,
+        }
+    }
+}
+
+impl Held {
+    /// Remembers each candidate's error and puts the worst of the last frames in its place: what moves to and fro is
+    /// judged by all of its way. What is over is forgotten within some [`PATIENCE`].
+    fn remember(&mut self, expected: &mut [Expected]) {
+        for e in expected {
+            let worst = &mut self.worst[e.candidate];
+            *worst = e.error + (*worst - e.error).max(0.0) * (1.0 - 1.0 / f64::from(PATIENCE));
+            e.error = *worst;
+        }
+    }
 }
 
 /// Chooses technique and settings for the lights of a node, frame by frame.
@@ -107,7 +133,7 @@ impl Auto {
         self.held.resize(frames.len(), Held::default());
         let sound = self.budget.sound();
         let pixels = f64::from(description.extent[0]) * f64::from(description.extent[1]);
-        let expected: Vec<Vec<Expected>> = frames
+        let mut expected: Vec<Vec<Expected>> = frames
             .iter()
             .zip(&situations)
             .map(|(frame, situation)| match situation {
@@ -124,6 +150,9 @@ impl Auto {
                 _ => Vec::new(),
             })
             .collect();
+        for (held, expected) in self.held.iter_mut().zip(&mut expected) {
+            held.remember(expected);
+        }
         let picked = share(&expected, &sound);
         let least: f64 = picked.iter().flatten().map(|e| e.ms).sum();
         let lights = picked.iter().flatten().count();

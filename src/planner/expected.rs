@@ -5,12 +5,12 @@ use super::table::{Table, View};
 use super::{CANDIDATES, Costs, Likeness};
 
 /// Views no further than this from a situation count, and the further the nearest one is the more others do.
-const AS_NEAR: f64 = 0.3;
+const AS_NEAR: f64 = 0.1;
 const AS_FAR: f64 = 1.6;
 
 /// What a unit of distance to the nearest view adds to the error that is promised, as a share of it. Chosen with
-/// [`AS_FAR`] so that scenes the table has not seen keep promises of 2 % and more in 95 of 100 cases (docs/planner.md).
-const DOUBT: f64 = 0.4;
+/// [`AS_FAR`] by leaving each scene out and asking the others (docs/planner.md).
+const DOUBT: f64 = 0.7;
 
 /// What images of other sizes err by more than the table's, as a share.
 const MARGIN: f64 = 1.05;
@@ -84,7 +84,7 @@ pub(super) fn share(expected: &[Vec<Expected>], sound: &Sound) -> Vec<Option<Exp
             expected[light].iter().filter_map(move |e| {
                 let now = now?;
                 let fits =
-                    e.ms - now.ms <= left && e.error < now.error && !(now.error <= sound.max_error);
+                    e.ms - now.ms <= left && e.error < now.error && now.error > sound.max_error;
                 let gain = (now.error - e.error) / (e.ms - now.ms).max(1e-6);
                 fits.then_some((gain, light, *e))
             })

@@ -315,7 +315,7 @@ fn a_line_is_for_linear_light() {
 #[test]
 fn promises_are_kept_in_the_tables_own_views_and_mostly_in_others() {
     let table = Table::own();
-    assert!(table.views.len() >= 30, "{} views", table.views.len());
+    assert!(table.views.len() >= 36, "{} views", table.views.len());
     let mut told = Vec::new();
     for e in [0.05, 0.03, 0.02, 0.01] {
         for (kind, seen) in [("seen", true), ("unseen", false)] {
@@ -326,13 +326,17 @@ fn promises_are_kept_in_the_tables_own_views_and_mostly_in_others() {
                 let all =
                     expected::expect(of, &Costs::default(), &view.likeness, PIXELS, view.triangles);
                 let good = all.iter().filter(|x| x.error <= e);
-                let Some(best) = good.min_by(|a, b| a.ms.total_cmp(&b.ms)) else { continue };
+                let Some(best) = good.min_by(|a, b| a.ms.total_cmp(&b.ms)) else {
+                    let could = view.measured.iter().any(|m| 1.06 * m.error <= e);
+                    assert!(!(seen && could), "{:?}: {e} is said not to be possible", view.name);
+                    continue;
+                };
                 can += 1;
                 kept += u32::from(view.measured[best.candidate].error <= e);
             }
             let share = f64::from(kept) / f64::from(can.max(1));
             told.push(format!("{e} {kind}: {kept} of {can}"));
-            let least = if seen { 1.0 } else { 0.75 };
+            let least = if seen { 1.0 } else { 0.8 };
             assert!(share >= least, "{told:?}");
         }
     }
