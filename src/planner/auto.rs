@@ -29,6 +29,9 @@ const PATIENCE: u32 = 30;
 const LINE_SHARE: f64 = 1.4;
 const LINE_OPEN: f64 = 0.012;
 
+/// What so few lines of a polygon may miss beyond that.
+const POLYGON: f64 = 0.01;
+
 /// What is remembered of a light.
 #[derive(Clone, Copy, Debug)]
 struct Held {
@@ -257,7 +260,9 @@ impl Auto {
         situation: Option<&Situation>,
         sound: &Sound,
     ) -> Choice {
+        let is_line = frame.light.is_line();
         let open = if situation.is_some_and(|s| s.open) { LINE_OPEN } else { 0.0 };
+        let open = open + if is_line { 0.0 } else { POLYGON };
         let asked = ((sound.max_error - open) / LINE_SHARE).clamp(0.005, 0.1);
         let error = LINE_SHARE * asked + open;
         let defaults = Settings::default();
@@ -265,8 +270,9 @@ impl Auto {
             technique: Technique::LinearLight,
             linear_light: linear_light::Settings {
                 error: asked as f32,
-                samples: 16,
-                lines: if frame.light.is_line() { 1 } else { 16 },
+                // Of a polygon's lines each has as many samples: no more than its maps have memory for.
+                samples: if is_line { 16 } else { 8 },
+                lines: if is_line { 1 } else { 8 },
                 ..defaults.linear_light
             },
             ..defaults

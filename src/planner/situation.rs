@@ -111,7 +111,7 @@ impl Situation {
         }
         s.overlap |= overlapping(seen);
         s.penumbra = s.light[0].max(s.light[1]) * (s.receiver_distances[1] / near - 1.0).max(0.0);
-        s.penumbra_pixels = s.penumbra / smallest;
+        s.penumbra_pixels = if smallest > 0.0 { s.penumbra / smallest } else { f64::INFINITY };
         s.edges_a_pixel = (s.edges * largest).min(1.0);
         let middle = 0.5 * (s.occluder_distances[0] + s.occluder_distances[1]);
         let side = (0..2).map(|i| map.max[i] - map.min[i]).fold(f64::INFINITY, f64::min);
@@ -228,7 +228,8 @@ fn pixel_sizes(seen: &Seen, light_from_world: &DMat4) -> [f64; 2] {
         let at = sign * row(3).dot(DVec4::new(u * d, t * d, d, 1.0));
         w = [w[0].min(at), w[1].max(at)];
     }
-    if !(w[0] > 0.0 && w[1].is_finite()) {
+    // Behind the camera, or not to be told.
+    if !(w[0] > 0.0 && w[0] <= w[1] && w[1].is_finite()) {
         return [0.0, f64::INFINITY];
     }
     [w[0] * per_w[0], w[1] * per_w[1]]

@@ -4,7 +4,7 @@ use crate::graph::Scope;
 use crate::scene::{Role, generate};
 use crate::{RectangleLight, Technique};
 use ash::vk::{self, Handle};
-use glam::{DMat4, DVec3};
+use glam::{DMat4, DVec3, DVec4};
 
 const GROUND: [[f32; 3]; 2] = [[-4.0, 0.0, -4.0], [4.0, 0.0, 4.0]];
 const CUBE: [[f32; 3]; 2] = [[-0.5; 3], [0.5; 3]];
@@ -120,6 +120,11 @@ fn perspective_pixels_grow_with_distance_and_a_camera_inside_knows_no_smallest()
     let pixel = 2.0 * 0.5f64.tan() / 512.0 * 38.0;
     assert!((far * pixel - 0.4).abs() < 0.02, "{far}");
     assert!((far / further - 2.0).abs() < 0.1, "{far} {further}");
+    // A matrix that says nothing of what is in front of the camera is no reason to leave anything out.
+    let mut flat = frame(square(0.4), &meshes);
+    flat.world_from_ndc.z_axis = -2.0 * flat.world_from_ndc.w_axis + DVec4::Y;
+    let situation = crate::frame::situation(&description(), &flat).unwrap().unwrap();
+    assert!(situation.penumbra_pixels > HARD_PIXELS);
     // With what may be shadowed behind it.
     assert_eq!(look(-1.0), f64::INFINITY);
 }
@@ -303,6 +308,11 @@ fn a_line_is_for_linear_light() {
     let c = choose(&mut auto(Some(0.02), None), line, &meshes);
     assert_eq!(c.settings.technique, Technique::LinearLight);
     assert!(c.problem.is_none() && c.error.unwrap() <= 0.0201, "{c}");
+    c.settings.check().unwrap();
+    let corners = [[-0.2, -0.2], [0.2, -0.2], [0.0, 0.2]];
+    let polygon = Frame { outline: Some(&corners), ..frame(square(0.4), &meshes) };
+    let c = auto(Some(0.05), None).choose(&description(), &polygon).unwrap();
+    assert_eq!((c.settings.technique, c.problem), (Technique::LinearLight, None));
     c.settings.check().unwrap();
     // With nothing to shadow it must still be something that takes a line.
     let c = choose(&mut auto(Some(0.02), None), line, &[ground()]);
