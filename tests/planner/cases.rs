@@ -191,14 +191,14 @@ pub fn cases() -> Vec<Case> {
         case("the ground alone, by rays", ground_alone, rays, 2.0, LIT),
         without(
             point,
-            case("a card just over the ground under a small light", near(), "map=1024", 0.6, HARD),
+            case("a card just over the ground under a small light", near(), "map=512", 0.6, HARD),
         ),
         without(
             point,
             case(
                 "the same by rays",
                 near(),
-                "technique=ray-march map=1024 rays=4 levels=mip",
+                "technique=ray-march map=512 rays=4 levels=mip",
                 0.6,
                 HARD,
             ),
@@ -208,18 +208,18 @@ pub fn cases() -> Vec<Case> {
             case(
                 "the same by slices",
                 near(),
-                "technique=occlusion-textures slices=4 map=1024",
+                "technique=occlusion-textures slices=4 map=512",
                 0.6,
                 OWN_HARD,
             ),
         ),
-        without(point, case("the same by PCSS", near(), "technique=pcss map=1024", 0.6, HARD)),
+        without(point, case("the same by PCSS", near(), "technique=pcss map=512", 0.6, HARD)),
         without(
             point,
             case(
                 "the same by many lights",
                 near(),
-                "technique=many-lights samples=16 map=1024",
+                "technique=many-lights samples=16 map=512",
                 0.6,
                 OWN_HARD,
             ),
@@ -314,7 +314,7 @@ pub fn cases() -> Vec<Case> {
             case(
                 "the line just over a card",
                 lined,
-                "technique=linear-light lines=1 samples=4 map=1024",
+                "technique=linear-light lines=1 samples=4 map=512",
                 0.6,
                 OWN_HARD,
             ),
