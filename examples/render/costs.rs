@@ -2,7 +2,7 @@
 
 use antumbra::Error;
 use antumbra::gpu::headless::{HeadlessDevice, measure_costs};
-use antumbra::planner::Costs;
+use antumbra::planner::{Costs, Table};
 use std::path::PathBuf;
 
 /// Kept from an earlier run, or measured now. What cannot be kept is measured again next time.
@@ -23,12 +23,13 @@ pub fn of(device: &HeadlessDevice) -> Result<Costs, Error> {
     Ok(costs)
 }
 
-/// A file for each device name, in the user's cache.
+/// A file for each device name, in the user's cache, and for each table that costs are factors of.
 fn path(device: &str) -> Option<PathBuf> {
     let from = |name: &str| std::env::var_os(name).filter(|v| !v.is_empty()).map(PathBuf::from);
     let cache = from("XDG_CACHE_HOME").or_else(|| Some(from("HOME")?.join(".cache")))?;
     let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
     let name: String = device.chars().map(plain).collect();
-    let version = env!("CARGO_PKG_VERSION");
-    Some(cache.join("antumbra").join(format!("costs-{version}-{name}.txt")))
+    let probe = Table::own().probe;
+    let table = format!("{:.3}-{:.3}", probe.maps_ms, probe.pixels_ms);
+    Some(cache.join("antumbra").join(format!("costs-{table}-{name}.txt")))
 }
