@@ -96,14 +96,13 @@ fn same_with_and_without(all_words: &[&str]) {
             // A part of the occluders alone.
             let window = Some([[-0.1, -0.2], [0.3, 0.1]]);
             setups.push(("window", Setup { window, ..framed(scene) }));
-            for (nth_setup, (seen, setup)) in setups.iter().enumerate() {
-                // All settings meet every scene, light and view, though not all of their combinations.
-                let words = all_words[(nth_side + nth_scene + nth_setup) % all_words.len()];
-                let what = format!("{name} {seen}, L = {side}, {words}");
-                let (all, felt) = same_image(&device, setup, words, &what);
-                assert!(side > 1.0 || felt < all, "{what}: no tile was spared");
-                assert!(felt > 0 || *seen == "window", "{what}: nothing is shadowed");
-            }
+            // Every scene meets every light; views and settings take turns.
+            let (seen, setup) = &setups[(nth_side + nth_scene) % setups.len()];
+            let words = all_words[(nth_side + 2 * nth_scene) % all_words.len()];
+            let what = format!("{name} {seen}, L = {side}, {words}");
+            let (all, felt) = same_image(&device, setup, words, &what);
+            assert!(side > 1.0 || felt < all, "{what}: no tile was spared");
+            assert!(felt > 0 || *seen == "window", "{what}: nothing is shadowed");
         }
     }
 }
