@@ -146,7 +146,10 @@ impl Verdicts {
             }
             Effect::OutOfReach => {
                 let left = s.given.saturating_sub(s.occluders);
-                format!("{left} of {} occluder meshes can shadow no receiver", s.given)
+                format!(
+                    "{left} of {} occluder meshes are flat, with light and receivers on one side",
+                    s.given
+                )
             }
             Effect::Penumbra | Effect::InnerPenumbra => format!(
                 "the widest penumbra spans {:.2} pixels, with at most {:.2} edges in a pixel's width",
