@@ -88,8 +88,8 @@ pub mod visibility;
 pub use ash;
 pub use error::Error;
 pub use frame::{
-    BorderBarriers, Description, Frame, FramePlan, Geometry, HostImage, LightTexture, MeshBuffers,
-    MeshInstance, OccluderMaps, Visibility,
+    BorderBarriers, Description, Frame, FramePlan, FramePlans, Geometry, HostImage, LightTexture,
+    MeshBuffers, MeshInstance, OccluderMaps, Visibility,
 };
 pub use glam;
 pub use gpu::{Allocator, Host, HostDraw, Requirements, RetireQueue, Retired};

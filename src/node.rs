@@ -1,6 +1,8 @@
 //! The node: the host's whole view of the crate.
 
-use crate::frame::{self, Description, Frame, FramePlan, Left, Limits, Stamp, Whose};
+use crate::frame::{
+    self, Description, Frame, FramePlan, FramePlans, Left, Limits, Memory, Stamp, Whose, Workspace,
+};
 use crate::gpu::{Allocator, Host, HostDraw, NodeObjects, Requirements, Retired};
 use crate::graph::{Draw, Graph, Layer, Owner, Pass, Shape, Target, Work};
 use crate::planner::{self, Auto, Choice};
@@ -20,6 +22,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 pub struct ShadowNode {
     host: Host,
     description: Description,
+    /// The description with each of its settings alone.
+    chosen: Vec<Description>,
     limits: Limits,
     objects: NodeObjects,
     /// The names of the kinds of row that the objects were made for, settings by settings.
@@ -112,7 +116,8 @@ impl ShadowNode {
         let objects = NodeObjects::new(&host, allocator, &graphs, &description)?;
         let kinds = graphs.iter().flat_map(|graph| graph.kinds().map(|p| p.name)).collect();
         let left = Mutex::new(Left::new(description.lights, graphs.len()));
-        Ok(Self { host, description, limits, objects, kinds, stamp: next_stamp(), left })
+        let chosen = chosen(&description)?;
+        Ok(Self { host, description, chosen, limits, objects, kinds, stamp: next_stamp(), left })
     }
 
     fn left(&self) -> MutexGuard<'_, Left> {
@@ -130,11 +135,46 @@ impl ShadowNode {
     /// # Errors
     /// See [`frame::plan`].
     pub fn plan(&self, frame: &Frame) -> Result<FramePlan, Error> {
+        let mut plan = FramePlan::default();
+        self.plan_into(frame, &mut Workspace::default(), &mut Memory::default(), &mut plan)?;
+        Ok(plan)
+    }
+
+    /// Plans the frames of several lights, in order, into plans that are kept from frame to frame: after the first one it
+    /// takes no new memory, places a list of meshes that frames share once, and looks at them no more while their
+    /// revision stays. Record them in that order.
+    ///
+    /// # Errors
+    /// See [`frame::plan`]; the plans are then those of the frames before the one that is refused.
+    pub fn plan_all(&self, frames: &[Frame], plans: &mut FramePlans) -> Result<(), Error> {
+        plans.begin();
+        frames.iter().try_for_each(|frame| {
+            plans.add(|workspace, memory, plan| self.plan_into(frame, workspace, memory, plan))
+        })
+    }
+
+    fn plan_into(
+        &self,
+        frame: &Frame,
+        workspace: &mut Workspace,
+        memory: &mut Memory,
+        plan: &mut FramePlan,
+    ) -> Result<(), Error> {
         let whose = Whose { light: frame.light_index, settings: frame.settings_index };
         let kept = self.left().for_plan(whose);
-        let plan = frame::plan_with(&self.description, self.limits, frame, &kept)?;
+        let chosen;
+        let description = match self.chosen.get(frame.settings_index as usize) {
+            Some(description) => description,
+            // Says what is wrong.
+            None => {
+                chosen = self.description.choosing(frame.settings_index)?;
+                &*chosen
+            }
+        };
+        frame::plan_into(description, self.limits, frame, &kept, workspace, memory, plan)?;
         self.left().planned(whose, &plan.keeping);
-        Ok(plan.stamped(self.stamp, self.objects.result().0))
+        plan.stamp(self.stamp, self.objects.result().0);
+        Ok(())
     }
 
     /// Records a plan into a command buffer of the host's: no submit, no wait, no allocation.
@@ -193,7 +233,7 @@ impl ShadowNode {
     /// The same for one of the settings, as [`Frame::settings_index`] counts them.
     pub fn layer_pass_of(&self, settings_index: u32, layer: Layer) -> Option<LayerPass> {
         let description = self.description.choosing(settings_index).ok()?;
-        let graph = frame::nominal(&description, self.limits).graph;
+        let graph = frame::nominal(&description, self.limits);
         let draws = |p: &Pass| match p.work {
             Work::Raster { draw: Draw::Layer { layer: l, .. }, target, .. } => {
                 l == layer && matches!(target, Target::Depth { .. })
@@ -236,8 +276,9 @@ impl ShadowNode {
         if !self.objects.keeps_pipelines(&graphs) {
             return self.reconfigure(allocator, description);
         }
+        let chosen = chosen(&description)?;
         let old = self.objects.resize(&self.host, allocator, &graphs, &description)?;
-        self.description = description;
+        (self.description, self.chosen) = (description, chosen);
         self.stamp = next_stamp();
         self.left().clear();
         Ok(Retired::sized(self.host.clone(), old))
@@ -366,7 +407,13 @@ impl ShadowNode {
 
 /// Every row that any frame could run, for each of the description's settings.
 fn graphs(description: &Description, limits: Limits) -> Result<Vec<Graph>, Error> {
-    let of = |index| Ok(frame::nominal(&*description.choosing(index as u32)?, limits).graph);
+    let of = |index| Ok(frame::nominal(&*description.choosing(index as u32)?, limits));
+    (0..description.all_settings().count()).map(of).collect()
+}
+
+/// A description with each of its settings alone.
+fn chosen(description: &Description) -> Result<Vec<Description>, Error> {
+    let of = |index| Ok(description.choosing(index as u32)?.into_owned());
     (0..description.all_settings().count()).map(of).collect()
 }
 

@@ -78,7 +78,7 @@ fn what_is_kept_gives_the_same_pixels() {
         // Nothing changes: nothing runs, and the image stays.
         let idle = plan(&mut stage, &light, 0.25, numbers(1, 2));
         assert!(idle.plan.steps.is_empty(), "{words}");
-        assert!(idle.plan.skipped.iter().all(|s| !s.why.is_empty()));
+        assert!(idle.plan.reasons().all(|(_, why)| !why.to_string().is_empty()));
         for _ in 0..2 {
             assert_eq!(run(&mut stage, &idle), kept, "{words}: an idle frame changed the image");
         }

@@ -12,11 +12,11 @@ mod cases;
 #[path = "../technique/mod.rs"]
 mod technique;
 
-use antumbra::frame::{Limits, plan};
+use antumbra::frame::{Limits, plan_all};
 use antumbra::gpu::headless::{FrameTimes, HeadlessDevice, HeadlessOptions, Stage, View};
-use antumbra::graph::Scope;
+use antumbra::graph::{MeshList, Scope};
 use antumbra::scene::{Role, generate};
-use antumbra::{Description, Frame, Geometry, HostImage, MeshBuffers, MeshInstance};
+use antumbra::{Description, Frame, FramePlans, Geometry, HostImage, MeshBuffers, MeshInstance};
 use antumbra::{RectangleLight, Settings};
 use ash::vk::{self, Handle};
 use glam::{DMat4, DVec3};
@@ -116,26 +116,34 @@ fn pruned(_: &HeadlessDevice, options: &Options) -> Table {
 
 /// Frames of many meshes under many lights, of which each reaches some; no device.
 fn planning(_: &HeadlessDevice, options: &Options) -> Table {
-    let mut table = Table::new("planning", &["meshes", "lights", "us a frame", "us a light"]);
-    for meshes in [10, 100, 1000] {
-        for lights in [1, 4, 16] {
+    let columns = ["meshes", "lights", "reach m", "scene", "draws", "us a frame", "us a light"];
+    let mut table = Table::new("planning", &columns);
+    for (meshes, lights) in [(10, 1), (100, 4), (1000, 1), (1000, 4), (1000, 16)] {
+        for (reach, stays) in [(None, false), (Some(8.0), false), (None, true), (Some(8.0), true)] {
             let all = instances(meshes);
-            let lamps: Vec<RectangleLight> = (0..lights).map(lamp).collect();
             let description = Description { lights: 16, ..Description::new([1920, 1080]) };
+            let of = |i: u32| Frame {
+                light_index: i,
+                reach,
+                revision: stays.then_some(1),
+                ..frame(lamp(i), &all)
+            };
+            let frames: Vec<Frame> = (0..lights).map(of).collect();
+            let mut plans = FramePlans::new();
             let mut times = Vec::new();
-            for _ in 0..=4 * options.rounds {
+            for _ in 0..=40 * options.rounds {
                 let started = Instant::now();
-                for (i, light) in lamps.iter().enumerate() {
-                    let light_index = i as u32;
-                    let frame = Frame { light_index, ..frame(*light, &all) };
-                    std::hint::black_box(plan(&description, Limits::default(), &frame).unwrap());
-                }
+                plan_all(&description, Limits::default(), &frames, &mut plans).unwrap();
                 times.push(1e6 * started.elapsed().as_secs_f64());
             }
+            let draws = plans.all().iter().map(|p| p.meshes(MeshList::Occluders).len());
             let us = median(times);
             table.row(vec![
                 meshes.to_string(),
                 lights.to_string(),
+                reach.map_or_else(|| "-".into(), |r| r.to_string()),
+                if stays { "stays" } else { "moves" }.into(),
+                draws.sum::<usize>().to_string(),
                 format!("{us:.1}"),
                 format!("{:.1}", us / f64::from(lights)),
             ]);

@@ -73,15 +73,14 @@ impl Report<'_> {
             .map(|run| {
                 let name = run.pass.name;
                 let (Need::Yes(why) | Need::No(why)) = &run.pass.need;
-                json!({ "name": name, "ms": self.pass_ms(name), "times": run.times, "why": why })
+                json!({ "name": name, "ms": self.pass_ms(name), "times": run.times, "why": why.to_string() })
             })
             .collect();
         let skipped: Vec<_> = self
             .plan
             .plan
-            .skipped
-            .iter()
-            .map(|s| json!({ "name": graph.passes()[s.pass].name, "why": s.why }))
+            .reasons()
+            .map(|(pass, why)| json!({ "name": pass.name, "why": why.to_string() }))
             .collect();
         let memory: Map<String, Value> =
             self.memory.iter().map(|(name, bytes)| ((*name).into(), json!(bytes))).collect();
@@ -96,7 +95,7 @@ impl Report<'_> {
                     Outcome::NotSimulated => "missing",
                 };
                 let (name, why) = (v.effect.rule().name, verdicts.why(v.effect));
-                json!({ "name": name, "outcome": outcome, "bound": v.bound, "why": why })
+                json!({ "name": name, "outcome": outcome, "bound": v.bound, "why": why.to_string() })
             })
             .collect();
         let model = self.choice.map(|c| {

@@ -29,6 +29,7 @@ use super::twin::{level_side, level_start};
 use super::{Inputs, one_map, push};
 use crate::graph::{Access, Graph, Pass, Push, ResourceId, Use};
 use crate::shaders;
+use smallvec::smallvec;
 
 /// The level that is one node.
 fn top(map: u32) -> u32 {
@@ -52,7 +53,7 @@ pub fn declare(graph: &mut Graph, front: ResourceId, visibility: ResourceId, inp
             map: map as i32,
             inv_near: (1.0 / inputs.occluders.near) as f32,
         }),
-        vec![
+        smallvec![
             Use::bound(0, front, Access::SampledCompute),
             Use::bound(1, levels, Access::BufferWriteCompute),
         ],
@@ -64,7 +65,7 @@ pub fn declare(graph: &mut Graph, front: ResourceId, visibility: ResourceId, inp
             shaders::NEXT_LEVEL,
             grid(level),
             Push::new(&push::NextLevel { map: map as i32, level: level as i32 }),
-            vec![Use::bound(0, levels, Access::BufferUpdate)],
+            smallvec![Use::bound(0, levels, Access::BufferUpdate)],
             inputs.need,
         ));
     }

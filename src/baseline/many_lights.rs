@@ -32,6 +32,7 @@ use crate::shaders;
 use crate::visibility::grid;
 use ash::vk;
 use glam::{DMat4, DVec3};
+use smallvec::smallvec;
 
 /// A point on the light and how it sees the occluders.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,7 +97,7 @@ pub fn declare(graph: &mut Graph, visibility: ResourceId, points: &[LightPoint],
             background: gbuffer.background,
             masked: i32::from(gbuffer.mask.is_some()),
         }),
-        vec![
+        smallvec![
             Use::bound(0, gbuffer.depth, Access::SampledCompute),
             Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
             Use::bound(2, positions, Access::ImageWrite),
@@ -123,7 +124,7 @@ pub fn declare(graph: &mut Graph, visibility: ResourceId, points: &[LightPoint],
                 snap: inputs.snap,
                 map: point.view.side as i32,
             }),
-            vec![
+            smallvec![
                 Use::bound(0, positions, Access::SampledCompute),
                 Use::bound(1, normals, Access::SampledCompute),
                 Use::bound(2, depth, Access::SampledCompute),
@@ -137,7 +138,7 @@ pub fn declare(graph: &mut Graph, visibility: ResourceId, points: &[LightPoint],
         shaders::AVERAGE,
         grid(gbuffer.extent),
         Push::new(&push::Average { extent, points: points.len() as f32 }),
-        vec![
+        smallvec![
             Use::bound(0, hidden, Access::SampledCompute),
             Use::bound(1, visibility, Access::ImageWrite),
         ],

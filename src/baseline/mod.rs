@@ -32,9 +32,10 @@ pub use settings::Settings;
 
 use crate::RectangleLight;
 use crate::depth_layers::MapView;
-use crate::graph::{Access, Graph, Need, Pass, Push, ResourceId, Use};
+use crate::graph::{Access, Graph, Need, Pass, Push, ResourceId, Use, Uses};
 use crate::shaders::Module;
 use crate::visibility::{GBuffer, grid};
+use smallvec::smallvec;
 
 /// What a frame gives the techniques.
 #[derive(Clone, Copy, Debug)]
@@ -73,8 +74,8 @@ fn pixel_push(count: u32, inputs: &Inputs) -> Push {
 }
 
 /// What the passes over the pixels read: `pixels.glsl`, but for the image that they write.
-fn pixel_uses(front: ResourceId, gbuffer: &GBuffer) -> Vec<Use> {
-    vec![
+fn pixel_uses(front: ResourceId, gbuffer: &GBuffer) -> Uses {
+    smallvec![
         Use::bound(0, gbuffer.depth, Access::SampledCompute),
         Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
         Use::bound(2, front, Access::SampledCompute),
@@ -94,7 +95,7 @@ fn one_map(
 ) {
     let mut uses = pixel_uses(front, inputs.gbuffer);
     uses.push(Use::bound(3, visibility, Access::ImageWrite));
-    uses.extend(more);
+    uses.extend_from_slice(more);
     let (groups, push) = (grid(inputs.gbuffer.extent), pixel_push(count, inputs));
     graph.push(Pass::compute(name, shader, groups, push, uses, inputs.need));
 }

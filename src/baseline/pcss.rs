@@ -35,6 +35,7 @@ use crate::graph::{Access, Graph, Pass, Push, ResourceId, Use};
 use crate::shaders;
 use crate::visibility::grid;
 use crate::visibility::tiles::Tiles;
+use smallvec::smallvec;
 
 const NAME: &str = "baseline.pcss";
 
@@ -65,7 +66,7 @@ pub fn declare(
         shaders::NEAREST,
         grid([row; 2]),
         Push::new(&FinestLevel { map: map as i32, inv_near: (1.0 / occluders.near) as f32 }),
-        vec![
+        smallvec![
             Use::bound(0, front, Access::SampledCompute),
             Use::bound(1, nearest, Access::BufferWriteCompute),
         ],

@@ -21,18 +21,21 @@
 //! A host that has depth images of the occluders already lends those instead of meshes; a pass a
 //! layer then brings them into the form above, whatever their depth convention and window.
 
+mod boxes;
 mod host_maps;
 mod view;
 
+pub(crate) use boxes::LightBox;
 pub(crate) use host_maps::HostMapView;
 pub use view::{Eye, MapView, MeshBounds, fit_from, fit_occluders, fit_receivers, is_aside};
-pub(crate) use view::{tangents_of, thin_axis, window_of};
+pub(crate) use view::{fit_boxes, fit_boxes_from, fit_receiver_boxes, tangents_of, window_of};
 
 use crate::graph::{
     Access, Draw, Graph, Layer, Need, Owner, Pass, Push, ResourceId, Target, Use, Work,
 };
 use crate::shaders;
 use ash::vk;
+use smallvec::smallvec;
 
 /// The layers' format; the stored value is near · w.
 pub const FORMAT: vk::Format = vk::Format::D32_SFLOAT;
@@ -215,7 +218,7 @@ pub(crate) fn draw(
     let Raster { cull, clear, compare } = raster_of(layer);
     graph.push(Pass {
         name,
-        uses: vec![Use::fixed(image, Access::DepthTarget)],
+        uses: smallvec![Use::fixed(image, Access::DepthTarget)],
         push: Push::NONE,
         work: Work::Raster {
             vertex: shaders::DEPTH_VERT,
@@ -224,7 +227,7 @@ pub(crate) fn draw(
             target: Target::Depth { clear, compare },
             draw: Draw::Layer { layer, view },
         },
-        need: need.clone(),
+        need: *need,
     });
 }
 
@@ -243,7 +246,7 @@ fn taken(
     let near = camera.view.near;
     graph.push(Pass {
         name,
-        uses: vec![
+        uses: smallvec![
             Use::bound(0, map, Access::SampledCompute),
             Use::bound(1, image, Access::ImageWrite),
         ],
@@ -261,7 +264,7 @@ fn taken(
             shader: shaders::TAKE,
             groups: [side.div_ceil(8), side.div_ceil(8), 1],
         },
-        need: need.clone(),
+        need: *need,
     });
     image
 }

@@ -1,5 +1,6 @@
 //! The window that a light-space map looks through, fitted to what it must show.
 
+use super::boxes::LightBox;
 use crate::RectangleLight;
 use glam::{DMat4, DVec3, DVec4};
 
@@ -102,23 +103,8 @@ impl MapView {
     }
 }
 
-/// A box's corners in light space.
-fn corners(bounds: &MeshBounds, light_from_mesh: &DMat4) -> [DVec3; 8] {
-    std::array::from_fn(|i| {
-        let pick = |axis: usize| f64::from(bounds[(i >> axis) & 1][axis]);
-        light_from_mesh.transform_point3(DVec3::new(pick(0), pick(1), pick(2)))
-    })
-}
-
-/// Distances from the light's plane that boxes reach, as (least, largest); none where all lie behind.
-fn distances(boxes: &[[DVec3; 8]]) -> Option<(f64, f64)> {
-    let all = || boxes.iter().flatten().map(|p| p.z);
-    let largest = all().fold(f64::NEG_INFINITY, f64::max);
-    (largest > 0.0).then(|| (all().fold(f64::INFINITY, f64::min), largest))
-}
-
 /// The tangents under which the light's centre sees the part of the boxes beyond `near`.
-fn tangents(boxes: &[[DVec3; 8]], near: f64) -> Option<([f64; 2], [f64; 2])> {
+fn tangents(boxes: &[LightBox], near: f64) -> Option<([f64; 2], [f64; 2])> {
     extents(boxes, near, |p| [p.x, p.y].map(|x| (x / p.z).clamp(-MAX_TANGENT, MAX_TANGENT)))
 }
 
@@ -129,31 +115,24 @@ pub(crate) fn tangents_of(
     meshes: &[(MeshBounds, DMat4)],
     near: f64,
 ) -> Option<([f64; 2], [f64; 2])> {
-    let light_from_world = light.light_from_world();
-    let boxes: Vec<_> = meshes.iter().map(|(b, m)| corners(b, &(light_from_world * *m))).collect();
-    tangents(&boxes, near)
+    tangents(&LightBox::of_all(light, meshes), near)
 }
 
-/// Least and largest u and v under which an eye behind the light sees what of a mesh is beyond `near`, which is
+/// Least and largest u and v under which an eye behind the light sees what of a box is beyond `near`, which is
 /// counted from the eye as in [`MapView::near`]; none where nothing is.
-pub(crate) fn window_of(
-    eye: Eye,
-    light: &RectangleLight,
-    (bounds, world_from_mesh): &(MeshBounds, DMat4),
-    near: f64,
-) -> Option<([f64; 2], [f64; 2])> {
-    let boxes = [corners(bounds, &(light.light_from_world() * *world_from_mesh))];
+pub(crate) fn window_of(eye: Eye, of: &LightBox, near: f64) -> Option<([f64; 2], [f64; 2])> {
+    let boxes = std::slice::from_ref(of);
     match eye {
-        Eye::Behind(behind) => extents(&boxes, near - behind, |p| {
+        Eye::Behind(behind) => extents(boxes, near - behind, |p| {
             [p.x, p.y].map(|x| (x / (p.z + behind)).clamp(-MAX_TANGENT, MAX_TANGENT))
         }),
-        Eye::Infinity => extents(&boxes, near, |p| [p.x, p.y]),
+        Eye::Infinity => extents(boxes, near, |p| [p.x, p.y]),
     }
 }
 
 /// The least and the largest of what `of` says of the part of the boxes beyond `near`.
 fn extents(
-    boxes: &[[DVec3; 8]],
+    boxes: &[LightBox],
     near: f64,
     of: impl Fn(DVec3) -> [f64; 2],
 ) -> Option<([f64; 2], [f64; 2])> {
@@ -165,7 +144,7 @@ fn extents(
             max[i] = max[i].max(x);
         }
     };
-    for corners in boxes {
+    for LightBox { corners, .. } in boxes {
         for (i, &a) in corners.iter().enumerate() {
             if a.z >= near {
                 add(a);
@@ -194,44 +173,16 @@ fn pad(min: &mut [f64; 2], max: &mut [f64; 2], side: u32) {
     }
 }
 
-/// Flat is an extent of no more than this share of a box's largest.
-const FLAT: f64 = 1e-6;
-
-/// The axis along which a box has no extent: what it holds is a flat sheet; none where it is thick.
-pub(crate) fn thin_axis(bounds: &MeshBounds) -> Option<usize> {
-    let extent = |axis: usize| f64::from(bounds[1][axis]) - f64::from(bounds[0][axis]);
-    let largest = (0..3).map(extent).fold(0.0, f64::max);
-    (0..3).find(|&axis| extent(axis) <= FLAT * largest)
-}
-
 /// Whether a mesh is flat and has the whole light and every receiver on one side of its plane, as a
 /// ground has: no ray from the one to the other crosses it, so it blocks nothing, and a map need not
 /// spend its texels on it.
 pub fn is_aside(
     light: &RectangleLight,
-    (bounds, world_from_mesh): &(MeshBounds, DMat4),
+    mesh: &(MeshBounds, DMat4),
     receivers: &[(MeshBounds, DMat4)],
 ) -> bool {
-    let light_from_world = light.light_from_world();
-    let Some(thin) = thin_axis(bounds) else { return false };
-    let light_from_mesh = light_from_world * *world_from_mesh;
-    let axis = |i: usize| light_from_mesh.col(i).truncate();
-    let normal = axis((thin + 1) % 3).cross(axis((thin + 2) % 3)).normalize_or_zero();
-    if normal == DVec3::ZERO {
-        return false;
-    }
-    let own = corners(bounds, &light_from_mesh);
-    let slack = FLAT * own.iter().map(|p| p.distance(own[0])).fold(0.0, f64::max);
-    let [a, b] = light.half_extents();
-    let lamp = [(a, b), (a, -b), (-a, b), (-a, -b)].map(|(x, y)| DVec3::new(x, y, 0.0));
-    let seen = receivers.iter().flat_map(|(b, m)| corners(b, &(light_from_world * *m)));
-    let (mut above, mut below) = (true, true);
-    for p in lamp.into_iter().chain(seen) {
-        let height = normal.dot(p - own[0]);
-        above &= height >= -slack;
-        below &= height <= slack;
-    }
-    above || below
+    let own = LightBox::of_all(light, std::slice::from_ref(mesh));
+    own[0].is_aside(light.half_extents(), || LightBox::of_all(light, receivers).into_iter())
 }
 
 /// The view that just holds all occluders; none where there are none in front of the light.
@@ -244,33 +195,37 @@ pub fn fit_occluders(
     window: Option<[[f64; 2]; 2]>,
     side: u32,
 ) -> Option<MapView> {
+    fit_boxes(&LightBox::of_all(light, occluders), window, side)
+}
+
+/// The same of boxes.
+pub(crate) fn fit_boxes(
+    occluders: &[LightBox],
+    window: Option<[[f64; 2]; 2]>,
+    side: u32,
+) -> Option<MapView> {
     let Some([min, max]) = window else {
-        return fit_from(Eye::Behind(0.0), light, occluders, side);
+        return fit_boxes_from(Eye::Behind(0.0), occluders, side);
     };
-    let (_, near, far) = boxes_of(light, occluders)?;
+    let (near, far) = planes_of(occluders)?;
     Some(MapView { eye: Eye::Behind(0.0), min, max, near, far, side })
 }
 
-/// The occluders' corners in light space, and the distances of the near plane and of the furthest of them;
-/// none where all lie behind the light.
-fn boxes_of(
-    light: &RectangleLight,
-    occluders: &[(MeshBounds, DMat4)],
-) -> Option<(Vec<[DVec3; 8]>, f64, f64)> {
-    let light_from_world = light.light_from_world();
-    let (mut boxes, mut summed) = (Vec::new(), 0.0f64);
-    for (bounds, world_from_mesh) in occluders {
-        let light_from_mesh = light_from_world * *world_from_mesh;
-        boxes.push(corners(bounds, &light_from_mesh));
-        let most = [0, 1, 2].map(|i| f64::from(bounds[0][i].abs().max(bounds[1][i].abs())));
-        let row = light_from_mesh.row(2).abs();
-        summed = summed.max(row.dot(DVec3::from_array(most).extend(1.0)));
-    }
-    let (least, far) = distances(&boxes)?;
+/// Least and largest distance of boxes; none where all lie behind the light.
+fn distances(boxes: &[LightBox]) -> Option<(f64, f64)> {
+    let largest = boxes.iter().map(|b| b.max.z).fold(f64::NEG_INFINITY, f64::max);
+    let least = boxes.iter().map(|b| b.min.z).fold(f64::INFINITY, f64::min);
+    (largest > 0.0).then_some((least, largest))
+}
+
+/// The distances of the near plane and of the furthest occluder; none where all lie behind the light.
+fn planes_of(occluders: &[LightBox]) -> Option<(f64, f64)> {
+    let summed = occluders.iter().map(|b| b.summed).fold(0.0, f64::max);
+    let (least, far) = distances(occluders)?;
     let span = far - least;
     let margin = (NEAR_MARGIN * span + ROUNDING * summed).max(LEAST_SPAN * far - span);
     let near = (least - margin).max(far * MIN_NEAR);
-    Some((boxes, near, far))
+    Some((near, far))
 }
 
 /// As [`fit_occluders`], from an eye behind the light; what is behind the light is not seen.
@@ -280,18 +235,23 @@ pub fn fit_from(
     occluders: &[(MeshBounds, DMat4)],
     side: u32,
 ) -> Option<MapView> {
-    let (boxes, near, far) = boxes_of(light, occluders)?;
+    fit_boxes_from(eye, &LightBox::of_all(light, occluders), side)
+}
+
+/// The same of boxes.
+pub(crate) fn fit_boxes_from(eye: Eye, occluders: &[LightBox], side: u32) -> Option<MapView> {
+    let (near, far) = planes_of(occluders)?;
     let (mut window, near, far) = match eye {
         Eye::Behind(behind) => {
             let of = |p: DVec3| {
                 [p.x, p.y].map(|x| (x / (p.z + behind)).clamp(-MAX_TANGENT, MAX_TANGENT))
             };
-            (extents(&boxes, near, of)?, near + behind, far + behind)
+            (extents(occluders, near, of)?, near + behind, far + behind)
         }
         Eye::Infinity => {
             // What is furthest must not read as nothing.
             let far = far + NEAR_MARGIN * (far - near).max(far * MIN_NEAR);
-            (extents(&boxes, near, |p| [p.x, p.y])?, near, far)
+            (extents(occluders, near, |p| [p.x, p.y])?, near, far)
         }
     };
     pad(&mut window.0, &mut window.1, side);
@@ -305,19 +265,26 @@ pub fn fit_receivers(
     occluders: &MapView,
     side: u32,
 ) -> Option<MapView> {
-    let light_from_world = light.light_from_world();
-    let boxes: Vec<_> =
-        receivers.iter().map(|(b, m)| corners(b, &(light_from_world * *m))).collect();
-    let (least, far) = distances(&boxes)?;
+    fit_receiver_boxes(light.half_extents(), &LightBox::of_all(light, receivers), occluders, side)
+}
+
+/// The same of boxes, for a light of these half-extents.
+pub(crate) fn fit_receiver_boxes(
+    light: [f64; 2],
+    receivers: &[LightBox],
+    occluders: &MapView,
+    side: u32,
+) -> Option<MapView> {
+    let (least, far) = distances(receivers)?;
     // A receiver nearer than every occluder is lit, and must not hide one that is not.
     if far <= occluders.near {
         return None;
     }
     let near = least.max(occluders.near) * (1.0 - NEAR_MARGIN);
-    let (mut min, mut max) = tangents(&boxes, near)?;
+    let (mut min, mut max) = tangents(receivers, near)?;
     // A penumbra reaches (L/2)(w_o − w_r) around its occluder in u (Atty 2006 section 3.3).
     let spread = 1.0 / occluders.near - 1.0 / far;
-    for (i, half) in light.half_extents().into_iter().enumerate() {
+    for (i, half) in light.into_iter().enumerate() {
         min[i] = min[i].max(occluders.min[i] - half * spread);
         max[i] = max[i].min(occluders.max[i] + half * spread);
         if min[i] >= max[i] {

@@ -1,10 +1,11 @@
 //! What a frame's numbers and images must be, each refusal a sentence in the host's words.
 
+use super::boxes::Boxes;
 use super::rows::wanted;
-use super::{Description, Frame, Geometry, HostImage, Visibility};
+use super::{Description, Frame, HostImage, Visibility};
 use crate::graph::is_depth_format;
 use crate::light::outline;
-use crate::settings::Technique;
+use crate::settings::{Settings, Technique};
 use crate::{Error, visibility};
 use ash::vk::{self, ImageLayout as Layout, ImageUsageFlags as Usage};
 
@@ -41,7 +42,22 @@ fn takes_outlines(technique: Technique) -> bool {
 }
 
 impl Frame<'_> {
-    pub(super) fn check(&self, description: &Description) -> Result<(), Error> {
+    /// Whether everything but its meshes suits a node of this description, with these settings.
+    pub(super) fn check(
+        &self,
+        description: &Description,
+        settings: &Settings,
+    ) -> Result<(), Error> {
+        self.check_numbers(description, settings)?;
+        self.check_images(description, settings)
+    }
+
+    /// The same of all but its images.
+    pub(super) fn check_numbers(
+        &self,
+        description: &Description,
+        settings: &Settings,
+    ) -> Result<(), Error> {
         if self.slot >= description.frames_in_flight {
             return bad(format!(
                 "frame slot {} does not exist; the description has {} frames in flight",
@@ -54,7 +70,7 @@ impl Frame<'_> {
                 self.light_index, description.lights
             ));
         }
-        let technique = description.settings.technique;
+        let technique = settings.technique;
         if self.light.is_line() && needs_area(technique) {
             return bad(format!(
                 "the light is a line, and {} needs an area; choose linear-light, many-lights or \
@@ -72,30 +88,36 @@ impl Frame<'_> {
                 return bad("the occluder map's window must have finite tangents, least first");
             }
         }
-        for (index, mesh) in self.meshes.iter().enumerate() {
-            let bounds = mesh.bounds.iter().flatten();
-            if !mesh.world_from_mesh.is_finite() || bounds.into_iter().any(|b| !b.is_finite()) {
-                return bad(format!(
-                    "mesh {index}: its transform and bounds must be finite numbers"
-                ));
-            }
+        if let Some(reach) = self.reach.filter(|reach| !(*reach > 0.0)) {
+            return bad(format!(
+                "the light's reach is {reach}, and must be above 0 metres; leave it out for a light that \
+                 reaches everything"
+            ));
+        }
+        Ok(())
+    }
+
+    /// Whether the meshes of the frame, whose boxes are placed, suit a technique.
+    pub(super) fn check_meshes(&self, boxes: &Boxes, settings: &Settings) -> Result<(), Error> {
+        if let Some(index) = boxes.not_finite {
+            return bad(format!("mesh {index}: its transform and bounds must be finite numbers"));
+        }
+        match settings.technique {
             // A sample's place on the line is known on the device alone.
-            let drawn_by_host = matches!(mesh.geometry, Geometry::HostDrawn(_));
-            if technique == Technique::LinearLight && drawn_by_host {
-                return bad(format!(
+            Technique::LinearLight => boxes.host_drawn.map_or(Ok(()), |index| {
+                bad(format!(
                     "mesh {index} is drawn by the host, which does not know where linear-light puts its \
                      samples; give its buffers, or choose another technique"
-                ));
-            }
-            let sliced = technique == Technique::OcclusionTextures;
-            if sliced && mesh.role.blocks() && drawn_by_host {
-                return bad(format!(
+                ))
+            }),
+            Technique::OcclusionTextures => boxes.host_drawn_blocker.map_or(Ok(()), |index| {
+                bad(format!(
                     "mesh {index} is drawn by the host, which cannot sort it into the slices of \
                      occlusion-textures; give its buffers, or choose another technique"
-                ));
-            }
+                ))
+            }),
+            _ => Ok(()),
         }
-        self.check_images(description)
     }
 
     fn check_outline(&self, technique: Technique) -> Result<(), Error> {
@@ -116,7 +138,7 @@ impl Frame<'_> {
         }
     }
 
-    fn check_images(&self, description: &Description) -> Result<(), Error> {
+    fn check_images(&self, description: &Description, settings: &Settings) -> Result<(), Error> {
         let Description { extent, depth_format, mask_format, .. } = *description;
         let read = |name, format, extent| Wanted {
             name,
@@ -176,7 +198,7 @@ impl Frame<'_> {
         if self.window.is_some() {
             return bad("the occluder maps have a window of their own; give no other");
         }
-        let wanted = wanted(&description.settings);
+        let wanted = wanted(settings);
         let sides = [wanted.map; 2];
         check_image(&maps.front, &read("occluder_maps.front", format, sides))?;
         match &maps.back {

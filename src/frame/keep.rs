@@ -9,7 +9,7 @@
 //! And where every pixel is lit, and was so before, no number is needed to leave the image as it is.
 
 use super::Visibility;
-use crate::graph::{Graph, Need, Owner, ResourceId};
+use crate::graph::{Graph, Owner, ResourceId, Why};
 use ash::vk;
 
 /// The row that makes every pixel lit.
@@ -82,16 +82,15 @@ impl Keeping {
     }
 }
 
-/// Takes out of a frame's rows those that would make again what is kept. `pixels` are what the camera sees.
+/// Takes out of a frame's rows those that would make again what is kept.
 pub(super) fn apply(
     graph: &mut Graph,
-    pixels: &[ResourceId],
+    ties: &Ties,
     visibility: &Visibility,
     revisions: Revisions,
     kept: &Kept,
 ) -> Keeping {
-    let seen = ties_to_camera(graph, pixels);
-    let lit = graph.passes().iter().any(|p| p.name == LIT && matches!(p.need, Need::Yes(_)));
+    let lit = graph.passes().iter().any(|p| p.name == LIT && p.need.is_yes());
     let mut keeping = Keeping { revisions, makes_lit: lit, ..Keeping::default() };
     // An image of the host's may be another one each frame, and one in no layout holds nothing.
     let before = match visibility {
@@ -109,28 +108,28 @@ pub(super) fn apply(
     let all = revisions.scene.zip(revisions.view);
     let all = all.filter(|all| before.is_some() && kept.pixels == Some(*all));
     if let Some((scene, view)) = all {
-        let why = format!("scene revision {scene} and view revision {view} are drawn already");
-        graph.leave_out(|_| true, &why);
+        let why = Why::from("scene revision ").and(scene).and(" and view revision ").and(view);
+        graph.leave_out(|_| true, why.and(" are drawn already"));
         keeping.uses_pixels = all;
         keeping.makes_lit = false;
         return keeping;
     }
-    let in_light_space = |row: usize| !seen[row];
+    let in_light_space = |row: usize| !ties.rows[row];
     let passes = graph.passes().iter().enumerate();
-    let needed = passes.filter(|(row, p)| in_light_space(*row) && matches!(p.need, Need::Yes(_)));
+    let needed = passes.filter(|(row, p)| in_light_space(*row) && p.need.is_yes());
     // Beyond 64 kinds two share a bit; no technique has half as many.
     let rows = needed.fold(0, |bits, (row, _)| bits | 1u64 << (graph.kind_of(row) % 64));
     if rows == 0 {
         return keeping;
     }
-    for id in crossing(graph, &seen) {
+    for &id in &ties.crossing {
         graph.keep(id);
     }
     let maps = revisions.scene.map(|scene| Maps { scene, rows });
     match maps.filter(|maps| kept.maps == Some(*maps)) {
         Some(Maps { scene, .. }) => {
-            graph
-                .leave_out(in_light_space, &format!("the maps of scene revision {scene} are kept"));
+            let why = Why::from("the maps of scene revision ").and(scene).and(" are kept");
+            graph.leave_out(in_light_space, why);
             keeping.uses_maps = maps;
         }
         None => keeping.makes_maps = Some(rows),
@@ -138,46 +137,60 @@ pub(super) fn apply(
     keeping
 }
 
-/// Whether each row reads or writes anything that depends on the camera.
-fn ties_to_camera(graph: &Graph, pixels: &[ResourceId]) -> Vec<bool> {
-    let mut resources: Vec<bool> = (0..graph.resources().len())
-        .map(|i| graph.resources()[i].owner.is_result() || pixels.contains(&graph.id(i)))
-        .collect();
-    let mut rows = vec![false; graph.passes().len()];
-    loop {
-        let before = resources.clone();
-        for (row, pass) in rows.iter_mut().zip(graph.passes()) {
-            *row |= pass.uses.iter().any(|u| resources[u.resource.index()]);
-            if *row {
-                pass.writes().for_each(|id| resources[id.index()] = true);
-            }
-        }
-        // What is written anew after pixels have looked at it is not there when they look again.
-        let mut looked_at = vec![false; resources.len()];
-        for (row, pass) in rows.iter().zip(graph.passes()) {
-            if *row {
-                pass.reads().for_each(|id| looked_at[id.index()] = true);
-            } else {
-                pass.writes().for_each(|id| resources[id.index()] |= looked_at[id.index()]);
-            }
-        }
-        if resources == before {
-            return rows;
-        }
-    }
+/// What of a graph depends on the camera.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Ties {
+    /// Whether each row reads or writes anything that does.
+    rows: Vec<bool>,
+    /// What the other rows write and these read.
+    crossing: Vec<ResourceId>,
 }
 
-/// What rows of light space write and others read.
-fn crossing(graph: &Graph, seen: &[bool]) -> Vec<ResourceId> {
-    let of = |tied: bool| graph.passes().iter().zip(seen).filter(move |(_, s)| **s == tied);
-    let read: Vec<_> = of(true).flat_map(|(p, _)| p.reads()).collect();
-    let mut ids: Vec<_> = of(false)
-        .flat_map(|(p, _)| p.writes())
-        .filter(|id| read.contains(id) && graph.resource(*id).owner == Owner::Transient)
-        .collect();
-    ids.sort_unstable();
-    ids.dedup();
-    ids
+impl Ties {
+    /// Follows what the camera sees, `pixels`, through the rows.
+    pub fn find(&mut self, graph: &Graph, pixels: impl Iterator<Item = ResourceId>) {
+        let results = (0..graph.resources().len()).map(|i| graph.id(i));
+        let mut tied: Vec<bool> = results.map(|id| graph.resource(id).owner.is_result()).collect();
+        pixels.for_each(|id| tied[id.index()] = true);
+        self.rows.clear();
+        self.rows.resize(graph.passes().len(), false);
+        loop {
+            let before = tied.clone();
+            for (row, pass) in self.rows.iter_mut().zip(graph.passes()) {
+                *row |= pass.uses.iter().any(|u| tied[u.resource.index()]);
+                if *row {
+                    pass.writes().for_each(|id| tied[id.index()] = true);
+                }
+            }
+            // What is written anew after pixels have looked at it is not there when they look again.
+            let mut looked_at = vec![false; tied.len()];
+            for (row, pass) in self.rows.iter().zip(graph.passes()) {
+                if *row {
+                    pass.reads().for_each(|id| looked_at[id.index()] = true);
+                } else {
+                    pass.writes().for_each(|id| tied[id.index()] |= looked_at[id.index()]);
+                }
+            }
+            if tied == before {
+                break;
+            }
+        }
+        self.find_crossing(graph);
+    }
+
+    fn find_crossing(&mut self, graph: &Graph) {
+        let rows = &self.rows;
+        let of = |tied: bool| graph.passes().iter().zip(rows).filter(move |(_, s)| **s == tied);
+        let read: Vec<_> = of(true).flat_map(|(p, _)| p.reads()).collect();
+        self.crossing.clear();
+        self.crossing.extend(
+            of(false)
+                .flat_map(|(p, _)| p.writes())
+                .filter(|id| read.contains(id) && graph.resource(*id).owner == Owner::Transient),
+        );
+        self.crossing.sort_unstable();
+        self.crossing.dedup();
+    }
 }
 
 #[cfg(test)]
@@ -203,11 +216,12 @@ mod tests {
                 .map(|i| graph.id(i))
                 .find(|id| graph.resource(*id).name == "gbuffer.depth")
                 .unwrap();
-            let seen = ties_to_camera(&graph, &[depth]);
+            let mut ties = Ties::default();
+            ties.find(&graph, std::iter::once(depth));
             let mut names: Vec<_> = graph
                 .passes()
                 .iter()
-                .zip(&seen)
+                .zip(&ties.rows)
                 .filter(|(p, tied)| **tied && !STAND_INS.contains(&p.name))
                 .map(|(p, _)| p.name)
                 .collect();

@@ -1,24 +1,32 @@
 //! What the host says each frame, and the plan that follows from it. No Vulkan calls.
 
 mod accesses;
+mod boxes;
 mod check;
+mod fit;
 mod host;
+mod hull;
 mod keep;
 mod left;
 mod look;
 mod plan;
+mod plans;
 mod rows;
 #[cfg(test)]
 mod tests;
 
 pub use accesses::{BufferAccess, HostAccess, ImageBarrier, NodeUse};
+pub(crate) use boxes::Surroundings;
 pub use host::{
     BorderBarriers, Geometry, HostImage, MeshBuffers, MeshInstance, OccluderMaps, Visibility,
 };
 pub(crate) use left::{Left, Whose};
+pub(crate) use look::Looker;
+#[cfg(test)]
 pub(crate) use look::situation;
-pub use plan::{Faces, FramePlan, MeshDraw, plan};
-pub(crate) use plan::{Stamp, plan_with};
+pub use plan::{Faces, FramePlan, MeshDraw, plan, plan_all};
+pub(crate) use plan::{Memory, Stamp, Workspace, plan_into};
+pub use plans::FramePlans;
 pub(crate) use rows::nominal;
 pub use rows::{Limits, full_graph};
 
@@ -244,6 +252,10 @@ pub struct Frame<'a> {
     /// [`RectangleLight::around`] makes both of a polygon in the world. None: the whole rectangle.
     /// `linear-light` and `many-lights` take one.
     pub outline: Option<&'a [[f64; 2]]>,
+    /// How far the light reaches from its centre, metres above 0: the host takes nothing of it for what is further away.
+    /// Receivers beyond that need no shadow and occluders beyond cast none, so that neither is looked at. None:
+    /// everywhere.
+    pub reach: Option<f64>,
     /// Normalized device coordinates and depth to world space: the inverse of view and projection.
     ///
     /// The first row of pixels lies at y = −1, as Vulkan has it; where a host's y runs up (wgpu, or a
@@ -309,6 +321,7 @@ impl<'a> Frame<'a> {
             light_index: 0,
             settings_index: 0,
             outline: None,
+            reach: None,
             world_from_ndc,
             background: 0.0,
             meshes,

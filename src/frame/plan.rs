@@ -1,21 +1,26 @@
 //! From one frame to what it records.
 
 use super::accesses::{self, BufferAccess, HostAccess, ImageBarrier, NodeUse};
-use super::keep::{self, Keeping, Kept, Revisions};
+use super::boxes::Surroundings;
+use super::fit::Fit;
+use super::keep::{self, Keeping, Kept, Revisions, Ties};
 use super::left::Whose;
 use super::look::look;
-use super::rows::{Limits, build, wanted};
+use super::rows::{Ids, Limits, build, wanted};
 use super::{
-    BorderBarriers, Description, Frame, Geometry, HostImage, MeshBuffers, MeshInstance, Visibility,
+    BorderBarriers, Description, Frame, FramePlans, Geometry, HostImage, MeshBuffers, MeshInstance,
+    Visibility,
 };
-use crate::graph::{self, Border, MeshList, ResourceId};
+use crate::graph::{self, Border, Compiler, Draw, Graph, MeshList, ResourceId, Work};
 use crate::light::outline;
 use crate::linear_light;
 use crate::planner::Verdicts;
-use crate::settings::Technique;
-use crate::{Error, scene::Role};
+use crate::settings::{Settings, Technique};
+use crate::{Error, RectangleLight};
 use ash::vk;
 use glam::DMat4;
+use smallvec::{SmallVec, smallvec};
+use std::borrow::Cow;
 
 /// How a mesh's triangles are wound as the light sees them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -48,22 +53,44 @@ struct DrawList {
 }
 
 impl DrawList {
-    /// The meshes as each of some views sees them.
-    fn new(
-        description: &Description,
-        meshes: &[MeshInstance],
-        views: &[DMat4],
-    ) -> Result<Self, Error> {
-        let matrix =
-            |clip: &DMat4, m: &MeshInstance| (*clip * m.world_from_mesh).as_mat4().to_cols_array();
-        Ok(Self {
-            clip_from_mesh: views
-                .iter()
-                .flat_map(|clip| meshes.iter().map(move |m| matrix(clip, m)))
-                .collect(),
-            meshes: meshes.iter().map(|m| draw_of(description, m)).collect::<Result<_, _>>()?,
-        })
+    fn clear(&mut self) {
+        self.meshes.clear();
+        self.clip_from_mesh.clear();
     }
+
+    /// The meshes as each of some views sees them.
+    fn fill<'a>(
+        &mut self,
+        description: &Description,
+        meshes: impl Iterator<Item = &'a MeshInstance> + Clone,
+        views: &[DMat4],
+    ) -> Result<(), Error> {
+        self.clear();
+        for clip in views {
+            let matrix = |m: &MeshInstance| (*clip * m.world_from_mesh).as_mat4().to_cols_array();
+            self.clip_from_mesh.extend(meshes.clone().map(matrix));
+        }
+        for mesh in meshes {
+            self.meshes.push(draw_of(description, mesh)?);
+        }
+        Ok(())
+    }
+}
+
+/// Memory that planning uses again from frame to frame, for all lights.
+#[derive(Debug, Default)]
+pub(crate) struct Workspace {
+    graph: Graph,
+    compiler: Compiler,
+    borders: Vec<Border>,
+    pub surroundings: Surroundings,
+}
+
+/// What is remembered of a light from frame to frame.
+#[derive(Debug, Default)]
+pub(crate) struct Memory {
+    fit: Fit,
+    ties: Ties,
 }
 
 /// Which node a plan was made by, and since which resize; none for a plan made without a node.
@@ -92,6 +119,26 @@ pub struct FramePlan {
     accesses: Vec<HostAccess>,
     occluders: DrawList,
     receivers: DrawList,
+}
+
+impl Default for FramePlan {
+    /// Of no frame: no node records it.
+    fn default() -> Self {
+        Self {
+            plan: graph::Plan::default(),
+            imports: Vec::new(),
+            visibility: ResourceId::default(),
+            slot: 0,
+            verdicts: Verdicts::judge(None, &Settings::default(), None, false),
+            light_index: 0,
+            settings_index: 0,
+            stamp: Stamp::default(),
+            keeping: Keeping::default(),
+            accesses: Vec::new(),
+            occluders: DrawList::default(),
+            receivers: DrawList::default(),
+        }
+    }
 }
 
 impl FramePlan {
@@ -163,13 +210,12 @@ impl FramePlan {
     }
 
     /// Puts the node's mark on it, and the image that the node owns.
-    pub(crate) fn stamped(mut self, stamp: Stamp, own_visibility: vk::Image) -> Self {
+    pub(crate) fn stamp(&mut self, stamp: Stamp, own_visibility: vk::Image) {
         self.stamp = stamp;
         // Every image of the host's was checked to be none of these.
         for access in self.accesses.iter_mut().filter(|a| a.image == vk::Image::null()) {
             access.image = own_visibility;
         }
-        self
     }
 }
 
@@ -184,6 +230,26 @@ pub fn plan(description: &Description, limits: Limits, frame: &Frame) -> Result<
     plan_with(description, limits, frame, &Kept::default())
 }
 
+/// As [`plan`], of several lights, in memory that is kept: see [`ShadowNode::plan_all`](crate::ShadowNode::plan_all).
+///
+/// # Errors
+/// As [`plan`]; the plans are then those of the frames before the one that is refused.
+pub fn plan_all(
+    description: &Description,
+    limits: Limits,
+    frames: &[Frame],
+    plans: &mut FramePlans,
+) -> Result<(), Error> {
+    plans.begin();
+    let kept = Kept::default();
+    frames.iter().try_for_each(|frame| {
+        let description = &*description.choosing(frame.settings_index)?;
+        plans.add(|workspace, memory, plan| {
+            plan_into(description, limits, frame, &kept, workspace, memory, plan)
+        })
+    })
+}
+
 /// As [`plan`], for a node in which earlier frames have left something.
 pub(crate) fn plan_with(
     description: &Description,
@@ -192,93 +258,125 @@ pub(crate) fn plan_with(
     kept: &Kept,
 ) -> Result<FramePlan, Error> {
     let description = &*description.choosing(frame.settings_index)?;
-    frame.check(description)?;
-    let turned = match description.settings.technique {
-        Technique::LinearLight => linear_light::turned(&frame.light),
-        _ => frame.light,
-    };
-    let outline = match turned == frame.light {
-        true => frame.outline.map(<[_]>::to_vec),
-        false => frame.outline.map(outline::quarter_turned),
-    };
-    let frame = &Frame { light: turned, outline: outline.as_deref(), ..*frame };
-    let light = &frame.light;
-    let of_role = |keep: fn(Role) -> bool| {
-        let kept = frame.meshes.iter().filter(move |m| keep(m.role) && has_triangles(m));
-        kept.copied().collect::<Vec<_>>()
-    };
-    let receivers = of_role(Role::receives);
-    let mut occluders = of_role(Role::blocks);
-    let (views, verdicts) = look(description, frame, &mut occluders, &receivers)?;
-    let mut built = build(description, limits, light, &views);
-    let pixels: Vec<_> = [Some(built.depth), built.mask].into_iter().flatten().collect();
-    let revisions = Revisions { scene: frame.revision, view: frame.view_revision };
-    let keeping = keep::apply(&mut built.graph, &pixels, &frame.visibility, revisions, kept);
+    let (mut plan, mut memory) = (FramePlan::default(), Memory::default());
+    let workspace = &mut Workspace::default();
+    plan_into(description, limits, frame, kept, workspace, &mut memory, &mut plan)?;
+    Ok(plan)
+}
 
+/// As [`plan_with`], by a description that has the frame's settings alone, and in the memory of earlier frames of the
+/// light. After an error the plan is of no frame.
+pub(crate) fn plan_into(
+    description: &Description,
+    limits: Limits,
+    frame: &Frame,
+    kept: &Kept,
+    workspace: &mut Workspace,
+    memory: &mut Memory,
+    plan: &mut FramePlan,
+) -> Result<(), Error> {
+    plan.stamp = Stamp::default();
+    let settings = &description.settings;
+    frame.check(description, settings)?;
+    let (light, outline) = match settings.technique {
+        Technique::LinearLight => along(frame),
+        _ => (frame.light, frame.outline.map(Cow::Borrowed)),
+    };
+    let frame = &Frame { light, outline: outline.as_deref(), ..*frame };
+    let Workspace { graph, compiler, borders, surroundings } = workspace;
+    let Memory { fit, ties } = memory;
+    fit.update(description, settings, frame, surroundings)?;
+    let (views, verdicts) = look(description, frame, fit)?;
+    graph.clear();
+    let ids = build(graph, description, limits, &light, &views);
+    let occluder_clips = views.occluder_clips();
+    let receiver_view = views.receivers;
+    if !graph.has_rows_of(&plan.plan.graph) {
+        ties.find(graph, ids.pixels());
+    }
+    let revisions = Revisions { scene: frame.revision, view: frame.view_revision };
+    plan.keeping = keep::apply(graph, ties, &frame.visibility, revisions, kept);
+    plan.imports.clear();
+    plan.imports.extend(imports(&ids, frame));
+    borders.clear();
+    let of_import = |(resource, i): &(ResourceId, HostImage)| Border {
+        resource: *resource,
+        before: i.before,
+        after: i.after,
+    };
+    borders.extend(plan.imports.iter().map(of_import));
+    if let Visibility::Own { before, after } = frame.visibility {
+        borders.push(Border { resource: ids.visibility, before, after });
+    }
+    let place = frame.border_barriers == BorderBarriers::Node;
+    compiler.compile(graph, borders, place, &mut plan.plan)?;
+    plan.accesses.clear();
+    for border in &*borders {
+        plan.accesses.push(access_of(&plan.plan, border, &plan.imports, frame.light_index));
+    }
+    plan.visibility = ids.visibility;
+    plan.verdicts = verdicts;
+    plan.slot = frame.slot;
+    (plan.light_index, plan.settings_index) = (frame.light_index, frame.settings_index);
+
+    let to_light = fit.light_from_world;
+    let occluder_clips: SmallVec<[DMat4; 1]> =
+        occluder_clips.iter().map(|clip| *clip * to_light).collect();
+    let receiver_clips = match (wanted(settings).receiver_map, &receiver_view) {
+        (Some(_), Some(view)) => smallvec![view.clip_from_light() * to_light],
+        _ if settings.technique == Technique::LinearLight => occluder_clips.clone(),
+        _ => SmallVec::new(),
+    };
+    // What no row draws needs no matrices.
+    let FramePlan { plan: of, occluders, receivers, .. } = plan;
+    for (list, draws, placed, clips) in [
+        (MeshList::Occluders, occluders, &fit.occluders, &occluder_clips),
+        (MeshList::Receivers, receivers, &fit.receivers, &receiver_clips),
+    ] {
+        match is_drawn(of, list) {
+            true => draws.fill(description, placed.meshes(frame.meshes), clips)?,
+            false => draws.clear(),
+        }
+    }
+    Ok(())
+}
+
+/// Light and outline as linear lights take them, longer along x.
+fn along<'a>(frame: &Frame<'a>) -> (RectangleLight, Option<Cow<'a, [[f64; 2]]>>) {
+    let turned = linear_light::turned(&frame.light);
+    let outline = match turned == frame.light {
+        true => frame.outline.map(Cow::Borrowed),
+        false => frame.outline.map(|corners| Cow::Owned(outline::quarter_turned(corners))),
+    };
+    (turned, outline)
+}
+
+/// The host's images by resource.
+fn imports(ids: &Ids, frame: &Frame) -> impl Iterator<Item = (ResourceId, HostImage)> {
     let lent = |id: Option<ResourceId>, image: Option<HostImage>| id.zip(image);
     let maps = frame.occluder_maps;
     let result = match frame.visibility {
         Visibility::Lent(image) => Some(image),
         Visibility::Own { .. } => None,
     };
-    let imports: Vec<_> = [
-        lent(Some(built.depth), Some(frame.depth)),
-        lent(built.mask, frame.mask),
-        lent(built.occluder_maps[0], maps.map(|m| m.front)),
-        lent(built.occluder_maps[1], maps.and_then(|m| m.back)),
-        lent(built.light_texture, frame.light_texture),
-        lent(Some(built.visibility), result),
+    [
+        lent(Some(ids.depth), Some(frame.depth)),
+        lent(ids.mask, frame.mask),
+        lent(ids.occluder_maps[0], maps.map(|m| m.front)),
+        lent(ids.occluder_maps[1], maps.and_then(|m| m.back)),
+        lent(ids.light_texture, frame.light_texture),
+        lent(Some(ids.visibility), result),
     ]
     .into_iter()
     .flatten()
-    .collect();
-    let mut borders: Vec<_> = imports
-        .iter()
-        .map(|(resource, i)| Border { resource: *resource, before: i.before, after: i.after })
-        .collect();
-    if let Visibility::Own { before, after } = frame.visibility {
-        borders.push(Border { resource: built.visibility, before, after });
-    }
-    let place = frame.border_barriers == BorderBarriers::Node;
-    let plan = graph::compile(built.graph, &borders, place)?;
-
-    let to_light = light.light_from_world();
-    let wanted = wanted(&description.settings);
-    let occluder_clips: Vec<_> =
-        views.occluder_clips().into_iter().map(|clip| clip * to_light).collect();
-    let receiver_clips = match (wanted.receiver_map, &views.receivers) {
-        (Some(_), Some(view)) => vec![view.clip_from_light() * to_light],
-        _ if description.settings.technique == Technique::LinearLight => occluder_clips.clone(),
-        _ => Vec::new(),
-    };
-    Ok(FramePlan {
-        accesses: borders
-            .iter()
-            .map(|b| access_of(&plan, b, &imports, frame.light_index))
-            .collect(),
-        plan,
-        imports,
-        visibility: built.visibility,
-        slot: frame.slot,
-        verdicts,
-        light_index: frame.light_index,
-        settings_index: frame.settings_index,
-        stamp: Stamp::default(),
-        keeping,
-        occluders: DrawList::new(description, &occluders, &occluder_clips)?,
-        receivers: if receiver_clips.is_empty() {
-            DrawList::default()
-        } else {
-            DrawList::new(description, &receivers, &receiver_clips)?
-        },
-    })
 }
 
-pub(super) fn has_triangles(mesh: &MeshInstance) -> bool {
-    match mesh.geometry {
-        Geometry::Buffers(buffers) => buffers.count >= 3,
-        Geometry::HostDrawn(_) => true,
-    }
+/// Whether some row that runs draws the meshes of a list.
+fn is_drawn(plan: &graph::Plan, list: MeshList) -> bool {
+    plan.steps.iter().any(|step| match plan.graph.passes()[step.pass].work {
+        Work::Raster { draw: Draw::Layer { layer, .. }, .. } => layer.meshes() == list,
+        _ => false,
+    })
 }
 
 /// What a host must know of one image of the border.

@@ -3,12 +3,13 @@
 use super::Description;
 use crate::baseline::{self, hard::Filter, many_lights::LightPoint};
 use crate::depth_layers::{self, Eye, HostMapView, MapView};
-use crate::graph::{Graph, Need, Owner, ResourceId};
+use crate::graph::{Graph, Need, Owner, ResourceId, Why};
 use crate::planner::{Effect, Verdicts};
 use crate::settings::{Settings, Technique};
 use crate::visibility::{self, GBuffer};
 use crate::{RectangleLight, linear_light, occlusion_textures, ray_march, soft_shadow_map};
 use glam::DMat4;
+use smallvec::{SmallVec, smallvec};
 
 /// What a device's limits mean to a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,9 +25,8 @@ impl Default for Limits {
     }
 }
 
-/// The graph of one frame with the resources the host needs to find again.
-pub(crate) struct FrameGraph {
-    pub graph: Graph,
+/// The resources of a frame's graph that the host needs to find again.
+pub(super) struct Ids {
     pub depth: ResourceId,
     pub mask: Option<ResourceId>,
     pub occluder_maps: [Option<ResourceId>; 2],
@@ -34,17 +34,24 @@ pub(crate) struct FrameGraph {
     pub visibility: ResourceId,
 }
 
+impl Ids {
+    /// What the camera sees.
+    pub fn pixels(&self) -> impl Iterator<Item = ResourceId> {
+        std::iter::once(self.depth).chain(self.mask)
+    }
+}
+
 /// A view for rows that do not run.
 pub(super) const PLACEHOLDER: MapView =
     MapView { eye: Eye::Behind(0.0), min: [-1.0; 2], max: [1.0; 2], near: 1.0, far: 2.0, side: 16 };
 
 /// What the rows depend on, beyond the description.
-pub(super) struct Views {
+pub(super) struct Views<'a> {
     pub occluders: MapView,
     /// Those of many lights; empty for other techniques, and where nothing can be shadowed.
-    pub points: Vec<LightPoint>,
+    pub points: &'a [LightPoint],
     /// Those of linear lights, as `points`.
-    pub lines: Vec<linear_light::Line>,
+    pub lines: &'a [linear_light::Line],
     pub host_maps: Option<HostMapView>,
     pub receivers: Option<MapView>,
     pub needs: Needs,
@@ -102,8 +109,8 @@ fn back_is_for_its_own_sake(settings: &Settings) -> bool {
 impl Needs {
     /// Everything but what stands for something else.
     fn all(need: &Need) -> Self {
-        let [technique, hard, front, back, inner, filter] = [(); 6].map(|()| need.clone());
-        Self { technique, hard, front, back, inner, filter }
+        let need = *need;
+        Self { technique: need, hard: need, front: need, back: need, inner: need, filter: need }
     }
 
     /// By whether anything can be shadowed, and what of it matters.
@@ -111,19 +118,16 @@ impl Needs {
         let mut needs = Self::all(&need);
         let Need::Yes(_) = &need else { return needs };
         let left_out = |effect: Effect| {
-            let bound = verdicts.of(effect).bound;
-            let name = effect.rule().name;
-            Need::No(format!("{name}, ≤ {bound:.4}: {}", verdicts.why(effect)).into())
+            let why =
+                Why::from(effect.rule().name).and(", ≤ ").number(verdicts.of(effect).bound, 4);
+            Need::No(why.and(": ").because(&verdicts.why(effect)))
         };
         let soft = verdicts.needs(Effect::Penumbra) || !hardens(description);
         if soft {
             needs.hard = Need::No("the penumbra is needed".into());
         } else {
             let why = left_out(Effect::Penumbra);
-            needs.front = needs.hard.clone();
-            needs = Self { hard: need, technique: why.clone(), ..needs };
-            let [back, inner, filter] = [(); 3].map(|()| why.clone());
-            return Self { back, inner, filter, ..needs };
+            return Self { hard: need, front: need, ..Self::all(&why) };
         }
         if !verdicts.needs(Effect::BackSide) && back_is_for_its_own_sake(&description.settings) {
             needs.back = left_out(Effect::BackSide);
@@ -138,15 +142,15 @@ impl Needs {
     }
 }
 
-impl Views {
+impl Views<'_> {
     /// Light space to the clip space of each view of the occluders.
-    pub fn occluder_clips(&self) -> Vec<DMat4> {
+    pub fn occluder_clips(&self) -> SmallVec<[DMat4; 1]> {
         if !self.lines.is_empty() {
             self.lines.iter().map(linear_light::Line::line_from_light).collect()
         } else if !self.points.is_empty() {
             self.points.iter().map(LightPoint::clip_from_light).collect()
         } else {
-            vec![self.occluders.clip_from_light()]
+            smallvec![self.occluders.clip_from_light()]
         }
     }
 }
@@ -171,7 +175,7 @@ pub(super) fn wanted(settings: &Settings) -> depth_layers::Wanted {
 }
 
 /// Every row that any frame of this description could run; what a node makes its objects from.
-pub(crate) fn nominal(description: &Description, limits: Limits) -> FrameGraph {
+pub(crate) fn nominal(description: &Description, limits: Limits) -> Graph {
     let settings = &description.settings;
     let side = settings.map;
     let view = MapView { side, ..PLACEHOLDER };
@@ -183,10 +187,12 @@ pub(crate) fn nominal(description: &Description, limits: Limits) -> FrameGraph {
         Technique::LinearLight => settings.linear_light.lines,
         _ => 0,
     };
+    let points = vec![LightPoint { at: [0.0; 2], view }; points as usize];
+    let lines = vec![linear_light::Line::NONE; lines as usize];
     let views = Views {
         occluders: view,
-        points: (0..points).map(|_| LightPoint { at: [0.0; 2], view }).collect(),
-        lines: vec![linear_light::Line::NONE; lines as usize],
+        points: &points,
+        lines: &lines,
         host_maps: description.occluder_maps.map(|_| HostMapView {
             view,
             flip: [false; 2],
@@ -203,22 +209,25 @@ pub(crate) fn nominal(description: &Description, limits: Limits) -> FrameGraph {
         noise: 0,
         background: 0.0,
     };
-    build(description, limits, &RectangleLight::unit(), &views)
+    let mut graph = Graph::new();
+    build(&mut graph, description, limits, &RectangleLight::unit(), &views);
+    graph
 }
 
 /// The graph of a description with every row that any of its frames could run; the numbers in its
 /// push constants mean nothing.
 pub fn full_graph(description: &Description) -> Graph {
-    nominal(description, Limits::default()).graph
+    nominal(description, Limits::default())
 }
 
+/// Adds the rows of a frame to an empty graph.
 pub(super) fn build(
+    graph: &mut Graph,
     description: &Description,
     limits: Limits,
     light: &RectangleLight,
     views: &Views,
-) -> FrameGraph {
-    let mut graph = Graph::new();
+) -> Ids {
     let depth =
         graph.image("gbuffer.depth", description.depth_format, description.extent, Owner::Imported);
     let mask = description
@@ -231,15 +240,15 @@ pub(super) fn build(
             .occluder_maps
             .map(|format| graph.image(name, format, [settings.map; 2], Owner::Imported))
     };
-    let front = map(&mut graph, "occluder_maps.front");
-    let back = if wanted.back { map(&mut graph, "occluder_maps.back") } else { None };
+    let front = map(graph, "occluder_maps.front");
+    let back = if wanted.back { map(graph, "occluder_maps.back") } else { None };
     // Its size is the frame's to say; nothing is made from it.
     let light_texture = description
         .light_texture
         .map(|t| graph.image("light.texture", t.format, [1, 1], Owner::Imported));
     let color = description.has_color();
     let visibility =
-        visibility::declare(&mut graph, description.extent, color, description.lent_visibility);
+        visibility::declare(graph, description.extent, color, description.lent_visibility);
     let gbuffer = GBuffer {
         depth,
         mask,
@@ -273,7 +282,7 @@ pub(super) fn build(
     let mut nearest = None;
     match settings.technique {
         Technique::SoftShadowMap => {
-            let layers = layers(&mut graph);
+            let layers = layers(graph);
             nearest = Some(layers.front);
             let settings = &settings.soft_shadow_map;
             let inputs = soft_shadow_map::Inputs {
@@ -285,10 +294,10 @@ pub(super) fn build(
                 depth_error,
                 need,
             };
-            soft_shadow_map::declare(&mut graph, &layers, visibility, settings, &inputs);
+            soft_shadow_map::declare(graph, &layers, visibility, settings, &inputs);
         }
         Technique::RayMarch => {
-            let layers = layers(&mut graph);
+            let layers = layers(graph);
             nearest = Some(layers.front);
             let inputs = ray_march::Inputs {
                 light,
@@ -303,10 +312,10 @@ pub(super) fn build(
                 need,
                 filter: &needs.filter,
             };
-            ray_march::declare(&mut graph, &layers, visibility, &settings.ray_march, &inputs);
+            ray_march::declare(graph, &layers, visibility, &settings.ray_march, &inputs);
         }
         Technique::OcclusionTextures => {
-            let layers = settings.occlusion_textures.is_fitted().then(|| layers(&mut graph));
+            let layers = settings.occlusion_textures.is_fitted().then(|| layers(graph));
             let inputs = occlusion_textures::Inputs {
                 light,
                 view: &views.occluders,
@@ -314,46 +323,45 @@ pub(super) fn build(
                 need,
             };
             let settings = &settings.occlusion_textures;
-            occlusion_textures::declare(&mut graph, layers.as_ref(), visibility, settings, &inputs);
+            occlusion_textures::declare(graph, layers.as_ref(), visibility, settings, &inputs);
         }
         Technique::LinearLight => {
             let inputs = linear_light::Inputs {
-                lines: &views.lines,
+                lines: views.lines,
                 side: settings.map,
                 w_far: views.receivers.map_or(0.0, |r| 1.0 / r.far),
                 gbuffer: &gbuffer,
                 snap,
                 need,
             };
-            linear_light::declare(&mut graph, visibility, &settings.linear_light, &inputs);
+            linear_light::declare(graph, visibility, &settings.linear_light, &inputs);
         }
         Technique::Hard => {
-            let front = layers(&mut graph).front;
-            baseline::hard::declare(&mut graph, front, visibility, Filter::Three, &baseline);
+            let front = layers(graph).front;
+            baseline::hard::declare(graph, front, visibility, Filter::Three, &baseline);
         }
         Technique::Pcss => {
-            let front = *nearest.insert(layers(&mut graph).front);
+            let front = *nearest.insert(layers(graph).front);
             let settings = &settings.baseline;
-            baseline::pcss::declare(&mut graph, front, visibility, settings, &baseline);
+            baseline::pcss::declare(graph, front, visibility, settings, &baseline);
         }
         Technique::BackProjection => {
-            let front = *nearest.insert(layers(&mut graph).front);
-            baseline::back_projection::declare(&mut graph, front, visibility, &baseline);
+            let front = *nearest.insert(layers(graph).front);
+            baseline::back_projection::declare(graph, front, visibility, &baseline);
         }
         Technique::ManyLights => {
-            baseline::many_lights::declare(&mut graph, visibility, &views.points, &baseline);
+            baseline::many_lights::declare(graph, visibility, views.points, &baseline);
         }
     }
     if hardens(description) {
-        let front =
-            nearest.unwrap_or_else(|| depth_layers::hard(&mut graph, settings.map, &needs.hard));
+        let front = nearest.unwrap_or_else(|| depth_layers::hard(graph, settings.map, &needs.hard));
         let inputs = baseline::Inputs { need: &needs.hard, ..baseline };
-        baseline::hard::declare(&mut graph, front, visibility, Filter::One, &inputs);
+        baseline::hard::declare(graph, front, visibility, Filter::One, &inputs);
     }
     let lit = match (&needs.technique, &needs.hard) {
-        (Need::No(why), Need::No(_)) => Need::Yes(why.clone()),
+        (Need::No(why), Need::No(_)) => Need::Yes(*why),
         _ => Need::No("something can be shadowed, and is written elsewhere".into()),
     };
-    visibility::lit(&mut graph, visibility, description.extent, color, lit);
-    FrameGraph { graph, depth, mask, occluder_maps: [front, back], light_texture, visibility }
+    visibility::lit(graph, visibility, description.extent, color, lit);
+    Ids { depth, mask, occluder_maps: [front, back], light_texture, visibility }
 }

@@ -16,17 +16,20 @@ mod pass;
 mod plan;
 mod resource;
 mod show;
+mod why;
 
 pub use access::{Access, Scope};
 pub use barrier::{Barrier, State};
 pub use pass::{
     COLOR_ATTACHMENTS, Draw, Layer, MeshList, Need, PUSH_BYTES, Pass, Push, STORAGE_BYTES, Target,
-    Use, Work,
+    Use, Uses, Work,
 };
-pub use plan::{Border, BoundaryUse, Plan, ResourceBarrier, Skipped, Step, compile};
+pub(crate) use plan::Compiler;
+pub use plan::{Barriers, Border, BoundaryUse, Plan, ResourceBarrier, Skipped, Step, compile};
 pub(crate) use resource::aspects;
 pub use resource::{Owner, Resource, ResourceId, Shape, is_depth_format};
 pub use show::Run;
+pub use why::{Part, Why};
 
 use ash::vk;
 
@@ -85,11 +88,38 @@ impl Graph {
     }
 
     /// Leaves out rows that would run, by their place.
-    pub(crate) fn leave_out(&mut self, which: impl Fn(usize) -> bool, why: &str) {
+    pub(crate) fn leave_out(&mut self, which: impl Fn(usize) -> bool, why: impl Into<Why>) {
+        let why = why.into();
         let rows = self.passes.iter_mut().enumerate().filter(|(row, _)| which(*row));
-        for (_, pass) in rows.filter(|(_, p)| matches!(p.need, Need::Yes(_))) {
-            pass.need = Need::No(why.to_owned().into());
+        for (_, pass) in rows.filter(|(_, p)| p.need.is_yes()) {
+            pass.need = Need::No(why);
         }
+    }
+
+    /// Forgets everything but its memory.
+    pub(crate) fn clear(&mut self) {
+        self.resources.clear();
+        self.passes.clear();
+        self.kinds.clear();
+        self.firsts.clear();
+    }
+
+    /// Whether it is another one in push constants, grids and reasons alone: then it runs the same rows behind the same
+    /// barriers.
+    pub(crate) fn differs_in_numbers_alone(&self, other: &Self) -> bool {
+        let same = |(a, b): (&Pass, &Pass)| a.is_row_of(b) && a.need.is_yes() == b.need.is_yes();
+        self.has_rows_of(other)
+            && self.resources.iter().zip(&other.resources).all(|(a, b)| a.owner == b.owner)
+            && self.passes.iter().zip(&other.passes).all(same)
+    }
+
+    /// Whether resources and rows are the same as another's, whatever of them is needed or kept.
+    pub(crate) fn has_rows_of(&self, other: &Self) -> bool {
+        let same = |(a, b): (&Resource, &Resource)| a.name == b.name && a.shape == b.shape;
+        self.resources.len() == other.resources.len()
+            && self.passes.len() == other.passes.len()
+            && self.resources.iter().zip(&other.resources).all(same)
+            && self.passes.iter().zip(&other.passes).all(|(a, b)| a.is_row_of(b))
     }
 
     fn add(&mut self, resource: Resource) -> ResourceId {

@@ -1,9 +1,9 @@
 //! A pass is a row of data: its name, what it touches and how, its push constants, its work.
 
-use super::{Access, ResourceId};
+use super::{Access, ResourceId, Why};
 use crate::shaders::Module;
 use ash::vk;
-use std::borrow::Cow;
+use smallvec::SmallVec;
 
 /// The most that Vulkan guarantees for push constants.
 pub const PUSH_BYTES: usize = 128;
@@ -186,13 +186,23 @@ impl Work {
 }
 
 /// Whether the frame needs a pass, and why or why not.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Need {
     /// It runs unless nobody reads what it writes.
-    Yes(Cow<'static, str>),
+    Yes(Why),
     /// It does not run.
-    No(Cow<'static, str>),
+    No(Why),
 }
+
+impl Need {
+    /// Whether it is needed.
+    pub fn is_yes(&self) -> bool {
+        matches!(self, Self::Yes(_))
+    }
+}
+
+/// What a pass touches: as many as passes have lie in the pass itself.
+pub type Uses = SmallVec<[Use; 12]>;
 
 /// One row of the graph.
 ///
@@ -203,7 +213,7 @@ pub struct Pass {
     /// `room.pass`; the debug label is this behind `antumbra.`.
     pub name: &'static str,
     /// What it touches.
-    pub uses: Vec<Use>,
+    pub uses: Uses,
     /// Its push constants; a mesh draw pushes its matrices itself.
     pub push: Push,
     /// What it does.
@@ -219,14 +229,20 @@ impl Pass {
         shader: Module,
         groups: [u32; 3],
         push: Push,
-        uses: Vec<Use>,
+        uses: Uses,
         need: &Need,
     ) -> Self {
-        Self { name, uses, push, work: Work::Dispatch { shader, groups }, need: need.clone() }
+        let work = Work::Dispatch { shader, groups };
+        Self { name, uses, push, work, need: *need }
     }
 
     /// Whether a row of its name can be recorded with what was made for this one.
     pub fn is_kind_of(&self, other: &Self) -> bool {
+        self.is_row_of(other) && self.push.bytes().len() == other.push.bytes().len()
+    }
+
+    /// Whether it does what another one does, with other numbers: push constants, workgroups, view of the meshes.
+    pub(super) fn is_row_of(&self, other: &Self) -> bool {
         let same_work = match (self.work, other.work) {
             (Work::Dispatch { shader: a, .. }, Work::Dispatch { shader: b, .. }) => a == b,
             (
@@ -235,8 +251,7 @@ impl Pass {
             ) => a == b,
             (a, b) => a == b,
         };
-        let same_push = self.push.bytes().len() == other.push.bytes().len();
-        self.name == other.name && self.uses == other.uses && same_work && same_push
+        self.name == other.name && self.uses == other.uses && same_work
     }
 
     /// The resources it writes.

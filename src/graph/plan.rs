@@ -1,8 +1,9 @@
 //! From a graph to what one frame records.
 
-use super::{Access, Barrier, Graph, Need, Owner, ResourceId, Scope, State};
+use super::{Access, Barrier, Graph, Need, Owner, Pass, ResourceId, Scope, State, Why};
 use crate::Error;
 use ash::vk;
+use smallvec::SmallVec;
 
 /// How the host left an imported or exported resource, and how it wants it back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,6 +42,9 @@ pub struct ResourceBarrier {
     pub barrier: Barrier,
 }
 
+/// The barriers before a row: as many as rows have lie in the step itself.
+pub type Barriers = SmallVec<[ResourceBarrier; 6]>;
+
 /// A row that runs, behind the barriers it needs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Step {
@@ -49,20 +53,20 @@ pub struct Step {
     /// No earlier step is of its kind: later ones find their descriptors written.
     pub first: bool,
     /// What must happen first.
-    pub barriers: Vec<ResourceBarrier>,
+    pub barriers: Barriers,
 }
 
-/// A row that does not run, and why.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// A row that does not run; [`Plan::why_skipped`] says why.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Skipped {
     /// The row's place in [`Graph::passes`].
     pub pass: usize,
-    /// Why it was left out.
-    pub why: String,
+    /// It is needed, but nothing reads what it writes.
+    pub unread: bool,
 }
 
 /// What one frame does: the rows that run, in order, with their barriers.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plan {
     /// The graph with this frame's push constants and grids.
     pub graph: Graph,
@@ -74,6 +78,33 @@ pub struct Plan {
     pub skipped: Vec<Skipped>,
     /// How the host's resources are touched.
     pub boundary: Vec<BoundaryUse>,
+    /// What it was compiled for, beyond the graph.
+    borders: Vec<Border>,
+    places_borders: bool,
+}
+
+impl Plan {
+    /// Why a row does not run.
+    pub fn why_skipped(&self, skipped: &Skipped) -> Why {
+        let pass = &self.graph.passes()[skipped.pass];
+        match (&pass.need, skipped.unread) {
+            (Need::No(why), _) => *why,
+            (Need::Yes(_), _) => {
+                let outputs = pass.writes().map(|r| self.graph.resource(r).name).enumerate();
+                outputs
+                    .fold(Why::from("nothing reads "), |why, (nth, name)| match nth {
+                        0 => why.and(name),
+                        _ => why.and(" or ").and(name),
+                    })
+                    .and(" in this frame")
+            }
+        }
+    }
+
+    /// Every row that does not run, and why.
+    pub fn reasons(&self) -> impl Iterator<Item = (&Pass, Why)> {
+        self.skipped.iter().map(|s| (&self.graph.passes()[s.pass], self.why_skipped(s)))
+    }
 }
 
 /// Drops rows that are not needed or whose output nobody reads, and derives the barriers.
@@ -83,178 +114,238 @@ pub struct Plan {
 ///
 /// # Errors
 /// [`Error::Frame`] where a row reads what none has written, touches one resource twice, or does other
-/// work than an earlier one of its name, or where a resource of the host's has no border.
-pub fn compile(graph: Graph, borders: &[Border], place_borders: bool) -> Result<Plan, Error> {
-    if let Some(pass) = graph.mismatched_row() {
-        return Err(Error::Frame(format!(
-            "{}: rows of one name must touch the same resources in the same way with one shader; \
-             give this one another name",
-            pass.name
-        )));
-    }
-    let (kept, skipped) = select(&graph)?;
-    let mut states = Vec::with_capacity(graph.resources().len());
-    for (index, resource) in graph.resources().iter().enumerate() {
-        let id = ResourceId(index as u16);
-        let touched = kept.iter().any(|&p| graph.passes()[p].uses.iter().any(|u| u.resource == id));
-        let written = kept.iter().any(|&p| graph.passes()[p].writes().any(|r| r == id));
-        states.push(match resource.owner {
-            Owner::Kept if !written => State::left_in(readers(&graph, id)),
-            Owner::Kept => State::forgotten(everything(&graph, id)),
-            Owner::Transient => State::forgotten(everything(&graph, id)),
-            Owner::Imported | Owner::Exported | Owner::Lent => {
-                let border = borders.iter().find(|b| b.resource == id);
-                match border {
-                    Some(border) => State::left_in(border.before),
-                    None if !touched => State::forgotten(everything(&graph, id)),
-                    None => {
-                        return Err(Error::Frame(format!(
-                            "{}: the host must say how it leaves and takes back this resource",
-                            resource.name
-                        )));
-                    }
-                }
-            }
-        });
-    }
-
-    let mut boundary: Vec<BoundaryUse> = Vec::new();
-    let mut steps: Vec<Step> = Vec::with_capacity(kept.len());
-    let mut recorded = vec![false; graph.kinds().len()];
-    for &index in &kept {
-        let mut barriers = Vec::new();
-        for u in &graph.passes()[index].uses {
-            let resource = graph.resource(u.resource);
-            let border = borders.iter().find(|b| b.resource == u.resource);
-            let scope = scope_at(u.access, border.filter(|_| resource.owner == Owner::Imported));
-            let host_owned = !matches!(resource.owner, Owner::Transient | Owner::Kept);
-            let first = host_owned && !boundary.iter().any(|b| b.resource == u.resource);
-            if first {
-                let entry = if resource.owner == Owner::Imported {
-                    // Never written here, so one barrier can reach all of its readers.
-                    let rows = kept.iter().map(|&p| &graph.passes()[p]);
-                    let uses = rows.flat_map(|p| &p.uses).filter(|o| o.resource == u.resource);
-                    uses.map(|o| o.access.scope()).fold(scope, |all, one| Scope {
-                        stage: all.stage | one.stage,
-                        access: all.access | one.access,
-                        ..all
-                    })
-                } else {
-                    scope
-                };
-                let name = resource.name;
-                boundary.push(BoundaryUse {
-                    resource: u.resource,
-                    name,
-                    entry,
-                    exit: entry,
-                    writes: false,
-                });
-                if !place_borders {
-                    // The host's own barrier has made it ready for exactly this.
-                    states[u.resource.index()] = State::left_in(entry);
-                } else if resource.owner.is_result() {
-                    // Written whole: what it held may be forgotten, in whatever layout.
-                    let before = border.map_or(scope, |b| b.before);
-                    states[u.resource.index()] = State::forgotten(before);
-                }
-            }
-            let state = &mut states[u.resource.index()];
-            if (!first || place_borders)
-                && let Some(barrier) = state.touch(scope, u.access.writes())
-            {
-                barriers.push(ResourceBarrier { resource: u.resource, barrier });
-            }
-            if let Some(b) = boundary.iter_mut().find(|b| b.resource == u.resource) {
-                b.writes |= u.access.writes();
-            }
-        }
-        let first = !std::mem::replace(&mut recorded[graph.kind_of(index)], true);
-        steps.push(Step { pass: index, first, barriers });
-    }
-
-    for b in &mut boundary {
-        b.exit = states[b.resource.index()].scope();
-    }
-    let mut handover = Vec::new();
-    // What is kept is left as its readers find it.
-    for (index, resource) in graph.resources().iter().enumerate() {
-        let (id, state) = (ResourceId(index as u16), &mut states[index]);
-        let written = kept.iter().any(|&p| graph.passes()[p].writes().any(|r| r == id));
-        if resource.owner == Owner::Kept && written {
-            let barrier = state.touch(readers(&graph, id), false);
-            handover.extend(barrier.map(|barrier| ResourceBarrier { resource: id, barrier }));
-        }
-    }
-    if place_borders {
-        // What no row of this frame touches is handed over too: its next user counts on it.
-        for &Border { resource, after, .. } in borders {
-            let state = &mut states[resource.index()];
-            let barrier = state.touch(after, after.writes());
-            handover.extend(barrier.map(|barrier| ResourceBarrier { resource, barrier }));
-            if let Some(b) = boundary.iter_mut().find(|b| b.resource == resource) {
-                b.exit = after.in_layout(state.layout());
-            }
-        }
-    }
-    Ok(Plan { graph, steps, handover, skipped, boundary })
+/// work than the rows of its name before it; or where a resource of the host's has no border.
+pub fn compile(mut graph: Graph, borders: &[Border], place_borders: bool) -> Result<Plan, Error> {
+    let mut plan = Plan::default();
+    Compiler::default().compile(&mut graph, borders, place_borders, &mut plan)?;
+    Ok(plan)
 }
 
-/// The rows that run, and those that do not; checks that nothing is read before it is written.
-fn select(graph: &Graph) -> Result<(Vec<usize>, Vec<Skipped>), Error> {
-    let mut written: Vec<bool> = graph
-        .resources()
-        .iter()
-        .map(|r| matches!(r.owner, Owner::Imported | Owner::Kept))
-        .collect();
-    let mut wanted: Vec<bool> = graph.resources().iter().map(|r| r.owner.is_result()).collect();
-    let mut skipped = Vec::new();
-    let mut candidates = Vec::new();
-    for (index, pass) in graph.passes().iter().enumerate() {
-        match &pass.need {
-            Need::No(why) => skipped.push(Skipped { pass: index, why: why.to_string() }),
-            Need::Yes(_) => candidates.push(index),
+/// Compiles frame after frame in the same memory.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Compiler {
+    /// Of each resource.
+    states: Vec<State>,
+    there: Vec<bool>,
+    wanted: Vec<bool>,
+    /// The rows that run.
+    kept: Vec<usize>,
+    /// Of each kind of row.
+    recorded: Vec<bool>,
+}
+
+impl Compiler {
+    /// As [`compile`], into a plan of an earlier frame, whose graph is exchanged for this one. Where the two differ by
+    /// numbers alone, the steps stay as they are. After an error the plan is of no frame.
+    ///
+    /// # Errors
+    /// As [`compile`].
+    pub fn compile(
+        &mut self,
+        graph: &mut Graph,
+        borders: &[Border],
+        place_borders: bool,
+        plan: &mut Plan,
+    ) -> Result<(), Error> {
+        let same = plan.places_borders == place_borders
+            && plan.borders == borders
+            && plan.graph.differs_in_numbers_alone(graph);
+        std::mem::swap(&mut plan.graph, graph);
+        if same {
+            return Ok(());
         }
-    }
-    for &index in &candidates {
-        let pass = &graph.passes()[index];
-        for (n, u) in pass.uses.iter().enumerate() {
-            let name = graph.resource(u.resource).name;
-            let again = pass.uses[..n]
-                .iter()
-                .any(|o| o.resource == u.resource && (o.access.writes() || u.access.writes()));
-            if again {
-                return Err(Error::Frame(format!(
-                    "{}: touches {name} twice, once to write it; a pass may not read what it writes",
-                    pass.name
-                )));
-            }
-            if u.access.reads() && !written[u.resource.index()] {
-                return Err(Error::Frame(format!(
-                    "{}: reads {name}, which no earlier pass of this frame writes",
-                    pass.name
-                )));
-            }
+        plan.places_borders = place_borders;
+        plan.borders.clear();
+        if let Some(pass) = plan.graph.mismatched_row() {
+            return Err(Error::Frame(format!(
+                "{}: rows of one name must touch the same resources in the same way with one shader; \
+                 give this one another name",
+                pass.name
+            )));
         }
-        pass.writes().for_each(|r| written[r.index()] = true);
+        self.select(&plan.graph, &mut plan.skipped)?;
+        self.start(&plan.graph, borders)?;
+        self.place_steps(plan, borders);
+        self.hand_over(plan, borders);
+        plan.borders.extend_from_slice(borders);
+        Ok(())
     }
-    let mut kept = Vec::new();
-    for &index in candidates.iter().rev() {
-        let pass = &graph.passes()[index];
-        if pass.writes().any(|r| wanted[r.index()]) {
-            pass.reads().for_each(|r| wanted[r.index()] = true);
-            kept.push(index);
-        } else {
-            let outputs: Vec<_> = pass.writes().map(|r| graph.resource(r).name).collect();
-            skipped.push(Skipped {
-                pass: index,
-                why: format!("nothing reads {} in this frame", outputs.join(" or ")),
+
+    /// The state of each resource before the first row.
+    fn start(&mut self, graph: &Graph, borders: &[Border]) -> Result<(), Error> {
+        self.states.clear();
+        for (index, resource) in graph.resources().iter().enumerate() {
+            let id = ResourceId(index as u16);
+            let uses = || self.kept.iter().flat_map(|&p| &graph.passes()[p].uses);
+            let touched = uses().any(|u| u.resource == id);
+            let written = uses().any(|u| u.resource == id && u.access.writes());
+            self.states.push(match resource.owner {
+                Owner::Kept if !written => State::left_in(readers(graph, id)),
+                Owner::Kept => State::forgotten(everything(graph, id)),
+                Owner::Transient => State::forgotten(everything(graph, id)),
+                Owner::Imported | Owner::Exported | Owner::Lent => {
+                    let border = borders.iter().find(|b| b.resource == id);
+                    match border {
+                        Some(border) => State::left_in(border.before),
+                        None if !touched => State::forgotten(everything(graph, id)),
+                        None => {
+                            return Err(Error::Frame(format!(
+                                "{}: the host must say how it leaves and takes back this resource",
+                                resource.name
+                            )));
+                        }
+                    }
+                }
             });
         }
+        Ok(())
     }
-    kept.reverse();
-    skipped.sort_by_key(|s| s.pass);
-    Ok((kept, skipped))
+
+    /// The rows that run, with their barriers, and how they touch the host's resources.
+    fn place_steps(&mut self, plan: &mut Plan, borders: &[Border]) {
+        let Plan { graph, steps, boundary, places_borders, .. } = plan;
+        let (kept, states) = (&self.kept, &mut self.states);
+        steps.clear();
+        boundary.clear();
+        self.recorded.clear();
+        self.recorded.resize(graph.kinds().len(), false);
+        for &index in kept {
+            let mut barriers = Barriers::new();
+            for u in &graph.passes()[index].uses {
+                let resource = graph.resource(u.resource);
+                let border = borders.iter().find(|b| b.resource == u.resource);
+                let scope =
+                    scope_at(u.access, border.filter(|_| resource.owner == Owner::Imported));
+                let host_owned = !matches!(resource.owner, Owner::Transient | Owner::Kept);
+                let first = host_owned && !boundary.iter().any(|b| b.resource == u.resource);
+                if first {
+                    let entry = if resource.owner == Owner::Imported {
+                        // Never written here, so one barrier can reach all of its readers.
+                        let rows = kept.iter().map(|&p| &graph.passes()[p]);
+                        let uses = rows.flat_map(|p| &p.uses).filter(|o| o.resource == u.resource);
+                        uses.map(|o| o.access.scope()).fold(scope, |all, one| Scope {
+                            stage: all.stage | one.stage,
+                            access: all.access | one.access,
+                            ..all
+                        })
+                    } else {
+                        scope
+                    };
+                    let (resource, name) = (u.resource, resource.name);
+                    boundary.push(BoundaryUse {
+                        resource,
+                        name,
+                        entry,
+                        exit: entry,
+                        writes: false,
+                    });
+                    if !*places_borders {
+                        // The host's own barrier has made it ready for exactly this.
+                        states[u.resource.index()] = State::left_in(entry);
+                    } else if graph.resource(resource).owner.is_result() {
+                        // Written whole: what it held may be forgotten, in whatever layout.
+                        let before = border.map_or(scope, |b| b.before);
+                        states[u.resource.index()] = State::forgotten(before);
+                    }
+                }
+                let state = &mut states[u.resource.index()];
+                if (!first || *places_borders)
+                    && let Some(barrier) = state.touch(scope, u.access.writes())
+                {
+                    barriers.push(ResourceBarrier { resource: u.resource, barrier });
+                }
+                if let Some(b) = boundary.iter_mut().find(|b| b.resource == u.resource) {
+                    b.writes |= u.access.writes();
+                }
+            }
+            let first = !std::mem::replace(&mut self.recorded[graph.kind_of(index)], true);
+            steps.push(Step { pass: index, first, barriers });
+        }
+    }
+
+    /// What is left to whoever comes behind.
+    fn hand_over(&mut self, plan: &mut Plan, borders: &[Border]) {
+        let Plan { graph, boundary, handover, places_borders, .. } = plan;
+        let states = &mut self.states;
+        for b in boundary.iter_mut() {
+            b.exit = states[b.resource.index()].scope();
+        }
+        handover.clear();
+        // What is kept is left as its readers find it.
+        for (index, resource) in graph.resources().iter().enumerate() {
+            let (id, state) = (ResourceId(index as u16), &mut states[index]);
+            let mut rows = self.kept.iter().map(|&p| &graph.passes()[p]);
+            if resource.owner == Owner::Kept && rows.any(|p| p.writes().any(|r| r == id)) {
+                let barrier = state.touch(readers(graph, id), false);
+                handover.extend(barrier.map(|barrier| ResourceBarrier { resource: id, barrier }));
+            }
+        }
+        if *places_borders {
+            // What no row of this frame touches is handed over too: its next user counts on it.
+            for &Border { resource, after, .. } in borders {
+                let state = &mut states[resource.index()];
+                let barrier = state.touch(after, after.writes());
+                handover.extend(barrier.map(|barrier| ResourceBarrier { resource, barrier }));
+                if let Some(b) = boundary.iter_mut().find(|b| b.resource == resource) {
+                    b.exit = after.in_layout(state.layout());
+                }
+            }
+        }
+    }
+
+    /// The rows that run, and those that do not.
+    fn select(&mut self, graph: &Graph, skipped: &mut Vec<Skipped>) -> Result<(), Error> {
+        let Self { there, wanted, kept, .. } = self;
+        there.clear();
+        let lasts = |owner| matches!(owner, Owner::Imported | Owner::Kept);
+        there.extend(graph.resources().iter().map(|r| lasts(r.owner)));
+        wanted.clear();
+        wanted.extend(graph.resources().iter().map(|r| r.owner.is_result()));
+        skipped.clear();
+        kept.clear();
+        for (index, pass) in graph.passes().iter().enumerate() {
+            if !pass.need.is_yes() {
+                skipped.push(Skipped { pass: index, unread: false });
+                continue;
+            }
+            kept.push(index);
+            for (n, u) in pass.uses.iter().enumerate() {
+                let name = graph.resource(u.resource).name;
+                let again = pass.uses[..n]
+                    .iter()
+                    .any(|o| o.resource == u.resource && (o.access.writes() || u.access.writes()));
+                if again {
+                    return Err(Error::Frame(format!(
+                        "{}: touches {name} twice, once to write it; a pass may not read what it writes",
+                        pass.name
+                    )));
+                }
+                if u.access.reads() && !there[u.resource.index()] {
+                    return Err(Error::Frame(format!(
+                        "{}: reads {name}, which no earlier pass of this frame writes",
+                        pass.name
+                    )));
+                }
+            }
+            pass.writes().for_each(|r| there[r.index()] = true);
+        }
+        // From the last back: what is read is wanted of those before.
+        let mut place = kept.len();
+        for n in (0..kept.len()).rev() {
+            let index = kept[n];
+            let pass = &graph.passes()[index];
+            if pass.writes().any(|r| wanted[r.index()]) {
+                pass.reads().for_each(|r| wanted[r.index()] = true);
+                place -= 1;
+                kept[place] = index;
+            } else {
+                skipped.push(Skipped { pass: index, unread: true });
+            }
+        }
+        kept.drain(..place);
+        skipped.sort_unstable_by_key(|s| s.pass);
+        Ok(())
+    }
 }
 
 /// Every stage and access that any frame may have left a transient with.

@@ -1,6 +1,7 @@
 use super::*;
-use crate::graph::{Pass, Push, Use, Work};
+use crate::graph::{Pass, Push, Use, Uses, Work};
 use crate::shaders;
+use smallvec::smallvec;
 use vk::{AccessFlags as A, ImageLayout as L, PipelineStageFlags as S};
 
 const DRAWN: Scope = Scope {
@@ -30,9 +31,9 @@ fn plan_of(reads: &[Access], place_borders: bool) -> (Plan, ResourceId) {
     };
     for (&read, name) in reads.iter().zip(["one", "two"]) {
         let write = Use::fixed(middle, Access::BufferWriteCompute);
-        graph.push(row(name, vec![Use::fixed(depth, read), write]));
+        graph.push(row(name, smallvec![Use::fixed(depth, read), write]));
     }
-    let mut last = vec![Use::fixed(result, Access::ImageWrite)];
+    let mut last = smallvec![Use::fixed(result, Access::ImageWrite)];
     if !reads.is_empty() {
         last.push(Use::fixed(middle, Access::BufferReadCompute));
     }
@@ -71,7 +72,7 @@ fn buffers() -> (Graph, [ResourceId; 2], ResourceId) {
     (graph, buffers, result)
 }
 
-fn row(name: &'static str, uses: Vec<Use>, need: Need) -> Pass {
+fn row(name: &'static str, uses: Uses, need: Need) -> Pass {
     let work = Work::Dispatch { shader: shaders::LIT, groups: [1; 3] };
     Pass { name, uses, push: Push::NONE, work, need }
 }
@@ -88,19 +89,19 @@ fn compiled(graph: Graph, result: ResourceId) -> Result<Plan, Error> {
 fn nothing_is_read_before_it_is_written() {
     use Access::{BufferReadCompute as R, BufferWriteCompute as W, ImageWrite as I};
     let (mut graph, [a, b], result) = buffers();
-    let uses = vec![Use::fixed(a, R), Use::fixed(result, I)];
+    let uses = smallvec![Use::fixed(a, R), Use::fixed(result, I)];
     graph.push(row("early", uses.clone(), needed()));
     let error = compiled(graph, result).unwrap_err().to_string();
     assert!(error.contains("early") && error.contains("reads a,"), "{error}");
     // A row that does not run writes nothing.
     let (mut graph, _, _) = buffers();
-    graph.push(row("writer", vec![Use::fixed(a, W)], Need::No("test".into())));
+    graph.push(row("writer", smallvec![Use::fixed(a, W)], Need::No("test".into())));
     graph.push(row("reader", uses, needed()));
     assert!(compiled(graph, result).is_err());
     // Nor may a row read what it writes itself.
     let (mut graph, _, _) = buffers();
-    graph.push(row("writer", vec![Use::fixed(b, W)], needed()));
-    graph.push(row("both", vec![Use::fixed(b, R), Use::fixed(b, W)], needed()));
+    graph.push(row("writer", smallvec![Use::fixed(b, W)], needed()));
+    graph.push(row("both", smallvec![Use::fixed(b, R), Use::fixed(b, W)], needed()));
     let error = compiled(graph, result).unwrap_err().to_string();
     assert!(error.contains("touches b twice"), "{error}");
 }
@@ -109,13 +110,15 @@ fn nothing_is_read_before_it_is_written() {
 fn rows_whose_output_nobody_reads_drop_out_with_all_that_fed_them() {
     use Access::{BufferReadCompute as R, BufferWriteCompute as W, ImageWrite as I};
     let (mut graph, [a, b], result) = buffers();
-    graph.push(row("feeds", vec![Use::fixed(a, W)], needed()));
-    graph.push(row("unread", vec![Use::fixed(a, R), Use::fixed(b, W)], needed()));
-    graph.push(row("result", vec![Use::fixed(result, I)], needed()));
-    graph.push(row("off", vec![Use::fixed(b, W)], Need::No("not today".into())));
+    graph.push(row("feeds", smallvec![Use::fixed(a, W)], needed()));
+    graph.push(row("unread", smallvec![Use::fixed(a, R), Use::fixed(b, W)], needed()));
+    graph.push(row("result", smallvec![Use::fixed(result, I)], needed()));
+    graph.push(row("off", smallvec![Use::fixed(b, W)], Need::No("not today".into())));
     let plan = compiled(graph, result).unwrap();
     assert_eq!(plan.steps.iter().map(|s| s.pass).collect::<Vec<_>>(), [2]);
-    let why: Vec<_> = plan.skipped.iter().map(|s| (s.pass, s.why.as_str())).collect();
+    let why: Vec<_> =
+        plan.skipped.iter().map(|s| (s.pass, plan.why_skipped(s).to_string())).collect();
+    let why: Vec<_> = why.iter().map(|(pass, why)| (*pass, why.as_str())).collect();
     assert_eq!(
         why,
         [
@@ -129,7 +132,7 @@ fn rows_whose_output_nobody_reads_drop_out_with_all_that_fed_them() {
 #[test]
 fn a_lent_image_without_a_border_is_refused() {
     let (mut graph, _, result) = buffers();
-    graph.push(row("result", vec![Use::fixed(result, Access::ImageWrite)], needed()));
+    graph.push(row("result", smallvec![Use::fixed(result, Access::ImageWrite)], needed()));
     let error = compile(graph, &[], true).unwrap_err().to_string();
     assert!(error.contains("result") && error.contains("host must say"), "{error}");
 }
@@ -141,15 +144,15 @@ fn repeated(times: u32) -> (Graph, ResourceId) {
     };
     let (mut graph, [map, _], result) = buffers();
     let sum = graph.image("sum", vk::Format::R32_SFLOAT, [4; 2], Owner::Transient);
-    graph.push(row("clear", vec![Use::bound(0, sum, I)], needed()));
+    graph.push(row("clear", smallvec![Use::bound(0, sum, I)], needed()));
     for nth in 0..times {
         let push = Push::new(&nth);
-        let draw = row("draw", vec![Use::bound(0, map, W)], needed());
+        let draw = row("draw", smallvec![Use::bound(0, map, W)], needed());
         graph.push(Pass { push, ..draw });
-        let add = row("add", vec![Use::bound(0, map, R), Use::bound(1, sum, U)], needed());
+        let add = row("add", smallvec![Use::bound(0, map, R), Use::bound(1, sum, U)], needed());
         graph.push(Pass { push, ..add });
     }
-    let uses = vec![Use::bound(0, sum, Access::SampledCompute), Use::bound(1, result, I)];
+    let uses = smallvec![Use::bound(0, sum, Access::SampledCompute), Use::bound(1, result, I)];
     graph.push(row("average", uses, needed()));
     (graph, result)
 }
@@ -193,7 +196,7 @@ fn a_row_that_repeats_waits_for_itself() {
 #[test]
 fn what_is_updated_must_have_been_written() {
     let (mut graph, _, result) = buffers();
-    let uses = vec![Use::fixed(result, Access::ImageUpdate)];
+    let uses = smallvec![Use::fixed(result, Access::ImageUpdate)];
     graph.push(row("add", uses, needed()));
     let error = compiled(graph, result).unwrap_err().to_string();
     assert!(error.contains("add: reads result"), "{error}");
@@ -203,9 +206,13 @@ fn what_is_updated_must_have_been_written() {
 fn one_name_for_two_kinds_of_work_is_refused() {
     let (mut graph, [a, b], result) = buffers();
     for id in [a, b] {
-        graph.push(row("writer", vec![Use::bound(0, id, Access::BufferWriteCompute)], needed()));
+        graph.push(row(
+            "writer",
+            smallvec![Use::bound(0, id, Access::BufferWriteCompute)],
+            needed(),
+        ));
     }
-    graph.push(row("result", vec![Use::fixed(result, Access::ImageWrite)], needed()));
+    graph.push(row("result", smallvec![Use::fixed(result, Access::ImageWrite)], needed()));
     let error = compiled(graph, result).unwrap_err().to_string();
     assert!(error.contains("writer: rows of one name"), "{error}");
 }
@@ -228,9 +235,11 @@ fn what_is_kept_needs_no_barrier_again() {
             work: Work::Dispatch { shader: shaders::LIT, groups: [1; 3] },
             need,
         };
-        graph.push(row("make", vec![Use::fixed(map, Access::ImageWrite)], makes));
-        let look =
-            vec![Use::fixed(map, Access::SampledCompute), Use::fixed(result, Access::ImageWrite)];
+        graph.push(row("make", smallvec![Use::fixed(map, Access::ImageWrite)], makes));
+        let look = smallvec![
+            Use::fixed(map, Access::SampledCompute),
+            Use::fixed(result, Access::ImageWrite)
+        ];
         graph.push(row("look", look, Need::Yes("test".into())));
         let borders = [Border { resource: result, before: FETCHED, after: FETCHED }];
         (compile(graph, &borders, true).unwrap(), map)

@@ -3,7 +3,7 @@
 use ash::vk;
 
 /// Names a resource of one [`Graph`](super::Graph); made by its `image` and `buffer`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ResourceId(pub(super) u16);
 
 impl ResourceId {

@@ -48,9 +48,8 @@ impl Plan {
                 pass.name
             );
         }
-        for skipped in &self.skipped {
-            let name = self.graph.passes()[skipped.pass].name;
-            let _ = writeln!(text, "skip  {name:width$}  {}", skipped.why);
+        for (pass, why) in self.reasons() {
+            let _ = writeln!(text, "skip  {:width$}  {why}", pass.name);
         }
         text
     }

@@ -10,6 +10,7 @@ use crate::graph::{Access, Graph, Need, Owner, Pass, Push, ResourceId, Use};
 use crate::shaders;
 use crate::visibility::{GBuffer, grid};
 use ash::vk;
+use smallvec::smallvec;
 
 /// Texels of the image of places before a line's samples.
 pub(super) const SAMPLES_AT: u32 = 4;
@@ -139,7 +140,7 @@ pub fn declare(graph: &mut Graph, visibility: ResourceId, settings: &Settings, i
             lines: lines.len() as i32,
             masked: i32::from(gbuffer.mask.is_some()),
         }),
-        vec![
+        smallvec![
             Use::bound(0, gbuffer.depth, Access::SampledCompute),
             Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
             Use::bound(2, maps, Access::SampledCompute),

@@ -6,6 +6,7 @@ use crate::depth_layers::{self, Raster};
 use crate::graph::{Access, Draw, Graph, Layer, Pass, Push, ResourceId, Target, Use, Work};
 use crate::shaders;
 use crate::visibility::grid;
+use smallvec::smallvec;
 
 /// Receivers along and across the rows of `mask.comp`'s grid.
 pub(super) const RECEIVERS: [u32; 2] = [128, 32];
@@ -33,7 +34,7 @@ pub(super) fn place(graph: &mut Graph, of: &OfLine) {
             shaders::LINE_SPREAD,
             [1, 1, 1],
             Push::new(&push::Spread { count: settings.samples as i32 }),
-            vec![Use::bound(0, layers.of, Access::BufferWriteCompute)],
+            smallvec![Use::bound(0, layers.of, Access::BufferWriteCompute)],
             inputs.need,
         ));
         return;
@@ -62,7 +63,7 @@ pub(super) fn place(graph: &mut Graph, of: &OfLine) {
             line: line.length(),
             map: inputs.side as i32,
         }),
-        vec![
+        smallvec![
             Use::bound(0, layers.seen, Access::SampledCompute),
             Use::bound(1, layers.masks, Access::BufferWriteCompute),
         ],
@@ -77,7 +78,7 @@ pub(super) fn place(graph: &mut Graph, of: &OfLine) {
             most: settings.samples as i32,
             even: i32::from(line.is_touched()),
         }),
-        vec![
+        smallvec![
             Use::bound(0, layers.masks, Access::BufferReadCompute),
             Use::bound(1, layers.of, Access::BufferWriteCompute),
         ],
@@ -101,7 +102,7 @@ fn drawn(
     of: &OfLine,
 ) -> Pass {
     let Raster { cull, clear, compare } = depth_layers::raster_of(layer);
-    let mut uses = vec![Use::fixed(image, Access::DepthTarget)];
+    let mut uses = smallvec![Use::fixed(image, Access::DepthTarget)];
     uses.extend(sample.map(|_| Use::bound(0, of.made.layers.of, Access::BufferReadVertex)));
     Pass {
         name,
@@ -119,7 +120,7 @@ fn drawn(
             target: Target::Depth { clear, compare },
             draw: Draw::Layer { layer, view: of.row },
         },
-        need: of.inputs.need.clone(),
+        need: *of.inputs.need,
     }
 }
 
@@ -128,7 +129,7 @@ pub(super) fn take(of: &OfLine, layer: u32) -> Pass {
     let layers = &of.made.layers;
     Pass {
         name: "linear_light.take",
-        uses: vec![
+        uses: smallvec![
             Use::fixed(of.made.groups, Access::Indirect),
             Use::bound(0, layers.occluders, Access::SampledCompute),
             Use::bound(1, layers.receivers, Access::SampledCompute),
@@ -140,6 +141,6 @@ pub(super) fn take(of: &OfLine, layer: u32) -> Pass {
             layer: layer as i32,
         }),
         work: Work::Indirect { shader: shaders::LINE_TAKE, arguments: of.made.groups, offset: 0 },
-        need: of.inputs.need.clone(),
+        need: *of.inputs.need,
     }
 }

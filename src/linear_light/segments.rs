@@ -7,6 +7,7 @@ use crate::graph::{Access, Draw, Graph, Pass, Push, ResourceId, Target, Use, Wor
 use crate::shaders;
 use crate::visibility::grid;
 use ash::vk;
+use smallvec::smallvec;
 
 /// Where in [`super::passes::Made::groups`] the grids of a segment's rows are, and of the row that keeps the sample before.
 const SEGMENT: u64 = 16;
@@ -52,7 +53,7 @@ pub(super) fn start(graph: &mut Graph, of: &OfLine, nth: u32) {
             row: row as i32,
             groups: grid([inputs.side; 2])[0] as i32,
         }),
-        vec![
+        smallvec![
             Use::bound(0, made.layers.of, Access::BufferReadCompute),
             Use::bound(1, made.here, Access::BufferWriteCompute),
             Use::bound(2, made.draws, Access::BufferWriteCompute),
@@ -71,18 +72,18 @@ fn skins(graph: &mut Graph, of: &OfLine, skins: &Skins) {
         name: skins.edges,
         work: Work::Indirect { shader: shaders::EDGES, arguments: made.groups, offset: SEGMENT },
         push: Push::new(&push::Edges { u_window: line.u_window(), map, side: skins.side }),
-        uses: vec![
+        uses: smallvec![
             Use::fixed(made.groups, Access::Indirect),
             Use::bound(0, made.layers.seen, Access::SampledCompute),
             Use::bound(1, made.here, Access::BufferReadCompute),
             Use::bound(2, skins.skins, Access::BufferWriteCompute),
             Use::bound(3, made.draws, Access::BufferUpdate),
         ],
-        need: inputs.need.clone(),
+        need: *inputs.need,
     });
     graph.push(Pass {
         name: skins.draw,
-        uses: vec![
+        uses: smallvec![
             Use::fixed(skins.channel, Access::DepthTarget),
             Use::fixed(made.draws, Access::Indirect),
             Use::bound(0, skins.skins, Access::BufferReadVertex),
@@ -104,7 +105,7 @@ fn skins(graph: &mut Graph, of: &OfLine, skins: &Skins) {
             target: Target::Depth { clear: 1.0, compare: vk::CompareOp::LESS },
             draw: Draw::Indirect { arguments: made.draws, offset: skins.offset },
         },
-        need: inputs.need.clone(),
+        need: *inputs.need,
     });
 }
 
@@ -125,7 +126,7 @@ pub(super) fn keep(graph: &mut Graph, of: &OfLine, nth: u32) {
             offset: SAMPLE_BEFORE,
         },
         push: Push::new(&push::Keep { map: inputs.side as i32, layer: layer as i32 }),
-        uses: vec![
+        uses: smallvec![
             Use::fixed(made.groups, Access::Indirect),
             Use::bound(0, made.layers.seen, Access::SampledCompute),
             Use::bound(1, before, Access::SampledCompute),
@@ -133,6 +134,6 @@ pub(super) fn keep(graph: &mut Graph, of: &OfLine, nth: u32) {
             Use::bound(3, made.here, Access::BufferReadCompute),
             Use::bound(4, made.maps, Access::ImageWrite),
         ],
-        need: inputs.need.clone(),
+        need: *inputs.need,
     });
 }

@@ -12,6 +12,7 @@ use crate::nbuffer::Levels;
 use crate::shaders::{self, Module};
 use crate::visibility::{GBuffer, grid};
 use ash::vk;
+use smallvec::smallvec;
 
 /// The width of the image of filtered tiles: the largest that every device has (maxImageDimension2D).
 pub(super) const IMAGE_WIDTH: u32 = 4096;
@@ -80,7 +81,7 @@ pub fn declare(
         (false, true) => shaders::VISIBILITY_LEVELS_CORRELATED,
     };
     let gbuffer = inputs.gbuffer;
-    let mut uses = vec![
+    let mut uses = smallvec![
         Use::bound(0, gbuffer.depth, Access::SampledCompute),
         Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
         Use::bound(2, placement, Access::SampledCompute),
@@ -118,7 +119,7 @@ fn declare_placement(
         plane: if settings.is_correlated() { 0.5 } else { 1.0 },
         slices: settings.slices as i32,
     });
-    let mut uses = vec![Use::bound(0, placement, Access::ImageWrite)];
+    let mut uses = smallvec![Use::bound(0, placement, Access::ImageWrite)];
     let (name, shader, groups) = match layers {
         Some(layers) => {
             let histogram = declare_histogram(graph, layers, settings, inputs);
@@ -143,7 +144,7 @@ fn declare_histogram(
         shaders::HISTOGRAM_START,
         [BINS.div_ceil(64), 1, 1],
         Push::NONE,
-        vec![Use::bound(0, histogram, Access::BufferWriteCompute)],
+        smallvec![Use::bound(0, histogram, Access::BufferWriteCompute)],
         inputs.need,
     ));
     let map = wanted(settings, inputs.view.side).map;
@@ -156,7 +157,7 @@ fn declare_histogram(
             near: inputs.view.near as f32,
             span: (inputs.view.far - inputs.view.near) as f32,
         }),
-        vec![
+        smallvec![
             Use::bound(0, layers.front, Access::SampledCompute),
             Use::bound(1, layers.back.unwrap_or(layers.front), Access::SampledCompute),
             Use::bound(2, histogram, Access::BufferUpdate),
@@ -237,7 +238,7 @@ fn draw(
                 graph.image(name, format, [inputs.view.side; 2], Owner::Transient)
             })
             .collect();
-        let mut uses = vec![Use::bound(0, placement, Access::SampledFragment)];
+        let mut uses = smallvec![Use::bound(0, placement, Access::SampledFragment)];
         uses.extend(targets.iter().map(|&t| Use::fixed(t, Access::ColorTarget)));
         graph.push(Pass {
             name: drawn.rows[row],
@@ -250,7 +251,7 @@ fn draw(
                 target: Target::Add,
                 draw: Draw::Layer { layer: drawn.layer, view: 0 },
             },
-            need: inputs.need.clone(),
+            need: *inputs.need,
         });
         images.extend(targets);
     }
@@ -274,7 +275,7 @@ fn declare_mask(
     let side = inputs.view.side;
     let format = vk::Format::R32_UINT;
     let mask = graph.image("occlusion_textures.mask", format, [side; 2], Owner::Transient);
-    let mut uses = vec![Use::bound(0, mask, Access::ImageWrite)];
+    let mut uses = smallvec![Use::bound(0, mask, Access::ImageWrite)];
     for (images, first) in [(&fronts, 1), (&backs, 9)] {
         // What there is no slice for is not looked at.
         let bound = |i| images.get(i).or(images.first()).copied();
@@ -322,13 +323,16 @@ fn declare_sums(
             map: side as i32,
             correlated: i32::from(settings.is_correlated()),
         }),
-        vec![Use::bound(0, mask, Access::SampledCompute), Use::bound(1, sums, Access::ImageWrite)],
+        smallvec![
+            Use::bound(0, mask, Access::SampledCompute),
+            Use::bound(1, sums, Access::ImageWrite)
+        ],
     );
     row(
         "occlusion_textures.sum_columns",
         shaders::SUM_COLUMNS,
         Push::new(&push::SumColumns { map: side as i32 }),
-        vec![Use::bound(0, sums, Access::ImageUpdate)],
+        smallvec![Use::bound(0, sums, Access::ImageUpdate)],
     );
     sums
 }
@@ -360,7 +364,10 @@ fn declare_levels(
             kind,
             correlated: i32::from(settings.is_correlated()),
         }),
-        vec![Use::bound(0, mask, Access::SampledCompute), Use::bound(1, image, Access::ImageWrite)],
+        smallvec![
+            Use::bound(0, mask, Access::SampledCompute),
+            Use::bound(1, image, Access::ImageWrite)
+        ],
         inputs.need,
     ));
     for level in 2..=levels.top() {
@@ -369,7 +376,7 @@ fn declare_levels(
             shaders::MEANS_NEXT_LEVEL,
             groups(level),
             Push::new(&push::NextLevel { map: side as i32, kind, level: level as i32 }),
-            vec![Use::bound(0, image, Access::ImageUpdate)],
+            smallvec![Use::bound(0, image, Access::ImageUpdate)],
             inputs.need,
         ));
     }

@@ -13,7 +13,7 @@ use super::budget::Sound;
 use super::expected::{Expected, alike, expect, share, unmet};
 use super::table::Table;
 use super::{Budget, CANDIDATES, Choice, Costs, Likeness, Situation};
-use crate::frame::{self, Description, Frame};
+use crate::frame::{Description, Frame, Looker, Surroundings};
 use crate::settings::{Settings, Technique};
 use crate::soft_shadow_map::Sides;
 use crate::{Error, linear_light};
@@ -33,8 +33,10 @@ const LINE_OPEN: f64 = 0.012;
 const POLYGON: f64 = 0.01;
 
 /// What is remembered of a light.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Held {
+    /// What its boxes tell.
+    looker: Looker,
     candidate: Option<usize>,
     /// For how many frames another one would have been better.
     waited: u32,
@@ -48,6 +50,7 @@ struct Held {
 impl Default for Held {
     fn default() -> Self {
         Self {
+            looker: Looker::default(),
             candidate: None,
             waited: 0,
             worst: [0.0; CANDIDATES.len()],
@@ -78,12 +81,13 @@ pub struct Auto {
     budget: Budget,
     costs: Costs,
     held: Vec<Held>,
+    surroundings: Surroundings,
 }
 
 impl Auto {
     /// By a budget, on a device of these costs.
     pub fn new(budget: Budget, costs: Costs) -> Self {
-        Self { budget, costs, held: Vec::new() }
+        Self { budget, costs, held: Vec::new(), surroundings: Surroundings::default() }
     }
 
     /// What is known of the device, to be kept.
@@ -129,11 +133,12 @@ impl Auto {
         description: &Description,
         frames: &[Frame],
     ) -> Result<Vec<Choice>, Error> {
-        let situations: Vec<_> = frames
-            .iter()
-            .map(|frame| frame::situation(description, frame))
-            .collect::<Result<_, _>>()?;
         self.held.resize(frames.len(), Held::default());
+        self.surroundings.forget();
+        let lights = self.held.iter_mut().zip(frames);
+        let situations: Vec<_> = lights
+            .map(|(held, frame)| held.looker.situation(description, frame, &mut self.surroundings))
+            .collect::<Result<_, _>>()?;
         let sound = self.budget.sound();
         let pixels = f64::from(description.extent[0]) * f64::from(description.extent[1]);
         let mut expected: Vec<Vec<Expected>> = frames

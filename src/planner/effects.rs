@@ -1,6 +1,7 @@
 //! What a frame simulates and what it leaves out, by the rules of [`RULES`].
 
 use super::{COUNT, Effect, RULES, Situation};
+use crate::graph::Why;
 use crate::settings::{Settings, Technique};
 use crate::soft_shadow_map::Sides;
 use crate::{occlusion_textures, ray_march};
@@ -120,7 +121,7 @@ impl Verdicts {
     }
 
     /// Why an effect is simulated or left out, as part of a sentence.
-    pub fn why(&self, effect: Effect) -> String {
+    pub fn why(&self, effect: Effect) -> Why {
         let Some(s) = &self.situation else { return "nothing can be shadowed".into() };
         let needs = self.needs(effect);
         let hard = !self.needs(Effect::Penumbra);
@@ -128,68 +129,67 @@ impl Verdicts {
             && !matches!(effect, Effect::Shadow | Effect::OutOfReach | Effect::Penumbra)
             && !needs
         {
-            let pixels = s.penumbra_pixels;
-            let rest = "shadows are hard";
             return match effect {
                 Effect::SelfShadowing => "no mesh both blocks and receives".into(),
                 Effect::CutOuts => "no occluder is drawn by the host".into(),
                 Effect::Emission => "the light is the same all over".into(),
-                _ => format!("{rest}: the widest penumbra spans {pixels:.2} pixels"),
+                _ => Why::from("shadows are hard: the widest penumbra spans ")
+                    .number(s.penumbra_pixels, 2)
+                    .and(" pixels"),
             };
         }
+        let technique = self.settings.technique.name();
         match effect {
-            Effect::Shadow => {
-                let Situation { occluders, receivers, .. } = s;
-                format!(
-                    "{occluders} occluder meshes may shadow some of {receivers} receiver meshes"
-                )
-            }
-            Effect::OutOfReach => {
-                let left = s.given.saturating_sub(s.occluders);
-                format!(
-                    "{left} of {} occluder meshes are flat, with light and receivers on one side",
-                    s.given
-                )
-            }
-            Effect::Penumbra | Effect::InnerPenumbra => format!(
-                "the widest penumbra spans {:.2} pixels, with at most {:.2} edges in a pixel's width",
-                s.penumbra_pixels, s.edges_a_pixel
-            ),
+            Effect::Shadow => Why::default()
+                .and(s.occluders)
+                .and(" occluder meshes may shadow some of ")
+                .and(s.receivers)
+                .and(" receiver meshes"),
+            Effect::OutOfReach => Why::default()
+                .and(s.given.saturating_sub(s.occluders))
+                .and(" of ")
+                .and(s.given)
+                .and(" occluder meshes lie outside the hull of light and receivers, or are flat, with both on one side"),
+            Effect::Penumbra | Effect::InnerPenumbra => Why::from("the widest penumbra spans ")
+                .number(s.penumbra_pixels, 2)
+                .and(" pixels, with at most ")
+                .number(s.edges_a_pixel, 2)
+                .and(" edges in a pixel's width"),
             Effect::Area if s.light[1] == 0.0 => "the light is a line".into(),
-            Effect::Area => format!("the light is {:.3} by {:.3} m", s.light[0], s.light[1]),
+            Effect::Area => Why::from("the light is ")
+                .number(s.light[0], 3)
+                .and(" by ")
+                .number(s.light[1], 3)
+                .and(" m"),
             Effect::BackSide | Effect::Fusion if s.overlap => {
                 "occluders may lie before each other".into()
             }
             Effect::BackSide | Effect::Fusion if s.sheets => {
                 "every occluder is a sheet, and none lies before another".into()
             }
-            Effect::BackSide | Effect::Fusion => {
-                format!(
-                    "eq. 3 for the thickest occluder is {:.4}, and none lies before another",
-                    s.thickness
-                )
-            }
+            Effect::BackSide | Effect::Fusion => Why::from("eq. 3 for the thickest occluder is ")
+                .number(s.thickness, 4)
+                .and(", and none lies before another"),
             Effect::ThinOccluders if needs => "occluders may end within a slice".into(),
-            Effect::ThinOccluders => {
-                format!("{} has no slices", self.settings.technique.name())
+            Effect::ThinOccluders => Why::from(technique).and(" has no slices"),
+            Effect::SelfShadowing if needs => {
+                Why::default().and(s.both).and(" meshes block and receive")
             }
-            Effect::SelfShadowing if needs => format!("{} meshes block and receive", s.both),
             Effect::SelfShadowing => "no mesh both blocks and receives".into(),
             Effect::EyeLayer if needs => "layers=3, and occluders have insides".into(),
             Effect::EyeLayer => "layers=3 is not set, or no occluder has an inside".into(),
-            Effect::CutOuts if needs => format!("the host draws {} meshes", s.host_drawn),
+            Effect::CutOuts if needs => Why::from("the host draws ").and(s.host_drawn).and(" meshes"),
             Effect::CutOuts => "no occluder is drawn by the host".into(),
             Effect::Emission if needs => "the host lends a texture of the light".into(),
             Effect::Emission => "the light is the same all over".into(),
             Effect::Noise if self.settings.technique != Technique::RayMarch => {
-                format!("{} has no noise", self.settings.technique.name())
+                Why::from(technique).and(" has no noise")
             }
             Effect::Noise if !self.settings.ray_march.filter => "filter=off".into(),
-            Effect::Noise => format!(
-                "penumbrae span up to {:.2} pixels, and the filter acts on those of more than {:.2}",
-                s.penumbra_pixels,
-                filtered_from(&self.settings.ray_march)
-            ),
+            Effect::Noise => Why::from("penumbrae span up to ")
+                .number(s.penumbra_pixels, 2)
+                .and(" pixels, and the filter acts on those of more than ")
+                .number(filtered_from(&self.settings.ray_march), 2),
         }
     }
 }

@@ -36,8 +36,8 @@ pub use costs::Costs;
 pub use effects::{HARD_PIXELS, Outcome, Verdict, Verdicts};
 pub use likeness::{Likeness, PARTS};
 pub use rules::{COUNT, Effect, RULES, Rule};
-pub(crate) use situation::Seen;
 pub use situation::Situation;
+pub(crate) use situation::{Camera, Seen};
 pub use table::{COLUMNS, Measured, PIXELS, PROBE, Table, View};
 
 #[cfg(test)]

@@ -1,9 +1,8 @@
 //! What boxes tell of a light, its occluders and its receivers: in microseconds, before anything is drawn.
 
-use crate::RectangleLight;
-use crate::depth_layers::{self, Eye, MapView, MeshBounds};
+use crate::depth_layers::{self, Eye, LightBox, MapView};
 use crate::frame::{Geometry, MeshInstance};
-use glam::{DMat4, DVec3, DVec4};
+use glam::{DMat4, DVec4};
 
 /// More occluders than this are not compared in pairs: they count as overlapping.
 const MOST_COMPARED: usize = 16;
@@ -56,73 +55,100 @@ pub struct Situation {
     pub size: f64,
 }
 
-/// What a situation is made from.
+/// What a situation is made from, beyond what the camera sees.
 pub(crate) struct Seen<'a> {
-    pub light: &'a RectangleLight,
-    /// Those that may block, and how many there were.
-    pub occluders: &'a [MeshInstance],
+    pub light: [f64; 2],
+    /// How many meshes block, whether or not they matter.
     pub given: usize,
-    pub receivers: &'a [MeshInstance],
+    pub receivers: &'a [LightBox],
     /// The part of the receivers that may be shadowed, from the light's centre.
     pub shadowed: &'a MapView,
     /// How the technique's map looks at the occluders.
     pub map: &'a MapView,
-    pub world_from_ndc: &'a DMat4,
+}
+
+/// A camera, as pixels have it.
+pub(crate) struct Camera {
+    pub light_from_world: DMat4,
+    pub world_from_ndc: DMat4,
     pub extent: [u32; 2],
 }
 
 impl Situation {
     /// Looks at a frame's boxes. The occluders are those that the node draws; where the host lends maps there are none,
-    /// and the situation says of them what the maps' view does, at its worst.
-    pub(crate) fn of(seen: &Seen) -> Self {
-        let light_from_world = seen.light.light_from_world();
-        let [a, b] = seen.light.half_extents();
+    /// and the situation says of them what the maps' view does, at its worst. What pixels are to it is still unknown.
+    pub(crate) fn of<'a>(
+        seen: &Seen,
+        occluders: impl Iterator<Item = (&'a MeshInstance, &'a LightBox)>,
+    ) -> Self {
         let (shadowed, map) = (seen.shadowed, seen.map);
-        let nearest_receiver = least_distance(&light_from_world, seen.receivers);
+        let nearest_receiver = seen.receivers.iter().map(|b| b.min.z).fold(f64::INFINITY, f64::min);
         let behind = match map.eye {
             Eye::Behind(behind) => behind,
             Eye::Infinity => 0.0,
         };
         let near = (map.near - behind).max(1e-4 * shadowed.far);
         let mut s = Self {
-            light: [2.0 * a, 2.0 * b],
-            occluders: seen.occluders.len(),
+            light: seen.light,
+            occluders: 0,
             given: seen.given,
             receivers: seen.receivers.len(),
-            both: seen.occluders.iter().filter(|m| m.role.receives()).count(),
+            both: 0,
             host_drawn: 0,
             triangles: 0,
             occluder_distances: [near, (map.far - behind).max(near)],
             receiver_distances: [nearest_receiver.max(near), shadowed.far.max(near)],
-            sheets: !seen.occluders.is_empty(),
+            sheets: true,
             open: false,
-            overlap: seen.occluders.is_empty(),
-            thickness: if seen.occluders.is_empty() { 1.0 } else { 0.0 },
+            overlap: false,
+            thickness: 0.0,
             penumbra: 0.0,
-            penumbra_pixels: 0.0,
-            edges: if seen.occluders.is_empty() { f64::INFINITY } else { 0.0 },
-            edges_a_pixel: 0.0,
-            texel_pixels: 0.0,
+            penumbra_pixels: f64::INFINITY,
+            edges: 0.0,
+            edges_a_pixel: 1.0,
+            texel_pixels: f64::INFINITY,
             size: 0.0,
         };
-        let [smallest, largest] = pixel_sizes(seen, &light_from_world);
-        for mesh in seen.occluders {
-            s.add(mesh, &light_from_world);
+        let texel = [0, 1].map(|i| (map.max[i] - map.min[i]) / f64::from(map.side));
+        let mut windows = [None; MOST_COMPARED];
+        for (mesh, placed) in occluders {
+            s.add(mesh, placed);
+            // More are not compared.
+            if let Some(window) = windows.get_mut(s.occluders) {
+                *window = depth_layers::window_of(map.eye, placed, map.near);
+                let before = &windows[..s.occluders];
+                s.overlap |= before.iter().any(|b| meet(&windows[s.occluders], b, texel));
+            } else {
+                s.overlap = true;
+            }
+            s.occluders += 1;
         }
-        s.overlap |= overlapping(seen);
+        if s.occluders == 0 {
+            s = Self { sheets: false, overlap: true, thickness: 1.0, edges: f64::INFINITY, ..s };
+        }
         s.penumbra = s.light[0].max(s.light[1]) * (s.receiver_distances[1] / near - 1.0).max(0.0);
-        s.penumbra_pixels = if smallest > 0.0 { s.penumbra / smallest } else { f64::INFINITY };
-        s.edges_a_pixel = (s.edges * largest).min(1.0);
         let middle = 0.5 * (s.occluder_distances[0] + s.occluder_distances[1]);
         let side = (0..2).map(|i| map.max[i] - map.min[i]).fold(f64::INFINITY, f64::min);
-        let reach = if map.eye == Eye::Infinity { 1.0 } else { s.receiver_distances[1] + behind };
-        s.texel_pixels = side * reach / f64::from(map.side) / smallest;
         s.size = side * if map.eye == Eye::Infinity { 1.0 } else { middle + behind };
         s
     }
 
-    fn add(&mut self, mesh: &MeshInstance, light_from_world: &DMat4) {
-        let to_light = *light_from_world * mesh.world_from_mesh;
+    /// The same with what a camera's pixels are to it.
+    pub(crate) fn seen_by(mut self, camera: &Camera, shadowed: &MapView, map: &MapView) -> Self {
+        let [smallest, largest] = pixel_sizes(camera, shadowed);
+        let by_pixel = |metres: f64| if smallest > 0.0 { metres / smallest } else { f64::INFINITY };
+        self.penumbra_pixels = by_pixel(self.penumbra);
+        self.edges_a_pixel = (self.edges * largest).min(1.0);
+        let side = (0..2).map(|i| map.max[i] - map.min[i]).fold(f64::INFINITY, f64::min);
+        let reach = match map.eye {
+            Eye::Infinity => 1.0,
+            Eye::Behind(behind) => self.receiver_distances[1] + behind,
+        };
+        self.texel_pixels = side * reach / f64::from(map.side) / smallest;
+        self
+    }
+
+    fn add(&mut self, mesh: &MeshInstance, placed: &LightBox) {
         let triangles = match mesh.geometry {
             Geometry::Buffers(buffers) => u64::from(buffers.count / 3),
             Geometry::HostDrawn(_) => {
@@ -132,18 +158,18 @@ impl Situation {
             }
         };
         self.triangles += triangles;
-        let (center, half) = box_of(&mesh.bounds, &to_light);
-        let mut sides = mesh_sides(&mesh.bounds, &to_light);
+        self.both += usize::from(mesh.role.receives());
+        let mut sides = [0, 1, 2].map(|axis| placed.edge(axis).length());
         sides.sort_by(f64::total_cmp);
         let face = (sides[2] * sides[1]).sqrt().max(f64::MIN_POSITIVE);
         self.edges = self.edges.max(4.0 * (triangles as f64).sqrt() / face);
-        if depth_layers::thin_axis(&mesh.bounds).is_some() {
+        if placed.thin_axis.is_some() {
             return;
         }
         self.sheets = false;
         self.open |= mesh.double_sided;
-        let front = (center.z - half.z).max(self.occluder_distances[0]);
-        let back = center.z + half.z;
+        let front = placed.min.z.max(self.occluder_distances[0]);
+        let back = placed.max.z;
         let receiver = self.receiver_distances[0];
         let thickness = if receiver <= back {
             1.0
@@ -154,60 +180,24 @@ impl Situation {
     }
 }
 
-/// A box's middle and half-diagonal along the axes of light space.
-fn box_of(bounds: &MeshBounds, light_from_mesh: &DMat4) -> (DVec3, DVec3) {
-    let [low, high] = bounds.map(|p| DVec3::from_array(p.map(f64::from)));
-    let half = 0.5 * (high - low);
-    let axis = |i: usize| light_from_mesh.col(i).truncate().abs();
-    let reach = axis(0) * half.x + axis(1) * half.y + axis(2) * half.z;
-    (light_from_mesh.transform_point3(0.5 * (low + high)), reach)
-}
+/// Least and largest u and v; none where nothing is seen.
+type Window = Option<([f64; 2], [f64; 2])>;
 
-/// The lengths of a box's three sides, metres.
-fn mesh_sides(bounds: &MeshBounds, light_from_mesh: &DMat4) -> [f64; 3] {
-    [0, 1, 2].map(|i| {
-        let side = f64::from(bounds[1][i]) - f64::from(bounds[0][i]);
-        light_from_mesh.col(i).truncate().length() * side
-    })
-}
-
-/// The least distance of some meshes' boxes.
-fn least_distance(light_from_world: &DMat4, meshes: &[MeshInstance]) -> f64 {
-    let least = |m: &MeshInstance| {
-        let (center, half) = box_of(&m.bounds, &(*light_from_world * m.world_from_mesh));
-        center.z - half.z
-    };
-    meshes.iter().map(least).fold(f64::INFINITY, f64::min)
-}
-
-/// Whether any two occluders may cover the same texel of the map.
-fn overlapping(seen: &Seen) -> bool {
-    if seen.occluders.len() > MOST_COMPARED {
-        return true;
-    }
-    let texel = [0, 1].map(|i| (seen.map.max[i] - seen.map.min[i]) / f64::from(seen.map.side));
-    let mut windows = [None; MOST_COMPARED];
-    for (window, mesh) in windows.iter_mut().zip(seen.occluders) {
-        let placed = (mesh.bounds, mesh.world_from_mesh);
-        *window = depth_layers::window_of(seen.map.eye, seen.light, &placed, seen.map.near);
-    }
-    let apart = |a: &([f64; 2], [f64; 2]), b: &([f64; 2], [f64; 2])| {
-        (0..2).any(|i| a.1[i] + texel[i] < b.0[i] || b.1[i] + texel[i] < a.0[i])
-    };
-    windows.iter().enumerate().any(|(i, a)| {
-        windows[..i].iter().any(|b| matches!((a, b), (Some(a), Some(b)) if !apart(a, b)))
-    })
+/// Whether two windows share a texel of this size.
+fn meet(a: &Window, b: &Window, texel: [f64; 2]) -> bool {
+    let (Some(a), Some(b)) = (a, b) else { return false };
+    (0..2).all(|i| a.1[i] + texel[i] >= b.0[i] && b.1[i] + texel[i] >= a.0[i])
 }
 
 /// The smallest and the largest pixel where shadows may fall, metres across the view.
 ///
 /// A pixel at a point is 2w/(W |g|) wide, with w the point's clip coordinate and g the part of x's gradient across the
 /// view; w is linear, so that its extremes over the frustum of what may be shadowed are at its corners.
-fn pixel_sizes(seen: &Seen, light_from_world: &DMat4) -> [f64; 2] {
-    let clip_from_world = seen.world_from_ndc.inverse();
-    let clip_from_light = clip_from_world * light_from_world.inverse();
+fn pixel_sizes(camera: &Camera, shadowed: &MapView) -> [f64; 2] {
+    let clip_from_world = camera.world_from_ndc.inverse();
+    let clip_from_light = clip_from_world * camera.light_from_world.inverse();
     let row = |i: usize| clip_from_light.row(i);
-    let center = *seen.world_from_ndc * DVec4::new(0.0, 0.0, 0.5, 1.0);
+    let center = camera.world_from_ndc * DVec4::new(0.0, 0.0, 0.5, 1.0);
     // Which sign w has in front of the camera.
     let sign = (clip_from_world * (center / center.w)).w.signum();
     let across = |r: DVec4| {
@@ -217,9 +207,9 @@ fn pixel_sizes(seen: &Seen, light_from_world: &DMat4) -> [f64; 2] {
         (r - along * r.dot(along)).length()
     };
     let per_w = (0..2)
-        .map(|i| 2.0 / (f64::from(seen.extent[i]) * across(row(i)).max(f64::MIN_POSITIVE)))
+        .map(|i| 2.0 / (f64::from(camera.extent[i]) * across(row(i)).max(f64::MIN_POSITIVE)))
         .fold([f64::INFINITY, 0.0], |[least, most]: [f64; 2], x| [least.min(x), most.max(x)]);
-    let v = seen.shadowed;
+    let v = shadowed;
     let mut w = [f64::INFINITY, 0.0f64];
     for i in 0..8 {
         let d = if i & 4 == 0 { v.near } else { v.far };

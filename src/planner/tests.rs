@@ -144,7 +144,8 @@ fn every_effect_has_a_rule_and_a_reason_for_both_outcomes() {
         for max_error in [None, Some(0.01)] {
             let verdicts = Verdicts::judge(situation, &settings, max_error, false);
             for v in verdicts.all() {
-                assert!(!verdicts.why(v.effect).is_empty());
+                let why = verdicts.why(v.effect);
+                assert!(!why.to_string().is_empty() && why.has_room(), "{why}");
                 assert!((0.0..=1.0).contains(&v.bound), "{v:?}");
                 if situation.is_none() {
                     assert_eq!((v.outcome, v.bound), (Outcome::LeftOut, 0.0));

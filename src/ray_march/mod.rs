@@ -67,6 +67,6 @@ pub mod push;
 mod settings;
 pub mod twin;
 
-pub(crate) use passes::list_bytes;
 pub use passes::{Inputs, declare, view, wanted};
+pub(crate) use passes::{list_bytes, view_of};
 pub use settings::{Hash, Layers, Projection, Sampling, Search, Settings};

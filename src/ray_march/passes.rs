@@ -3,12 +3,15 @@
 use super::push;
 use super::settings::{Hash, Layers, Projection, Sampling, Search, Settings};
 use crate::RectangleLight;
-use crate::depth_layers::{DepthLayers, Eye, MapView, MeshBounds, Wanted, fit_from, fit_occluders};
-use crate::graph::{Access, Graph, Need, Owner, Pass, Push, ResourceId, Use, Work};
+use crate::depth_layers::{
+    DepthLayers, Eye, LightBox, MapView, MeshBounds, Wanted, fit_boxes, fit_boxes_from,
+};
+use crate::graph::{Access, Graph, Need, Owner, Pass, Push, ResourceId, Use, Uses, Work};
 use crate::nbuffer::{self, Levels};
 use crate::shaders::{self, Module};
 use crate::visibility::{self, COLOR_FORMAT, GBuffer, grid};
 use glam::DMat4;
+use smallvec::smallvec;
 
 /// The list of pixels: its head, and for each where it is and the heights that its rays need look at.
 pub(crate) fn list_bytes([width, height]: [u32; 2]) -> u64 {
@@ -64,18 +67,27 @@ pub fn view(
     projection: Projection,
     side: u32,
 ) -> Option<MapView> {
+    view_of(light.half_extents(), &LightBox::of_all(light, occluders), projection, side)
+}
+
+/// The same of boxes, for a light of these half-extents.
+pub(crate) fn view_of(
+    half: [f64; 2],
+    occluders: &[LightBox],
+    projection: Projection,
+    side: u32,
+) -> Option<MapView> {
     let eye = match projection {
         Projection::Centre => Eye::Behind(0.0),
         Projection::Orthographic => Eye::Infinity,
         Projection::Behind => {
-            let from_centre = fit_occluders(light, occluders, None, side)?;
+            let from_centre = fit_boxes(occluders, None, side)?;
             let tangent = |i: usize| from_centre.max[i].abs().max(from_centre.min[i].abs());
-            let half = light.half_extents();
             let behind = [0, 1].map(|i| half[i] / tangent(i)).into_iter().fold(0.0, f64::max);
             Eye::Behind(behind.min(MOST_BEHIND * from_centre.far))
         }
     };
-    fit_from(eye, light, occluders, side)
+    fit_boxes_from(eye, occluders, side)
 }
 
 /// The shaders of some settings.
@@ -132,7 +144,7 @@ pub fn declare(
         shaders::START,
         [1, 1, 1],
         Push::new(&push::Start { ndc_from_light: inputs.ndc_from_light }),
-        vec![
+        smallvec![
             Use::bound(0, arguments, Access::BufferWriteCompute),
             Use::bound(1, pixels, Access::BufferWriteCompute),
         ],
@@ -145,7 +157,7 @@ pub fn declare(
         Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
         Use::bound(2, windows, Access::SampledCompute),
     ];
-    let mut uses = common.to_vec();
+    let mut uses = Uses::from_slice(&common);
     uses.extend([
         Use::bound(3, visibility, Access::ImageWrite),
         Use::bound(4, arguments, Access::BufferUpdate),
@@ -158,7 +170,7 @@ pub fn declare(
     let groups = grid(gbuffer.extent);
     graph.push(Pass::compute(name, shaders.classify, groups, pushed, uses, inputs.need));
 
-    let mut uses = common.to_vec();
+    let mut uses = Uses::from_slice(&common);
     uses.extend([
         Use::bound(3, visibility, Access::ImageUpdate),
         Use::bound(4, pixels, Access::BufferReadCompute),
@@ -173,7 +185,7 @@ pub fn declare(
             light_from_ndc: gbuffer.light_from_ndc,
             extent: gbuffer.extent.map(|e| e as i32),
         });
-        let mut common = vec![
+        let mut common = smallvec![
             Use::bound(0, gbuffer.depth, Access::SampledCompute),
             Use::bound(1, pixels, Access::BufferReadCompute),
             Use::bound(2, noisy, Access::SampledCompute),
@@ -198,12 +210,12 @@ fn listed(
     shader: Module,
     arguments: ResourceId,
     push: Push,
-    mut uses: Vec<Use>,
+    mut uses: Uses,
     need: &Need,
 ) {
     uses.push(Use::fixed(arguments, Access::Indirect));
     let work = Work::Indirect { shader, arguments, offset: 0 };
-    graph.push(Pass { name, uses, push, work, need: need.clone() });
+    graph.push(Pass { name, uses, push, work, need: *need });
 }
 
 /// Adds the rows that turn the layers into columns, and these into bounds of windows.
@@ -228,7 +240,7 @@ fn declare_levels(
             layers: if four { 4 } else { 2 },
             height: inputs.view.top() as f32,
         }),
-        vec![
+        smallvec![
             Use::bound(0, layers.front, Access::SampledCompute),
             Use::bound(1, back, Access::SampledCompute),
             Use::bound(2, near_back, Access::SampledCompute),
@@ -248,7 +260,7 @@ fn declare_levels(
             shader,
             grid([levels.side(level); 2]),
             Push::new(&push::Level { map: map as i32, kind, level: level as i32 }),
-            vec![Use::bound(0, windows, Access::ImageUpdate)],
+            smallvec![Use::bound(0, windows, Access::ImageUpdate)],
             inputs.need,
         ));
     }

@@ -9,6 +9,7 @@ use crate::graph::{
 use crate::shaders;
 use crate::visibility::{self, GBuffer};
 use ash::vk;
+use smallvec::smallvec;
 
 /// Texels a side of a block and of a superblock, as in `node.glsl`.
 const BLOCK: u32 = 8;
@@ -154,7 +155,7 @@ fn declare_nodes(
                 Sides::One | Sides::Two => 0,
             },
         }),
-        vec![
+        smallvec![
             Use::bound(0, layers.front, Access::SampledCompute),
             Use::bound(1, layers.back.unwrap_or(layers.front), Access::SampledCompute),
             Use::bound(2, nodes.texels, Access::BufferWriteCompute),
@@ -169,7 +170,7 @@ fn declare_nodes(
             shaders::SUPERBLOCKS,
             [superblock_row.div_ceil(8), superblock_row.div_ceil(8), sides],
             Push::new(&push::Superblocks { row: superblock_row as i32 }),
-            vec![
+            smallvec![
                 Use::bound(0, nodes.blocks, Access::BufferReadCompute),
                 Use::bound(1, nodes.families, Access::BufferWriteCompute),
             ],
@@ -229,7 +230,7 @@ fn gather_map(
                 _ => side as i32,
             },
         }),
-        vec![
+        smallvec![
             Use::bound(0, receiver_depth, Access::SampledCompute),
             Use::bound(1, nodes.texels, Access::BufferReadCompute),
             Use::bound(2, nodes.sums, Access::BufferReadCompute),
@@ -300,7 +301,7 @@ fn blend_map(
         shaders::PATCH_COUNT,
         [groups.div_ceil(64), 1, 1],
         Push::new(&push::PatchCount { blocks: blocks as i32, side: side as i32 }),
-        vec![
+        smallvec![
             Use::bound(0, nodes.blocks, Access::BufferReadCompute),
             Use::bound(1, counts, Access::BufferWriteCompute),
         ],
@@ -311,7 +312,7 @@ fn blend_map(
         shaders::PATCH_SCAN,
         [1, 1, 1],
         Push::new(&push::PatchScan { groups: groups as i32 }),
-        vec![
+        smallvec![
             Use::bound(0, counts, Access::BufferReadCompute),
             Use::bound(1, offsets, Access::BufferWriteCompute),
             Use::bound(2, arguments, Access::BufferWriteCompute),
@@ -323,7 +324,7 @@ fn blend_map(
         shaders::PATCH_EMIT,
         [blocks.div_ceil(64), 1, 1],
         Push::new(&push::PatchEmit { row: nodes.block_row as i32, side: side as i32 }),
-        vec![
+        smallvec![
             Use::bound(0, nodes.texels, Access::BufferReadCompute),
             Use::bound(1, nodes.blocks, Access::BufferReadCompute),
             Use::bound(2, offsets, Access::BufferReadCompute),
@@ -334,7 +335,7 @@ fn blend_map(
     let (t_step, t_first) = receiver_grid(view, inputs.occluders);
     graph.push(Pass {
         name: blend_name,
-        uses: vec![
+        uses: smallvec![
             Use::fixed(map, Access::ColorTarget),
             Use::fixed(arguments, Access::Indirect),
             Use::bound(0, patches, Access::BufferReadVertex),
@@ -356,7 +357,7 @@ fn blend_map(
             target: Target::Add,
             draw: Draw::Indirect { arguments, offset: 0 },
         },
-        need: inputs.need.clone(),
+        need: *inputs.need,
     });
     map
 }

@@ -5,6 +5,7 @@ use super::{Settings, Sides, push, spread_of};
 use crate::graph::{Access, Graph, Pass, Push, ResourceId, Use};
 use crate::shaders;
 use crate::visibility::tiles::Tiles;
+use smallvec::smallvec;
 
 const NAME: &str = "soft_shadow_map.gather_pixels";
 
@@ -20,7 +21,7 @@ pub(super) fn gather(
     let [width, height] = gbuffer.extent;
     let push = Push::new(&pixel_push(nodes, settings, inputs));
     let write = if settings.classify { Access::ImageUpdate } else { Access::ImageWrite };
-    let uses = vec![
+    let uses = smallvec![
         Use::bound(0, gbuffer.depth, Access::SampledCompute),
         Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
         Use::bound(2, nodes.texels, Access::BufferReadCompute),

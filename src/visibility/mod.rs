@@ -12,6 +12,7 @@ use crate::graph::{Access, Graph, Need, Owner, Pass, Push, ResourceId, Use, Work
 use crate::shaders;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
+use smallvec::smallvec;
 
 /// The visibility image's format.
 pub const FORMAT: vk::Format = vk::Format::R32_SFLOAT;
@@ -97,7 +98,7 @@ pub(crate) fn grid(extent: [u32; 2]) -> [u32; 3] {
 pub fn lit(graph: &mut Graph, visibility: ResourceId, extent: [u32; 2], color: bool, need: Need) {
     graph.push(Pass {
         name: "visibility.lit",
-        uses: vec![Use::bound(0, visibility, Access::ImageWrite)],
+        uses: smallvec![Use::bound(0, visibility, Access::ImageWrite)],
         push: Push::new(&LitPush { extent: extent.map(|e| e as i32) }),
         work: Work::Dispatch {
             shader: if color { shaders::LIT_COLOR } else { shaders::LIT },
@@ -117,7 +118,7 @@ pub fn resolve(
 ) {
     graph.push(Pass {
         name: "visibility.resolve",
-        uses: vec![
+        uses: smallvec![
             Use::bound(0, gbuffer.depth, Access::SampledCompute),
             Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
             Use::bound(2, what.receiver_depth, Access::SampledCompute),
@@ -136,6 +137,6 @@ pub fn resolve(
             flags: i32::from(gbuffer.mask.is_some()) | i32::from(what.mean) << 1,
         }),
         work: Work::Dispatch { shader: shaders::RESOLVE, groups: grid(gbuffer.extent) },
-        need: need.clone(),
+        need: *need,
     });
 }

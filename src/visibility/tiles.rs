@@ -25,8 +25,9 @@
 //! The order of the list is up to the device; each tile writes its own pixels alone, so the image is not.
 
 use super::GBuffer;
-use crate::graph::{Access, Graph, Need, Pass, Push, ResourceId, Use, Work};
+use crate::graph::{Access, Graph, Need, Pass, Push, ResourceId, Use, Uses, Work};
 use crate::shaders::{self, Module};
+use smallvec::smallvec;
 
 /// Pixels a side of a tile, as in `tile_list.glsl`.
 pub(crate) const TILE: u32 = 8;
@@ -53,7 +54,7 @@ impl Tiles {
             shaders::TILES_START,
             [1, 1, 1],
             Push::NONE,
-            vec![
+            smallvec![
                 Use::bound(0, arguments, Access::BufferWriteCompute),
                 Use::bound(1, list, Access::BufferWriteCompute),
             ],
@@ -74,7 +75,7 @@ impl Tiles {
     ) {
         // 8×8 invocations of a tile.
         let [x, y] = gbuffer.extent.map(|e| e.div_ceil(8 * TILE));
-        let uses = vec![
+        let uses = smallvec![
             Use::bound(0, gbuffer.depth, Access::SampledCompute),
             Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
             occluders,
@@ -91,13 +92,13 @@ impl Tiles {
         graph: &mut Graph,
         (name, shader): (&'static str, Module),
         push: Push,
-        mut uses: Vec<Use>,
+        mut uses: Uses,
         binding: u32,
         need: &Need,
     ) {
         uses.push(Use::bound(binding, self.list, Access::BufferReadCompute));
         uses.push(Use::fixed(self.arguments, Access::Indirect));
         let work = Work::Indirect { shader, arguments: self.arguments, offset: 0 };
-        graph.push(Pass { name, uses, push, work, need: need.clone() });
+        graph.push(Pass { name, uses, push, work, need: *need });
     }
 }

@@ -1,7 +1,8 @@
 //! Several lights of one node: what each plan counts on and leaves, and which layer it names.
 
 use super::*;
-use crate::frame::{Left, plan_with};
+use crate::frame::Left;
+use crate::frame::plan::plan_with;
 
 /// Rows of a soft shadow map, and those of them that look at pixels.
 const ALL: usize = 7;
@@ -217,7 +218,7 @@ fn what_is_lit_stays_lit_whatever_the_numbers_say() {
         assert_eq!(node.all(&[lit]), [1]);
         let again = node.plan(&lit);
         assert!(again.plan.steps.is_empty());
-        assert!(again.plan.skipped.iter().any(|s| s.why == "every pixel is lit already"));
+        assert!(again.plan.reasons().any(|(_, why)| why == "every pixel is lit already".into()));
         // Other numbers and other settings leave every pixel lit as well.
         let other = Frame { settings_index: 1, revision: Some(3), view_revision: Some(4), ..lit };
         assert_eq!(node.all(&[other]), [0]);

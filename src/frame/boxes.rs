@@ -1,0 +1,187 @@
+//! The meshes of a frame as all of its lights look at them, placed in the world once.
+
+use super::{Geometry, MeshInstance};
+use crate::RectangleLight;
+use glam::DVec3;
+
+/// Spheres tested at once.
+const BATCH: usize = 64;
+
+/// What a sphere's numbers may be off by, as a share: more than single precision rounds.
+const SLACK: f32 = 1e-6;
+
+/// Spheres around the meshes' boxes, and what concerns all lights.
+///
+/// In single precision and one array a coordinate, because most meshes concern most lights not at all, and are to be
+/// told from the others at a nanosecond each.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Boxes {
+    x: Vec<f32>,
+    y: Vec<f32>,
+    z: Vec<f32>,
+    radius: Vec<f32>,
+    /// Of how many meshes with triangles, which block.
+    pub blockers: usize,
+    /// The first mesh whose transform or bounds are no finite numbers.
+    pub not_finite: Option<usize>,
+    /// The first one that the host draws.
+    pub host_drawn: Option<usize>,
+    /// The first one that the host draws and that blocks.
+    pub host_drawn_blocker: Option<usize>,
+}
+
+impl Boxes {
+    /// Looks at a frame's meshes.
+    pub fn place(&mut self, meshes: &[MeshInstance]) {
+        let Self { x, y, z, radius, .. } = self;
+        for of in [&mut *x, y, z, radius] {
+            of.clear();
+            of.reserve(meshes.len());
+        }
+        (self.not_finite, self.host_drawn, self.host_drawn_blocker) = (None, None, None);
+        self.blockers = 0;
+        for (index, mesh) in meshes.iter().enumerate() {
+            if !is_finite(mesh) {
+                self.not_finite.get_or_insert(index);
+            }
+            let blocks = mesh.role.blocks();
+            if let Geometry::HostDrawn(_) = mesh.geometry {
+                self.host_drawn.get_or_insert(index);
+                if blocks {
+                    self.host_drawn_blocker.get_or_insert(index);
+                }
+            }
+            let there = has_triangles(mesh);
+            self.blockers += usize::from(there && blocks);
+            let [center, half] = around(mesh);
+            let center = center.as_vec3();
+            let rounding = SLACK * (center.x.abs() + center.y.abs() + center.z.abs());
+            self.x.push(center.x);
+            self.y.push(center.y);
+            self.z.push(center.z);
+            // Without triangles there is nothing anywhere.
+            let reach = half.length() as f32 * (1.0 + SLACK) + rounding;
+            self.radius.push(if there { reach } else { f32::NEG_INFINITY });
+        }
+    }
+
+    /// The places of the meshes that are partly before a light and no further from its centre than it reaches, metres.
+    pub fn near(&self, light: &RectangleLight, reach: Option<f64>, places: &mut Vec<u32>) {
+        places.clear();
+        let center = light.center().as_vec3();
+        let normal = light.emission().as_vec3();
+        let rounding = SLACK * (center.x.abs() + center.y.abs() + center.z.abs());
+        let reach = reach.map_or(f32::INFINITY, |r| r as f32 * (1.0 + SLACK)) + rounding;
+        let mut kept = [false; BATCH];
+        for start in (0..self.x.len()).step_by(BATCH) {
+            let end = (start + BATCH).min(self.x.len());
+            let (x, y) = (&self.x[start..end], &self.y[start..end]);
+            let (z, radius) = (&self.z[start..end], &self.radius[start..end]);
+            for ((((kept, x), y), z), radius) in kept.iter_mut().zip(x).zip(y).zip(z).zip(radius) {
+                let [x, y, z] = [x - center.x, y - center.y, z - center.z];
+                let before = normal.x * x + normal.y * y + normal.z * z;
+                let slack = SLACK * (x.abs() + y.abs() + z.abs()) + rounding;
+                let most = reach + radius;
+                // What is too large for these numbers is kept.
+                let behind = before + slack + radius < 0.0;
+                let beyond = x * x + y * y + z * z > most * most || most < 0.0;
+                *kept = !(behind | beyond);
+            }
+            let found = kept[..end - start].iter().enumerate().filter(|(_, kept)| **kept);
+            places.extend(found.map(|(place, _)| (start + place) as u32));
+        }
+    }
+}
+
+/// Boxes that are placed once for all lights whose frames lend the same list of meshes at the same time.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Surroundings {
+    boxes: Boxes,
+    near: Vec<u32>,
+    /// Where the list lies, and how long it is.
+    list: Option<(usize, usize)>,
+}
+
+impl Surroundings {
+    /// Forgets which list was placed: the next one lies where it may, and is another.
+    pub fn forget(&mut self) {
+        self.list = None;
+    }
+
+    /// The boxes of some meshes, and memory for places.
+    pub fn of(&mut self, meshes: &[MeshInstance]) -> (&Boxes, &mut Vec<u32>) {
+        let list = Some((meshes.as_ptr() as usize, meshes.len()));
+        if self.list != list {
+            self.boxes.place(meshes);
+            self.list = list;
+        }
+        (&self.boxes, &mut self.near)
+    }
+}
+
+/// Whether every number of a mesh is finite.
+fn is_finite(mesh: &MeshInstance) -> bool {
+    let bounds = mesh.bounds.as_flattened().iter().fold(0.0, |sum, x| sum + (x - x));
+    // What is not finite differs from itself, or by no number.
+    let transform = mesh.world_from_mesh.to_cols_array().iter().fold(0.0, |sum, x| sum + (x - x));
+    bounds == 0.0 && transform == 0.0
+}
+
+/// The middle of a mesh's box in the world, and half its extents along the world's axes.
+fn around(mesh: &MeshInstance) -> [DVec3; 2] {
+    let [low, high] = mesh.bounds.map(|p| DVec3::from_array(p.map(f64::from)));
+    let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+    let m = &mesh.world_from_mesh;
+    let axis = |i: usize, half: f64| (m.col(i).truncate() * half).abs();
+    [m.transform_point3(middle), axis(0, half.x) + axis(1, half.y) + axis(2, half.z)]
+}
+
+/// Whether there is anything to draw of a mesh.
+pub(super) fn has_triangles(mesh: &MeshInstance) -> bool {
+    match mesh.geometry {
+        Geometry::Buffers(buffers) => buffers.count >= 3,
+        Geometry::HostDrawn(_) => true,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Role;
+    use glam::DMat4;
+
+    fn cube(at: DVec3) -> MeshInstance {
+        let unit = [[-0.5; 3], [0.5; 3]];
+        MeshInstance::new(Geometry::HostDrawn(0), DMat4::from_translation(at), unit, Role::Both)
+    }
+
+    fn near(meshes: &[MeshInstance], reach: Option<f64>) -> Vec<u32> {
+        let light = RectangleLight::new(DVec3::ZERO, DVec3::X, DVec3::Y).unwrap();
+        let (mut boxes, mut places) = (Boxes::default(), vec![7]);
+        boxes.place(meshes);
+        boxes.near(&light, reach, &mut places);
+        places
+    }
+
+    #[test]
+    fn what_is_behind_or_out_of_reach_is_told() {
+        let to = RectangleLight::new(DVec3::ZERO, DVec3::X, DVec3::Y).unwrap().emission();
+        let meshes = [2.0, -2.0, 0.0, 9.0, -0.8].map(|d| cube(to * d));
+        assert_eq!(near(&meshes, None), [0, 2, 3, 4]);
+        assert_eq!(near(&meshes, Some(5.0)), [0, 2, 4]);
+        // More than a batch.
+        let many: Vec<_> = (0..200).map(|i| cube(to * f64::from(i % 10 - 3))).collect();
+        assert_eq!(near(&many, None).len(), 160 - 20, "those at −3 m and −2 m lie behind");
+    }
+
+    #[test]
+    fn numbers_that_single_precision_does_not_hold_are_kept() {
+        let huge = MeshInstance { bounds: [[-3e38; 3], [3e38; 3]], ..cube(DVec3::ZERO) };
+        let far = cube(DVec3::splat(1e300));
+        assert_eq!(near(&[huge, far], None).len(), 2);
+        let bad = MeshInstance { bounds: [[f32::NAN; 3]; 2], ..huge };
+        let mut boxes = Boxes::default();
+        boxes.place(&[huge, far, bad]);
+        assert_eq!(boxes.not_finite, Some(2));
+    }
+}

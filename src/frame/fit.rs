@@ -1,0 +1,318 @@
+//! What of a frame stays as long as light and meshes stay: which meshes matter, and how the maps look at them.
+
+use super::boxes::{Boxes, Surroundings};
+use super::hull::Hull;
+use super::rows::{PLACEHOLDER, wanted};
+use super::{Description, Frame, MeshInstance};
+use crate::baseline::many_lights::{self, LightPoint};
+use crate::depth_layers::{self, HostMapView, LightBox, MapView, MeshBounds};
+use crate::graph::{Need, Why};
+use crate::planner::{Seen, Situation};
+use crate::ray_march::{self, Projection};
+use crate::settings::{Settings, Technique};
+use crate::{Error, RectangleLight, linear_light};
+use glam::DMat4;
+
+/// Meshes that matter to a light, by their places in the frame's list, and their boxes as it sees them.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Placed {
+    pub places: Vec<u32>,
+    pub boxes: Vec<LightBox>,
+}
+
+impl Placed {
+    fn clear(&mut self) {
+        self.places.clear();
+        self.boxes.clear();
+    }
+
+    fn push(&mut self, place: u32, of: LightBox) {
+        self.places.push(place);
+        self.boxes.push(of);
+    }
+
+    /// Keeps those that `keep` says; how many went.
+    fn retain(&mut self, keep: impl Fn(&LightBox) -> bool) -> usize {
+        let mut kept = 0;
+        for i in 0..self.boxes.len() {
+            if keep(&self.boxes[i]) {
+                self.places[kept] = self.places[i];
+                self.boxes[kept] = self.boxes[i];
+                kept += 1;
+            }
+        }
+        let gone = self.boxes.len() - kept;
+        self.places.truncate(kept);
+        self.boxes.truncate(kept);
+        gone
+    }
+
+    /// The meshes themselves.
+    pub fn meshes<'a>(
+        &'a self,
+        all: &'a [MeshInstance],
+    ) -> impl ExactSizeIterator<Item = &'a MeshInstance> + Clone {
+        self.places.iter().map(|&place| &all[place as usize])
+    }
+
+    fn bounds(&self, all: &[MeshInstance]) -> Vec<(MeshBounds, DMat4)> {
+        self.meshes(all).map(|m| (m.bounds, m.world_from_mesh)).collect()
+    }
+}
+
+/// What a fit is for: frames that agree in it have the same.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Of {
+    revision: u64,
+    light: RectangleLight,
+    reach: Option<f64>,
+    window: Option<[[f64; 2]; 2]>,
+    settings: Settings,
+    meshes: usize,
+}
+
+/// Which meshes matter to a light, and how its maps look at them.
+#[derive(Clone, Debug)]
+pub(super) struct Fit {
+    of: Option<Of>,
+    pub light_from_world: DMat4,
+    /// None where the host lends maps.
+    pub occluders: Placed,
+    pub receivers: Placed,
+    pub host_maps: Option<HostMapView>,
+    /// The occluders from the light's centre.
+    pub centre: Option<MapView>,
+    /// What of the receivers they may shadow, from there.
+    pub shadowed: Option<MapView>,
+    /// The occluders from behind the light, where the technique looks from there.
+    pub behind: Option<MapView>,
+    /// Whether anything can be shadowed.
+    pub need: Need,
+    /// What boxes tell; none where nothing can be shadowed.
+    pub situation: Option<Situation>,
+    /// Views for techniques that look from all over the light, once they are asked for.
+    views: Option<(Vec<LightPoint>, Vec<linear_light::Line>)>,
+}
+
+impl Default for Fit {
+    fn default() -> Self {
+        Self {
+            of: None,
+            light_from_world: DMat4::IDENTITY,
+            occluders: Placed::default(),
+            receivers: Placed::default(),
+            host_maps: None,
+            centre: None,
+            shadowed: None,
+            behind: None,
+            need: Need::No(Why::default()),
+            situation: None,
+            views: None,
+        }
+    }
+}
+
+impl Fit {
+    /// Becomes that of a frame, which it may be already.
+    ///
+    /// # Errors
+    /// [`Error::Frame`] for meshes that do not suit the technique, or a camera of the host's maps that is none.
+    pub fn update(
+        &mut self,
+        description: &Description,
+        settings: &Settings,
+        frame: &Frame,
+        surroundings: &mut Surroundings,
+    ) -> Result<(), Error> {
+        let of = Of::of(settings, frame);
+        if of.is_some() && self.of == of {
+            return Ok(());
+        }
+        self.of = None;
+        self.views = None;
+        let (boxes, near) = surroundings.of(frame.meshes);
+        frame.check_meshes(boxes, settings)?;
+        self.make(description, settings, frame, boxes, near)?;
+        self.of = of;
+        Ok(())
+    }
+
+    fn make(
+        &mut self,
+        description: &Description,
+        settings: &Settings,
+        frame: &Frame,
+        boxes: &Boxes,
+        near: &mut Vec<u32>,
+    ) -> Result<(), Error> {
+        let (light, half) = (&frame.light, frame.light.half_extents());
+        self.light_from_world = light.light_from_world();
+        self.host_maps = match (&frame.occluder_maps, description.occluder_maps) {
+            (Some(maps), Some(format)) => {
+                Some(HostMapView::new(light, &maps.clip_from_world, settings.map, format)?)
+            }
+            _ => None,
+        };
+        boxes.near(light, frame.reach, near);
+        let gone = self.place(frame, near);
+        self.centre = match &self.host_maps {
+            Some(maps) => Some(maps.view),
+            None => depth_layers::fit_boxes(&self.occluders.boxes, frame.window, settings.map),
+        };
+        let receivers = &self.receivers.boxes;
+        self.shadowed = self.centre.as_ref().and_then(|view| {
+            let side = wanted(settings).receiver_map.unwrap_or(settings.map);
+            depth_layers::fit_receiver_boxes(half, receivers, view, side)
+        });
+        self.need = self.need_of(boxes.blockers, gone);
+        // Ray marching and slices look from behind the light.
+        let projection = match settings.technique {
+            Technique::RayMarch if self.host_maps.is_none() => settings.ray_march.projection,
+            Technique::OcclusionTextures => Projection::Behind,
+            _ => Projection::Centre,
+        };
+        self.behind = match projection {
+            Projection::Centre => None,
+            _ => ray_march::view_of(half, &self.occluders.boxes, projection, settings.map),
+        };
+        self.situation = match (self.need, &self.centre, &self.shadowed) {
+            (Need::Yes(_), Some(centre), Some(shadowed)) => {
+                let occluders = &self.occluders;
+                let seen = Seen {
+                    light: half.map(|h| 2.0 * h),
+                    given: boxes.blockers,
+                    receivers: &self.receivers.boxes,
+                    shadowed,
+                    map: self.behind.as_ref().unwrap_or(centre),
+                };
+                let placed = occluders.meshes(frame.meshes).zip(&occluders.boxes);
+                Some(Situation::of(&seen, placed))
+            }
+            _ => None,
+        };
+        Ok(())
+    }
+
+    /// Sorts the meshes that are near: what receives, and what can lie between it and the light. How many went because
+    /// they are flat, with both on one side, and how many because they are elsewhere.
+    fn place(&mut self, frame: &Frame, near: &[u32]) -> [usize; 2] {
+        let half = frame.light.half_extents();
+        let lent = self.host_maps.is_some();
+        let Self { occluders, receivers, light_from_world, .. } = self;
+        occluders.clear();
+        receivers.clear();
+        for &place in near {
+            let mesh = &frame.meshes[place as usize];
+            let placed = LightBox::new(&mesh.bounds, &(*light_from_world * mesh.world_from_mesh));
+            if placed.max.z <= 0.0 {
+                continue;
+            }
+            if mesh.role.receives() {
+                receivers.push(place, placed);
+            }
+            if mesh.role.blocks() && !lent {
+                occluders.push(place, placed);
+            }
+        }
+        let hull = Hull::new(half, &receivers.boxes, frame.reach);
+        let elsewhere = occluders.retain(|b| hull.is_some_and(|hull| hull.meets(b)));
+        let seen = || receivers.boxes.iter().copied();
+        let aside = occluders.retain(|b| !b.is_aside(half, seen));
+        [aside, elsewhere]
+    }
+
+    /// Whether anything can be shadowed, and why not.
+    fn need_of(&self, given: usize, [aside, elsewhere]: [usize; 2]) -> Need {
+        let receivers = self.receivers.boxes.len();
+        match (&self.centre, &self.shadowed) {
+            (None, _) if given == 0 => Need::No("there are no occluders".into()),
+            (None, _) if self.occluders.boxes.is_empty() && aside > 0 && elsewhere == 0 => {
+                Need::No(
+                    "every occluder is flat, with light and receivers on one side of it".into(),
+                )
+            }
+            (None, _) if aside + elsewhere == 0 => {
+                Need::No("every occluder lies behind the light, or out of its reach".into())
+            }
+            (None, _) | (_, None) => {
+                Need::No("no receiver lies where an occluder could shadow it".into())
+            }
+            _ if self.host_maps.is_some() => Need::Yes(
+                Why::from("the host's maps may shadow some of ")
+                    .and(receivers)
+                    .and(" receiver meshes"),
+            ),
+            _ => Need::Yes(
+                Why::default()
+                    .and(self.occluders.boxes.len())
+                    .and(" of ")
+                    .and(given)
+                    .and(" occluder meshes can shadow some of ")
+                    .and(receivers)
+                    .and(" receiver meshes"),
+            ),
+        }
+    }
+
+    /// The views of techniques that look from all over the light; empty for others.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] where a light takes more lines than there may be.
+    pub fn views(
+        &mut self,
+        settings: &Settings,
+        frame: &Frame,
+    ) -> Result<(&[LightPoint], &[linear_light::Line]), Error> {
+        if self.views.is_none() {
+            self.views = Some(self.make_views(settings, frame)?);
+        }
+        let (points, lines) = self.views.as_ref().map_or((&[][..], &[][..]), |(p, l)| (p, l));
+        Ok((points, lines))
+    }
+
+    fn make_views(
+        &self,
+        settings: &Settings,
+        frame: &Frame,
+    ) -> Result<(Vec<LightPoint>, Vec<linear_light::Line>), Error> {
+        let light = &frame.light;
+        match (settings.technique, &self.shadowed) {
+            (Technique::ManyLights, _) => {
+                let centre = self.centre.as_ref().unwrap_or(&PLACEHOLDER);
+                let boxes = self.occluders.bounds(frame.meshes);
+                let baseline = &settings.baseline;
+                let points = many_lights::points(light, frame.outline, &boxes, baseline, centre);
+                Ok((points, Vec::new()))
+            }
+            (Technique::LinearLight, Some(receivers)) => {
+                let seen = linear_light::Seen {
+                    light,
+                    outline: frame.outline,
+                    occluders: &self.occluders.bounds(frame.meshes),
+                    receivers: &self.receivers.bounds(frame.meshes),
+                    side: settings.map,
+                    w_far: 1.0 / receivers.far,
+                };
+                Ok((Vec::new(), linear_light::lines(&settings.linear_light, &seen)?))
+            }
+            _ => Ok((Vec::new(), Vec::new())),
+        }
+    }
+}
+
+impl Of {
+    /// None where the host gives no number; a camera of the host's maps is looked at each time.
+    fn of(settings: &Settings, frame: &Frame) -> Option<Self> {
+        if frame.occluder_maps.is_some() {
+            return None;
+        }
+        Some(Self {
+            revision: frame.revision?,
+            light: frame.light,
+            reach: frame.reach,
+            window: frame.window,
+            settings: *settings,
+            meshes: frame.meshes.len(),
+        })
+    }
+}
