@@ -2,7 +2,6 @@
 
 use crate::options::Options;
 use antumbra::gpu::headless::{FrameTimes, HeadlessDevice};
-use antumbra::graph::Need;
 use antumbra::planner::{Choice, Outcome};
 use antumbra::scene::Scene;
 use antumbra::settings::KNOBS;
@@ -72,7 +71,7 @@ impl Report<'_> {
             .iter()
             .map(|run| {
                 let name = run.pass.name;
-                let (Need::Yes(why) | Need::No(why)) = &run.pass.need;
+                let why = graph.why(run.pass);
                 json!({ "name": name, "ms": self.pass_ms(name), "times": run.times, "why": why.to_string() })
             })
             .collect();

@@ -148,11 +148,10 @@ pub(crate) fn declare(
     let receivers = wanted
         .receiver_map
         .map(|side| drawn(graph, Layer::Receivers, names, side, needs.receivers));
-    let there = |need: &Need| matches!(need, Need::Yes(_));
     DepthLayers {
         front,
-        back: back.filter(|_| there(needs.back)),
-        inner: inner.filter(|_| there(needs.inner)),
+        back: back.filter(|_| needs.back.is_yes()),
+        inner: inner.filter(|_| needs.inner.is_yes()),
         receivers,
     }
 }

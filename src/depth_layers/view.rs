@@ -144,7 +144,11 @@ fn extents(
             max[i] = max[i].max(x);
         }
     };
-    for LightBox { corners, .. } in boxes {
+    for LightBox { corners, min: least, .. } in boxes {
+        if least.z >= near {
+            corners.iter().for_each(|&p| add(p));
+            continue;
+        }
         for (i, &a) in corners.iter().enumerate() {
             if a.z >= near {
                 add(a);

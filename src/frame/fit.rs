@@ -36,8 +36,10 @@ impl Placed {
         let mut kept = 0;
         for i in 0..self.boxes.len() {
             if keep(&self.boxes[i]) {
-                self.places[kept] = self.places[i];
-                self.boxes[kept] = self.boxes[i];
+                if kept < i {
+                    self.places[kept] = self.places[i];
+                    self.boxes[kept] = self.boxes[i];
+                }
                 kept += 1;
             }
         }
@@ -87,9 +89,11 @@ pub(super) struct Fit {
     /// The occluders from behind the light, where the technique looks from there.
     pub behind: Option<MapView>,
     /// Whether anything can be shadowed.
-    pub need: Need,
+    pub need: Need<Why>,
     /// What boxes tell; none where nothing can be shadowed.
     pub situation: Option<Situation>,
+    /// Another one each time that meshes are looked at.
+    number: u64,
     /// Views for techniques that look from all over the light, once they are asked for.
     views: Option<(Vec<LightPoint>, Vec<linear_light::Line>)>,
 }
@@ -107,6 +111,7 @@ impl Default for Fit {
             behind: None,
             need: Need::No(Why::default()),
             situation: None,
+            number: 0,
             views: None,
         }
     }
@@ -130,6 +135,7 @@ impl Fit {
         }
         self.of = None;
         self.views = None;
+        self.number += 1;
         let (boxes, near) = surroundings.of(frame.meshes);
         frame.check_meshes(boxes, settings)?;
         self.make(description, settings, frame, boxes, near)?;
@@ -222,7 +228,7 @@ impl Fit {
     }
 
     /// Whether anything can be shadowed, and why not.
-    fn need_of(&self, given: usize, [aside, elsewhere]: [usize; 2]) -> Need {
+    fn need_of(&self, given: usize, [aside, elsewhere]: [usize; 2]) -> Need<Why> {
         let receivers = self.receivers.boxes.len();
         match (&self.centre, &self.shadowed) {
             (None, _) if given == 0 => Need::No("there are no occluders".into()),
@@ -252,6 +258,11 @@ impl Fit {
                     .and(" receiver meshes"),
             ),
         }
+    }
+
+    /// Which look at the meshes this is: with the same number they are the same.
+    pub fn number(&self) -> u64 {
+        self.number
     }
 
     /// The views of techniques that look from all over the light; empty for others.

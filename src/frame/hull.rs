@@ -9,20 +9,21 @@ const SLACK: f64 = 1e-9;
 /// A convex region around every segment from a light to a receiver, in light space.
 ///
 /// ```text
-///        light              across each of x and y: what is between the line from the light's left end to the
-///       ───────             receivers' left side, the same on the right, and the furthest of them
-///      /       \
-///     /         \           left: x ≥ −a + s z, with the least s for which that holds of every receiver
-///    /___________\
+///        light              across each of x and y: what is between a line from the light's left end past the
+///       ───────             receivers' left side and one on the right, between the outermost of both, and
+///      /       \            before the furthest receiver
+///     |         |
+///     |_________|           left: x ≥ −a + s z, with the largest s for which that holds of every receiver
 ///      receivers
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hull {
     half: [f64; 2],
-    /// Metres aside a metre away from the light, on the left and on the right, across x and y.
-    slopes: [[f64; 2]; 2],
-    /// Where receivers touch the light's plane no slope holds them: what they reach aside then.
-    sides: Option<[[f64; 2]; 2]>,
+    /// Metres aside a metre away from the light, on the left and on the right, across x and y; none where receivers touch
+    /// the light's plane, since no slope holds them.
+    slopes: Option<[[f64; 2]; 2]>,
+    /// How far light and receivers reach aside.
+    sides: [[f64; 2]; 2],
     far: f64,
 }
 
@@ -40,7 +41,7 @@ impl Hull {
         let slope = |aside: f64| if aside >= 0.0 { aside / near } else { aside / most.z };
         let slopes = [0, 1].map(|i| [-slope(-(least[i] + half[i])), slope(most[i] - half[i])]);
         let sides = [0, 1].map(|i| [least[i].min(-half[i]), most[i].max(half[i])]);
-        Some(Self { half, slopes, sides: (near <= 0.0).then_some(sides), far: most.z })
+        Some(Self { half, slopes: (near > 0.0).then_some(slopes), sides, far: most.z })
     }
 
     /// Whether some of a box may lie in it.
@@ -51,14 +52,12 @@ impl Hull {
         }
         let (near, far) = (of.min.z.max(0.0), of.max.z.min(self.far));
         (0..2).all(|i| {
-            let [left, right] = match self.sides {
-                Some(sides) => sides[i],
-                None => {
-                    let [left, right] = self.slopes[i];
-                    let furthest = |slope: f64| (slope * near).max(slope * far);
-                    [-self.half[i] - furthest(-left), self.half[i] + furthest(right)]
-                }
-            };
+            let [mut left, mut right] = self.sides[i];
+            if let Some(slopes) = self.slopes {
+                let furthest = |slope: f64| (slope * near).max(slope * far);
+                left = left.max(-self.half[i] - furthest(-slopes[i][0]));
+                right = right.min(self.half[i] + furthest(slopes[i][1]));
+            }
             of.max[i] >= left - slack && of.min[i] <= right + slack
         })
     }

@@ -68,6 +68,11 @@ impl Keeping {
             && (!self.uses_lit || kept.lit)
     }
 
+    /// What it leaves out: the maps' rows, all rows, all rows because everything is lit.
+    pub fn uses(&self) -> [bool; 3] {
+        [self.uses_maps.is_some(), self.uses_pixels.is_some(), self.uses_lit]
+    }
+
     /// What is kept behind it.
     pub fn behind(&self, kept: &Kept) -> Kept {
         Kept {

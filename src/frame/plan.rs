@@ -91,6 +91,22 @@ pub(crate) struct Workspace {
 pub(crate) struct Memory {
     fit: Fit,
     ties: Ties,
+    /// What the rows of its last plan came of.
+    rows: Option<(Description, Shape)>,
+    /// What its last draws came of: of which look at the meshes, from where.
+    drawn: Option<(u64, Clips, Clips)>,
+}
+
+/// Matrices from the world into views: few techniques have more than one.
+type Clips = SmallVec<[DMat4; 1]>;
+
+/// What decides which rows a description has in a frame, and which of them run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Shape {
+    needs: u8,
+    points: usize,
+    lines: usize,
+    kept: [bool; 3],
 }
 
 /// Which node a plan was made by, and since which resize; none for a plan made without a node.
@@ -275,6 +291,7 @@ pub(crate) fn plan_into(
     memory: &mut Memory,
     plan: &mut FramePlan,
 ) -> Result<(), Error> {
+    // Where it fails, nothing of the frame before is left to build on.
     plan.stamp = Stamp::default();
     let settings = &description.settings;
     frame.check(description, settings)?;
@@ -284,18 +301,25 @@ pub(crate) fn plan_into(
     };
     let frame = &Frame { light, outline: outline.as_deref(), ..*frame };
     let Workspace { graph, compiler, borders, surroundings } = workspace;
-    let Memory { fit, ties } = memory;
+    let Memory { fit, ties, rows, drawn } = memory;
     fit.update(description, settings, frame, surroundings)?;
     let (views, verdicts) = look(description, frame, fit)?;
     graph.clear();
     let ids = build(graph, description, limits, &light, &views);
     let occluder_clips = views.occluder_clips();
     let receiver_view = views.receivers;
-    if !graph.has_rows_of(&plan.plan.graph) {
+    let (points, lines) = (views.points.len(), views.lines.len());
+    let needs = views.needs.bits();
+    // Which rows there are is told by description and needs, before it is told what of them is kept.
+    let before = rows.take().filter(|(of, shape)| {
+        of == description && (shape.needs, shape.points, shape.lines) == (needs, points, lines)
+    });
+    if before.is_none() {
         ties.find(graph, ids.pixels());
     }
     let revisions = Revisions { scene: frame.revision, view: frame.view_revision };
     plan.keeping = keep::apply(graph, ties, &frame.visibility, revisions, kept);
+    let shape = Shape { needs, points, lines, kept: plan.keeping.uses() };
     plan.imports.clear();
     plan.imports.extend(imports(&ids, frame));
     borders.clear();
@@ -309,7 +333,13 @@ pub(crate) fn plan_into(
         borders.push(Border { resource: ids.visibility, before, after });
     }
     let place = frame.border_barriers == BorderBarriers::Node;
-    compiler.compile(graph, borders, place, &mut plan.plan)?;
+    let same = before.as_ref().is_some_and(|(_, before)| *before == shape);
+    compiler.compile(graph, borders, place, same, &mut plan.plan)?;
+    // The next frame's rows are built where this one's have been.
+    graph.clear();
+    graph.reserve_for(&plan.plan.graph);
+    let of = before.map_or_else(|| description.clone(), |(of, _)| of);
+    *rows = Some((of, shape));
     plan.accesses.clear();
     for border in &*borders {
         plan.accesses.push(access_of(&plan.plan, border, &plan.imports, frame.light_index));
@@ -320,24 +350,30 @@ pub(crate) fn plan_into(
     (plan.light_index, plan.settings_index) = (frame.light_index, frame.settings_index);
 
     let to_light = fit.light_from_world;
-    let occluder_clips: SmallVec<[DMat4; 1]> =
-        occluder_clips.iter().map(|clip| *clip * to_light).collect();
+    let occluder_clips: Clips = occluder_clips.iter().map(|clip| *clip * to_light).collect();
     let receiver_clips = match (wanted(settings).receiver_map, &receiver_view) {
         (Some(_), Some(view)) => smallvec![view.clip_from_light() * to_light],
         _ if settings.technique == Technique::LinearLight => occluder_clips.clone(),
         _ => SmallVec::new(),
     };
+    let of = (fit.number(), occluder_clips, receiver_clips);
+    if same && drawn.as_ref() == Some(&of) {
+        return Ok(());
+    }
+    *drawn = None;
+    let (_, occluder_clips, receiver_clips) = &of;
     // What no row draws needs no matrices.
-    let FramePlan { plan: of, occluders, receivers, .. } = plan;
+    let FramePlan { plan: of_rows, occluders, receivers, .. } = plan;
     for (list, draws, placed, clips) in [
-        (MeshList::Occluders, occluders, &fit.occluders, &occluder_clips),
-        (MeshList::Receivers, receivers, &fit.receivers, &receiver_clips),
+        (MeshList::Occluders, occluders, &fit.occluders, occluder_clips),
+        (MeshList::Receivers, receivers, &fit.receivers, receiver_clips),
     ] {
-        match is_drawn(of, list) {
+        match is_drawn(of_rows, list) {
             true => draws.fill(description, placed.meshes(frame.meshes), clips)?,
             false => draws.clear(),
         }
     }
+    *drawn = Some(of);
     Ok(())
 }
 

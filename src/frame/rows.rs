@@ -65,17 +65,17 @@ pub(super) struct Views<'a> {
 #[derive(Clone, Debug)]
 pub(super) struct Needs {
     /// Those of the technique.
-    pub technique: Need,
+    pub technique: Need<Why>,
     /// A hard shadow in its place.
-    pub hard: Need,
+    pub hard: Need<Why>,
     /// The occluders' nearest faces, as the light's centre sees them.
-    pub front: Need,
+    pub front: Need<Why>,
     /// Their furthest back faces.
-    pub back: Need,
+    pub back: Need<Why>,
     /// Their nearest back faces and their furthest front faces.
-    pub inner: Need,
+    pub inner: Need<Why>,
     /// The noise filter.
-    pub filter: Need,
+    pub filter: Need<Why>,
 }
 
 /// Whether a hard shadow can stand for what a technique makes: its image holds one visible fraction a pixel.
@@ -108,13 +108,24 @@ fn back_is_for_its_own_sake(settings: &Settings) -> bool {
 
 impl Needs {
     /// Everything but what stands for something else.
-    fn all(need: &Need) -> Self {
+    fn all(need: &Need<Why>) -> Self {
         let need = *need;
         Self { technique: need, hard: need, front: need, back: need, inner: need, filter: need }
     }
 
+    /// Each of them, in the order of the fields.
+    fn each(&self) -> [&Need<Why>; 6] {
+        [&self.technique, &self.hard, &self.front, &self.back, &self.inner, &self.filter]
+    }
+
+    /// A bit for each that is needed.
+    pub fn bits(&self) -> u8 {
+        let each = self.each().into_iter().enumerate();
+        each.fold(0, |bits, (i, need)| bits | u8::from(need.is_yes()) << i)
+    }
+
     /// By whether anything can be shadowed, and what of it matters.
-    pub fn of(description: &Description, need: Need, verdicts: &Verdicts) -> Self {
+    pub fn of(description: &Description, need: Need<Why>, verdicts: &Verdicts) -> Self {
         let mut needs = Self::all(&need);
         let Need::Yes(_) = &need else { return needs };
         let left_out = |effect: Effect| {
@@ -263,7 +274,7 @@ pub(super) fn build(
     let snap = limits.snap;
     let depth_error = views.host_maps.map_or(0.0, |m| m.error);
     let needs = &views.needs;
-    let need = &needs.technique;
+    let [need, hard, front_need, back_need, inner, filter] = &needs.each().map(|n| graph.need(n));
     let baseline = baseline::Inputs {
         light,
         occluders: &views.occluders,
@@ -273,9 +284,9 @@ pub(super) fn build(
         need,
     };
     let layer_needs = depth_layers::Needs {
-        front: if has_front(settings.technique) { &needs.front } else { need },
-        back: &needs.back,
-        inner: &needs.inner,
+        front: if has_front(settings.technique) { front_need } else { need },
+        back: back_need,
+        inner,
         receivers: need,
     };
     let layers = |graph: &mut Graph| depth_layers::declare(graph, wanted, &occluders, &layer_needs);
@@ -310,7 +321,7 @@ pub(super) fn build(
                 snap,
                 depth_error,
                 need,
-                filter: &needs.filter,
+                filter,
             };
             ray_march::declare(graph, &layers, visibility, &settings.ray_march, &inputs);
         }
@@ -354,14 +365,15 @@ pub(super) fn build(
         }
     }
     if hardens(description) {
-        let front = nearest.unwrap_or_else(|| depth_layers::hard(graph, settings.map, &needs.hard));
-        let inputs = baseline::Inputs { need: &needs.hard, ..baseline };
+        let front = nearest.unwrap_or_else(|| depth_layers::hard(graph, settings.map, hard));
+        let inputs = baseline::Inputs { need: hard, ..baseline };
         baseline::hard::declare(graph, front, visibility, Filter::One, &inputs);
     }
     let lit = match (&needs.technique, &needs.hard) {
         (Need::No(why), Need::No(_)) => Need::Yes(*why),
         _ => Need::No("something can be shadowed, and is written elsewhere".into()),
     };
+    let lit = graph.need(&lit);
     visibility::lit(graph, visibility, description.extent, color, lit);
     Ids { depth, mask, occluder_maps: [front, back], light_texture, visibility }
 }

@@ -1,12 +1,13 @@
 use super::*;
 use crate::depth_layers::{Eye, MapView, MeshBounds};
-use crate::graph::{MeshList, Need};
+use crate::graph::MeshList;
 use crate::scene::{Role, generate};
 use ash::vk::Handle;
 use glam::DVec3;
 
 mod kinds;
 mod lights;
+mod plans;
 mod several;
 
 fn image(format: vk::Format, extent: [u32; 2], usage: vk::ImageUsageFlags) -> HostImage {
@@ -103,7 +104,7 @@ fn a_ground_that_shadows_nothing_takes_no_texels() {
     let plan = make(&description(&[]), &frame(&meshes));
     assert_eq!(plan.meshes(MeshList::Occluders).len(), 1, "the cube alone");
     let pass = &plan.plan.graph.passes()[plan.plan.steps[0].pass];
-    let Need::Yes(why) = pass.need else { panic!("{pass:?}") };
+    let why = plan.plan.graph.why(pass);
     let expected = "1 of 2 occluder meshes can shadow some of 2 receiver meshes";
     assert_eq!(why.to_string(), expected);
 }

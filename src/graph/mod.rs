@@ -21,8 +21,8 @@ mod why;
 pub use access::{Access, Scope};
 pub use barrier::{Barrier, State};
 pub use pass::{
-    COLOR_ATTACHMENTS, Draw, Layer, MeshList, Need, PUSH_BYTES, Pass, Push, STORAGE_BYTES, Target,
-    Use, Uses, Work,
+    COLOR_ATTACHMENTS, Draw, Layer, MeshList, Need, PUSH_BYTES, Pass, Push, Reason, STORAGE_BYTES,
+    Target, Use, Uses, Work,
 };
 pub(crate) use plan::Compiler;
 pub use plan::{Barriers, Border, BoundaryUse, Plan, ResourceBarrier, Skipped, Step, compile};
@@ -38,6 +38,7 @@ use ash::vk;
 pub struct Graph {
     resources: Vec<Resource>,
     passes: Vec<Pass>,
+    reasons: Vec<Why>,
     /// Each row's kind.
     kinds: Vec<u16>,
     /// The first row of each kind.
@@ -89,37 +90,60 @@ impl Graph {
 
     /// Leaves out rows that would run, by their place.
     pub(crate) fn leave_out(&mut self, which: impl Fn(usize) -> bool, why: impl Into<Why>) {
-        let why = why.into();
+        let why = self.because(why);
         let rows = self.passes.iter_mut().enumerate().filter(|(row, _)| which(*row));
         for (_, pass) in rows.filter(|(_, p)| p.need.is_yes()) {
             pass.need = Need::No(why);
         }
     }
 
+    /// Adds a reason, for rows to name.
+    pub fn because(&mut self, why: impl Into<Why>) -> Reason {
+        // A graph has a few reasons for all of its rows.
+        let reason = Reason(self.reasons.len() as u16);
+        self.reasons.push(why.into());
+        reason
+    }
+
+    /// Whether rows are needed, for a reason that is added.
+    pub fn need(&mut self, need: &Need<Why>) -> Need {
+        match need {
+            Need::Yes(why) => Need::Yes(self.because(*why)),
+            Need::No(why) => Need::No(self.because(*why)),
+        }
+    }
+
+    /// Why a row is needed, or is not.
+    pub fn why(&self, pass: &Pass) -> Why {
+        let (Need::Yes(Reason(place)) | Need::No(Reason(place))) = pass.need;
+        self.reasons.get(usize::from(place)).copied().unwrap_or_default()
+    }
+
     /// Forgets everything but its memory.
     pub(crate) fn clear(&mut self) {
         self.resources.clear();
+        self.reasons.clear();
         self.passes.clear();
         self.kinds.clear();
         self.firsts.clear();
     }
 
-    /// Whether it is another one in push constants, grids and reasons alone: then it runs the same rows behind the same
-    /// barriers.
-    pub(crate) fn differs_in_numbers_alone(&self, other: &Self) -> bool {
-        let same = |(a, b): (&Pass, &Pass)| a.is_row_of(b) && a.need.is_yes() == b.need.is_yes();
-        self.has_rows_of(other)
-            && self.resources.iter().zip(&other.resources).all(|(a, b)| a.owner == b.owner)
-            && self.passes.iter().zip(&other.passes).all(same)
+    /// Takes the memory now that a graph as large as another one will need.
+    pub(crate) fn reserve_for(&mut self, other: &Self) {
+        self.resources.reserve(other.resources.len());
+        self.reasons.reserve(other.reasons.len());
+        self.passes.reserve(other.passes.len());
+        self.kinds.reserve(other.kinds.len());
+        self.firsts.reserve(other.firsts.len());
     }
 
-    /// Whether resources and rows are the same as another's, whatever of them is needed or kept.
-    pub(crate) fn has_rows_of(&self, other: &Self) -> bool {
-        let same = |(a, b): (&Resource, &Resource)| a.name == b.name && a.shape == b.shape;
-        self.resources.len() == other.resources.len()
+    /// Whether it is another one in push constants, grids and reasons alone: then it runs the same rows behind the same
+    /// barriers.
+    pub(super) fn differs_in_numbers_alone(&self, other: &Self) -> bool {
+        let same = |(a, b): (&Pass, &Pass)| a.is_row_of(b) && a.need.is_yes() == b.need.is_yes();
+        self.resources == other.resources
             && self.passes.len() == other.passes.len()
-            && self.resources.iter().zip(&other.resources).all(same)
-            && self.passes.iter().zip(&other.passes).all(|(a, b)| a.is_row_of(b))
+            && self.passes.iter().zip(&other.passes).all(same)
     }
 
     fn add(&mut self, resource: Resource) -> ResourceId {

@@ -1,6 +1,6 @@
 //! A pass is a row of data: its name, what it touches and how, its push constants, its work.
 
-use super::{Access, ResourceId, Why};
+use super::{Access, ResourceId};
 use crate::shaders::Module;
 use ash::vk;
 use smallvec::SmallVec;
@@ -185,16 +185,20 @@ impl Work {
     }
 }
 
+/// A reason of one [`Graph`](super::Graph), which rows share: [`Graph::why`](super::Graph::why) tells it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Reason(pub(super) u16);
+
 /// Whether the frame needs a pass, and why or why not.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Need {
+pub enum Need<W = Reason> {
     /// It runs unless nobody reads what it writes.
-    Yes(Why),
+    Yes(W),
     /// It does not run.
-    No(Why),
+    No(W),
 }
 
-impl Need {
+impl<W> Need<W> {
     /// Whether it is needed.
     pub fn is_yes(&self) -> bool {
         matches!(self, Self::Yes(_))

@@ -1,5 +1,5 @@
 use super::*;
-use crate::graph::{Pass, Push, Use, Uses, Work};
+use crate::graph::{Need, Pass, Push, Reason, Use, Uses, Work};
 use crate::shaders;
 use smallvec::smallvec;
 use vk::{AccessFlags as A, ImageLayout as L, PipelineStageFlags as S};
@@ -27,7 +27,7 @@ fn plan_of(reads: &[Access], place_borders: bool) -> (Plan, ResourceId) {
         uses,
         push: Push::NONE,
         work: Work::Dispatch { shader: shaders::LIT, groups: [1; 3] },
-        need: Need::Yes("test".into()),
+        need: Need::Yes(Reason::default()),
     };
     for (&read, name) in reads.iter().zip(["one", "two"]) {
         let write = Use::fixed(middle, Access::BufferWriteCompute);
@@ -78,7 +78,7 @@ fn row(name: &'static str, uses: Uses, need: Need) -> Pass {
 }
 
 fn needed() -> Need {
-    Need::Yes("test".into())
+    Need::Yes(Reason::default())
 }
 
 fn compiled(graph: Graph, result: ResourceId) -> Result<Plan, Error> {
@@ -95,7 +95,7 @@ fn nothing_is_read_before_it_is_written() {
     assert!(error.contains("early") && error.contains("reads a,"), "{error}");
     // A row that does not run writes nothing.
     let (mut graph, _, _) = buffers();
-    graph.push(row("writer", smallvec![Use::fixed(a, W)], Need::No("test".into())));
+    graph.push(row("writer", smallvec![Use::fixed(a, W)], Need::No(Reason::default())));
     graph.push(row("reader", uses, needed()));
     assert!(compiled(graph, result).is_err());
     // Nor may a row read what it writes itself.
@@ -113,7 +113,8 @@ fn rows_whose_output_nobody_reads_drop_out_with_all_that_fed_them() {
     graph.push(row("feeds", smallvec![Use::fixed(a, W)], needed()));
     graph.push(row("unread", smallvec![Use::fixed(a, R), Use::fixed(b, W)], needed()));
     graph.push(row("result", smallvec![Use::fixed(result, I)], needed()));
-    graph.push(row("off", smallvec![Use::fixed(b, W)], Need::No("not today".into())));
+    let why = graph.because("not today");
+    graph.push(row("off", smallvec![Use::fixed(b, W)], Need::No(why)));
     let plan = compiled(graph, result).unwrap();
     assert_eq!(plan.steps.iter().map(|s| s.pass).collect::<Vec<_>>(), [2]);
     let why: Vec<_> =
@@ -240,7 +241,7 @@ fn what_is_kept_needs_no_barrier_again() {
             Use::fixed(map, Access::SampledCompute),
             Use::fixed(result, Access::ImageWrite)
         ];
-        graph.push(row("look", look, Need::Yes("test".into())));
+        graph.push(row("look", look, Need::Yes(Reason::default())));
         let borders = [Border { resource: result, before: FETCHED, after: FETCHED }];
         (compile(graph, &borders, true).unwrap(), map)
     };
@@ -248,12 +249,12 @@ fn what_is_kept_needs_no_barrier_again() {
         let steps = plan.steps.iter().flat_map(|s| &s.barriers).chain(&plan.handover);
         steps.filter(|b| b.resource == *map).map(|b| b.barrier).collect::<Vec<_>>()
     };
-    let made = of_map(&plan_of(Need::Yes("test".into())));
+    let made = of_map(&plan_of(Need::Yes(Reason::default())));
     assert_eq!(made.len(), 2);
     // Frames before may still read what is overwritten.
     assert!(made[0].src_stage.contains(S::COMPUTE_SHADER) && made[0].new_layout == L::GENERAL);
     assert_eq!((made[1].src_access, made[1].new_layout), (A::SHADER_WRITE, FETCHED.layout));
-    let kept = plan_of(Need::No("kept".into()));
+    let kept = plan_of(Need::No(Reason::default()));
     assert_eq!(kept.0.steps.len(), 1);
     assert!(of_map(&kept).is_empty());
 }

@@ -1,6 +1,6 @@
 //! A plan as text: a table for people, Graphviz for pictures.
 
-use super::{Graph, Need, Owner, Pass, Plan, Shape, Work};
+use super::{Graph, Owner, Pass, Plan, Shape, Work};
 use std::fmt::Write as _;
 
 /// The steps of one kind, as a reader sees them: once.
@@ -36,7 +36,7 @@ impl Plan {
         let mut text = String::new();
         let width = self.graph.kinds().map(|p| p.name.len()).max().unwrap_or(0);
         for Run { pass, times, barriers } in self.runs() {
-            let Need::Yes(why) = &pass.need else { continue };
+            let why = self.graph.why(pass);
             let mut work = work_of(&self.graph, &pass.work);
             if times > 1 {
                 work.push_str(&format!(" ×{times}"));

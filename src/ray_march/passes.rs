@@ -282,7 +282,7 @@ fn pixel_push(settings: &Settings, inputs: &Inputs) -> push::Pixels {
         | bit(settings.layers == Layers::Eye, 20)
         | bit(settings.classify, 21)
         // Without the filter's rows the rays' own pass writes the result.
-        | bit(settings.filter && matches!(inputs.filter, Need::Yes(_)), 22)
+        | bit(settings.filter && inputs.filter.is_yes(), 22)
         | match settings.sampling {
             Sampling::Jittered => 0,
             Sampling::Random => 1,

@@ -4,7 +4,7 @@ use super::*;
 use crate::settings::Settings;
 
 /// Every technique, and those settings that have rows of their own.
-const WAYS: [&str; 14] = [
+pub(super) const WAYS: [&str; 14] = [
     "technique=hard",
     "technique=pcss",
     "technique=back-projection",
@@ -21,7 +21,7 @@ const WAYS: [&str; 14] = [
     "technique=linear-light",
 ];
 
-fn settings(words: &str) -> Settings {
+pub(super) fn settings(words: &str) -> Settings {
     let mut settings = Settings::default();
     for word in words.split_whitespace() {
         match word.split_once('=').unwrap() {
