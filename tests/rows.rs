@@ -100,7 +100,7 @@ fn disagreements(graph: &Graph, pass: &Pass) -> Vec<String> {
         let shader = interface(module);
         for b in &shader.bindings {
             seen.insert(b.binding);
-            let used = pass.uses.iter().find(|u| u.binding == Some(b.binding));
+            let used = pass.uses.iter().find(|u| u.binding.map(u32::from) == Some(b.binding));
             let Some(used) = used else {
                 found.push(format!(
                     "{}: binding {} ({}) is not in the row",
@@ -167,7 +167,7 @@ fn disagreements(graph: &Graph, pass: &Pass) -> Vec<String> {
         }
     }
     for binding in pass.uses.iter().filter_map(|u| u.binding) {
-        if !seen.contains(&binding) {
+        if !seen.contains(&binding.into()) {
             found.push(format!("{}: binding {binding} is in no shader", pass.name));
         }
     }

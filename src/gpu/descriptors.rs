@@ -89,7 +89,7 @@ impl Descriptors {
         let mut images = [vk::DescriptorImageInfo::default(); MAX_BINDINGS];
         let mut buffers = [vk::DescriptorBufferInfo::default(); MAX_BINDINGS];
         for u in &pass.uses {
-            let Some(binding) = u.binding.map(|b| b as usize) else { continue };
+            let Some(binding) = u.binding.map(usize::from) else { continue };
             match look_up(u) {
                 (Object::Image { view, .. }, layout) => {
                     images[binding] =
@@ -131,5 +131,5 @@ impl Descriptors {
 
 /// Binding and kind of everything a row binds.
 fn bound(pass: &Pass) -> impl Iterator<Item = (u32, vk::DescriptorType)> + '_ {
-    pass.uses.iter().filter_map(|u| Some((u.binding?, u.access.descriptor()?)))
+    pass.uses.iter().filter_map(|u| Some((u.binding?.into(), u.access.descriptor()?)))
 }

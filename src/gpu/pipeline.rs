@@ -63,7 +63,7 @@ impl RowPipeline {
             .filter_map(|u| {
                 Some(
                     vk::DescriptorSetLayoutBinding::default()
-                        .binding(u.binding?)
+                        .binding(u.binding?.into())
                         .descriptor_type(u.access.descriptor()?)
                         .descriptor_count(1)
                         .stage_flags(u.access.shader_stage()),

@@ -47,12 +47,12 @@ pub struct Use {
     /// How it is touched.
     pub access: Access,
     /// The shader's binding (set 0); none for attachments and indirect arguments.
-    pub binding: Option<u32>,
+    pub binding: Option<u8>,
 }
 
 impl Use {
     /// A resource that the shader sees at a binding.
-    pub fn bound(binding: u32, resource: ResourceId, access: Access) -> Self {
+    pub fn bound(binding: u8, resource: ResourceId, access: Access) -> Self {
         Self { resource, access, binding: Some(binding) }
     }
 
@@ -206,7 +206,7 @@ impl<W> Need<W> {
 }
 
 /// What a pass touches: as many as passes have lie in the pass itself.
-pub type Uses = SmallVec<[Use; 12]>;
+pub type Uses = SmallVec<[Use; 20]>;
 
 /// One row of the graph.
 ///

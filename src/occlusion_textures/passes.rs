@@ -12,7 +12,7 @@ use crate::nbuffer::Levels;
 use crate::shaders::{self, Module};
 use crate::visibility::{GBuffer, grid};
 use ash::vk;
-use smallvec::smallvec;
+use smallvec::{SmallVec, smallvec};
 
 /// The width of the image of filtered tiles: the largest that every device has (maxImageDimension2D).
 pub(super) const IMAGE_WIDTH: u32 = 4096;
@@ -219,6 +219,9 @@ const BACKS: Drawn = Drawn {
     ],
 };
 
+/// What is drawn: four slices each.
+type Slabs = SmallVec<[ResourceId; 8]>;
+
 /// Adds the rows that count faces; four slices an image.
 fn draw(
     graph: &mut Graph,
@@ -226,12 +229,12 @@ fn draw(
     placement: ResourceId,
     settings: &Settings,
     inputs: &Inputs,
-) -> Vec<ResourceId> {
+) -> Slabs {
     let draws = settings.slices.div_ceil(SLICES_A_DRAW) as usize;
     let raster = depth_layers::raster_of(drawn.layer);
-    let mut images = Vec::new();
+    let mut images = Slabs::new();
     for row in 0..draws {
-        let targets: Vec<_> = drawn.images[COLOR_ATTACHMENTS * row..][..COLOR_ATTACHMENTS]
+        let targets: Slabs = drawn.images[COLOR_ATTACHMENTS * row..][..COLOR_ATTACHMENTS]
             .iter()
             .map(|name| {
                 let format = vk::Format::R8G8B8A8_UNORM;
@@ -281,7 +284,7 @@ fn declare_mask(
         let bound = |i| images.get(i).or(images.first()).copied();
         uses.extend(
             (0..8).filter_map(|i| {
-                Some(Use::bound(first + i as u32, bound(i)?, Access::SampledCompute))
+                Some(Use::bound(first + i as u8, bound(i)?, Access::SampledCompute))
             }),
         );
     }

@@ -9,7 +9,7 @@ use crate::graph::{
 use crate::shaders;
 use crate::visibility::{self, GBuffer};
 use ash::vk;
-use smallvec::smallvec;
+use smallvec::{SmallVec, smallvec};
 
 /// Texels a side of a block and of a superblock, as in `node.glsl`.
 const BLOCK: u32 = 8;
@@ -83,7 +83,7 @@ pub fn declare(
     let nodes = declare_nodes(graph, layers, settings, inputs, gather);
     match (settings.receivers, layers.receivers, inputs.receivers) {
         (Receivers::Map, Some(receiver_depth), Some(view)) => {
-            let maps: Vec<_> = sides(settings)
+            let maps: SmallVec<[_; 2]> = sides(settings)
                 .iter()
                 .map(|&side| {
                     if gather {

@@ -93,7 +93,7 @@ impl Tiles {
         (name, shader): (&'static str, Module),
         push: Push,
         mut uses: Uses,
-        binding: u32,
+        binding: u8,
         need: &Need,
     ) {
         uses.push(Use::bound(binding, self.list, Access::BufferReadCompute));
