@@ -56,7 +56,8 @@ impl Descriptors {
         let pool = unsafe { host.device.create_descriptor_pool(&create, None) }
             .map_err(Error::vulkan("creating the descriptor pool"))?;
         let mut made = Self { pool, sets: Vec::new(), kinds: rows.len() };
-        let layouts: Vec<_> = (0..places).flat_map(|_| rows.iter().map(|r| r.set_layout)).collect();
+        let layouts: Vec<_> =
+            (0..places).flat_map(|_| rows.iter().map(|r| r.layouts.set)).collect();
         let allocate =
             vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(&layouts);
         // SAFETY: the pool was sized for exactly these sets, and the layouts are alive.

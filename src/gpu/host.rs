@@ -1,9 +1,11 @@
 //! What the host lends, and whether it is enough.
 
+use super::layouts::SharedLayouts;
 use crate::graph::PUSH_BYTES;
 use crate::{Error, depth_layers, visibility};
 use ash::{ext, vk};
 use std::ffi::CStr;
+use std::sync::Arc;
 
 /// What the host lends: a device, a queue family, and what it has beyond.
 #[derive(Clone)]
@@ -14,6 +16,8 @@ pub struct Host {
     pub(crate) queue_family: u32,
     pub(crate) pipeline_cache: vk::PipelineCache,
     pub(crate) debug_utils: Option<ext::debug_utils::Device>,
+    /// Where the rows' layouts are shared with other nodes.
+    pub(super) layouts: Option<Arc<SharedLayouts>>,
 }
 
 impl Host {
@@ -44,6 +48,7 @@ impl Host {
             queue_family,
             pipeline_cache: vk::PipelineCache::null(),
             debug_utils: None,
+            layouts: None,
         }
     }
 
@@ -81,6 +86,14 @@ impl Host {
     #[must_use]
     pub fn with_debug_utils(mut self, debug_utils: ext::debug_utils::Device) -> Self {
         self.debug_utils = Some(debug_utils);
+        self
+    }
+
+    /// Takes the rows' layouts from among those of the device, which outlive the node.
+    #[cfg(feature = "headless")]
+    #[must_use]
+    pub(super) fn with_layouts(mut self, layouts: Arc<SharedLayouts>) -> Self {
+        self.layouts = Some(layouts);
         self
     }
 }

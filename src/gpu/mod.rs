@@ -7,6 +7,7 @@
 mod descriptors;
 mod graph_objects;
 mod host;
+mod layouts;
 mod memory;
 mod node_objects;
 pub(crate) mod objects;

@@ -1,6 +1,7 @@
 //! A pipeline, its layouts and, for rasters, its render pass, from a row: one for all of its kind.
 
 use super::host::Host;
+use super::layouts::{LayoutsInfo, RowLayouts};
 use super::objects::{Object, Objects, name};
 use crate::Error;
 use crate::depth_layers::DepthPush;
@@ -12,8 +13,7 @@ use ash::vk;
 /// What a row needs to be recorded.
 #[derive(Default)]
 pub(crate) struct RowPipeline {
-    pub set_layout: vk::DescriptorSetLayout,
-    pub layout: vk::PipelineLayout,
+    pub layouts: RowLayouts,
     pub push_stages: vk::ShaderStageFlags,
     /// One for compute and indirect draws; for meshes one a stride and kind of [`Faces`].
     pub pipelines: Vec<vk::Pipeline>,
@@ -56,7 +56,6 @@ impl RowPipeline {
         objects: &Objects,
         strides: &[u32],
     ) -> Result<(), Error> {
-        let doing = |what: &str| format!("creating the {what} of {}", pass.name);
         let bindings: Vec<_> = pass
             .uses
             .iter()
@@ -70,12 +69,6 @@ impl RowPipeline {
                 )
             })
             .collect();
-        let create = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
-        // SAFETY: the device is valid (Host::borrow); a test holds every row's bindings against its
-        // shader.
-        self.set_layout = unsafe { host.device.create_descriptor_set_layout(&create, None) }
-            .map_err(Error::vulkan(doing("descriptor set layout")))?;
-
         let (stages, push_bytes) = match pass.work {
             Work::Dispatch { .. } | Work::Indirect { .. } => {
                 (vk::ShaderStageFlags::COMPUTE, pass.push.bytes().len())
@@ -90,16 +83,12 @@ impl RowPipeline {
             ),
         };
         self.push_stages = stages;
-        let ranges =
-            [vk::PushConstantRange { stage_flags: stages, offset: 0, size: push_bytes as u32 }];
-        let set_layouts = [self.set_layout];
-        let mut create = vk::PipelineLayoutCreateInfo::default().set_layouts(&set_layouts);
-        if push_bytes > 0 {
-            create = create.push_constant_ranges(&ranges);
-        }
-        // SAFETY: the set layout was just made; the range is within the guaranteed 128 bytes.
-        self.layout = unsafe { host.device.create_pipeline_layout(&create, None) }
-            .map_err(Error::vulkan(doing("pipeline layout")))?;
+        let info =
+            LayoutsInfo { bindings: &bindings, push_stages: stages, push_bytes: push_bytes as u32 };
+        self.layouts = match &host.layouts {
+            Some(shared) => shared.find(host, &info, pass.name)?,
+            None => RowLayouts::new(host, &info, pass.name)?,
+        };
 
         match pass.work {
             Work::Dispatch { shader, .. } | Work::Indirect { shader, .. } => {
@@ -119,8 +108,9 @@ impl RowPipeline {
 
     fn compute(&self, host: &Host, pass: &Pass, shader: Module) -> Result<vk::Pipeline, Error> {
         with_modules(host, &[(shader, vk::ShaderStageFlags::COMPUTE)], |stages| {
-            let create =
-                [vk::ComputePipelineCreateInfo::default().stage(stages[0]).layout(self.layout)];
+            let create = [vk::ComputePipelineCreateInfo::default()
+                .stage(stages[0])
+                .layout(self.layouts.pipeline)];
             // SAFETY: the stage's module and the layout are alive for this call.
             unsafe { host.device.create_compute_pipelines(host.pipeline_cache, &create, None) }
                 .map(|p| p[0])
@@ -275,7 +265,7 @@ impl RowPipeline {
             .viewport_state(&viewport)
             .rasterization_state(&raster)
             .multisample_state(&samples)
-            .layout(self.layout)
+            .layout(self.layouts.pipeline)
             .render_pass(self.render_pass);
         if let Work::Raster { target: Target::Depth { compare, .. }, .. } = pass.work {
             depth =
@@ -301,10 +291,9 @@ impl RowPipeline {
         unsafe { device.destroy_framebuffer(self.framebuffer, None) };
         // SAFETY: as above.
         unsafe { device.destroy_render_pass(self.render_pass, None) };
-        // SAFETY: as above.
-        unsafe { device.destroy_pipeline_layout(self.layout, None) };
-        // SAFETY: as above.
-        unsafe { device.destroy_descriptor_set_layout(self.set_layout, None) };
+        if host.layouts.is_none() {
+            self.layouts.destroy(device);
+        }
     }
 }
 

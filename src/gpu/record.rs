@@ -92,12 +92,16 @@ impl Recorder<'_> {
                 self.descriptors.write(host, pass, set, |u| self.look_up(frame, u));
             }
             // SAFETY: Host::borrow's promise: cmd is recording. The set was made for this layout.
-            unsafe { device.cmd_bind_descriptor_sets(cmd, point, row.layout, 0, &[set], &[]) };
+            unsafe {
+                device.cmd_bind_descriptor_sets(cmd, point, row.layouts.pipeline, 0, &[set], &[]);
+            };
         }
         let pushed = pass.push.bytes();
         if !pushed.is_empty() {
             // SAFETY: as above; the layout's range holds exactly these bytes.
-            unsafe { device.cmd_push_constants(cmd, row.layout, row.push_stages, 0, pushed) };
+            unsafe {
+                device.cmd_push_constants(cmd, row.layouts.pipeline, row.push_stages, 0, pushed);
+            };
         }
         match pass.work {
             Work::Dispatch { groups: [x, y, z], .. } => {
@@ -169,7 +173,7 @@ impl Recorder<'_> {
         // SAFETY: inside the row's render pass, with a pipeline made for it.
         unsafe { device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::GRAPHICS, pipeline) };
         // SAFETY: the layout's range is one 4×4 matrix for the vertex stage.
-        unsafe { device.cmd_push_constants(cmd, row.layout, row.push_stages, 0, matrix) };
+        unsafe { device.cmd_push_constants(cmd, row.layouts.pipeline, row.push_stages, 0, matrix) };
         // SAFETY: Host::borrow's promise: the mesh's buffers are valid and hold what the frame
         // says of them.
         unsafe {

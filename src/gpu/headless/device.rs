@@ -4,6 +4,7 @@ use super::choose::{Candidate, choose};
 use super::instance::Instance;
 use super::messages::MessageLog;
 use crate::Error;
+use crate::gpu::layouts::SharedLayouts;
 use ash::{ext, vk};
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use std::fmt;
@@ -60,13 +61,14 @@ impl Drop for Shared {
 }
 
 /// Destroys the device where its fields' order says so. The cache makes a node's pipelines cheap where an
-/// earlier one had the same.
-struct Device(ash::Device, vk::PipelineCache);
+/// earlier one had the same, with the same layouts.
+struct Device(ash::Device, vk::PipelineCache, Arc<SharedLayouts>);
 
 impl Drop for Device {
     fn drop(&mut self) {
         // SAFETY: made by this device; no pipeline is being made any more.
         unsafe { self.0.destroy_pipeline_cache(self.1, None) };
+        self.2.destroy(&self.0);
         // SAFETY: idle (`Shared` waits first), and all that came from it is gone by contract.
         unsafe { self.0.destroy_device(None) };
     }
@@ -115,7 +117,7 @@ impl HeadlessDevice {
         // SAFETY: the family was reported by this device, and so was the one feature that `info` may name.
         let device = unsafe { instance.raw.create_device(physical_device, &info, None) }
             .map_err(Error::vulkan(format!("creating the device {name}")))?;
-        let mut device = Device(device, vk::PipelineCache::null());
+        let mut device = Device(device, vk::PipelineCache::null(), Arc::default());
         let empty = vk::PipelineCacheCreateInfo::default();
         // SAFETY: the device was just made. `Device` destroys the cache, a null one too.
         device.1 = unsafe { device.0.create_pipeline_cache(&empty, None) }
@@ -188,6 +190,11 @@ impl HeadlessDevice {
     /// A cache of the device's pipelines, for [`crate::Host::with_pipeline_cache`].
     pub fn pipeline_cache(&self) -> vk::PipelineCache {
         self.0.device.1
+    }
+
+    /// Layouts that nodes on this device share.
+    pub(super) fn layouts(&self) -> &Arc<SharedLayouts> {
+        &self.0.device.2
     }
 
     /// Names and labels, where the instance has `VK_EXT_debug_utils`.

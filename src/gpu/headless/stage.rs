@@ -13,7 +13,7 @@ use crate::{
     Description, Error, Frame, FramePlan, Host, MeshInstance, RectangleLight, Settings, ShadowNode,
     Visibility, visibility,
 };
-use std::sync::PoisonError;
+use std::sync::{Arc, PoisonError};
 use std::time::{Duration, Instant};
 
 /// What one frame of the node took.
@@ -70,7 +70,9 @@ impl Stage {
                 device.queue_family(),
             )
         };
-        host = host.with_pipeline_cache(device.pipeline_cache());
+        host = host
+            .with_pipeline_cache(device.pipeline_cache())
+            .with_layouts(Arc::clone(device.layouts()));
         if let Some(debug_utils) = device.debug_utils() {
             host = host.with_debug_utils(debug_utils.clone());
         }
