@@ -1,7 +1,9 @@
 //! The device of a test.
 
 use antumbra::gpu::headless::{HeadlessDevice, HeadlessOptions, MessageLog};
+use std::io::Write;
 use std::ops::Deref;
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 /// A device that fails its test if the validation layer says anything, up to and including while
 /// the device is destroyed.
@@ -11,30 +13,59 @@ use std::ops::Deref;
 #[derive(Debug)]
 pub struct TestDevice {
     /// `None` only while it is dropped.
-    device: Option<HeadlessDevice>,
+    device: Option<Arc<HeadlessDevice>>,
     log: MessageLog,
 }
+
+/// The device of the tests that run at the moment.
+static SHARED: Mutex<Weak<HeadlessDevice>> = Mutex::new(Weak::new());
 
 /// The device that `ANTUMBRA_DRIVER` names, or the best there is; under the validation layer if
 /// `ANTUMBRA_VALIDATE` is 1.
 ///
+/// Tests that run at once share it, so that what a driver compiles for one of them serves the others,
+/// and the last of them destroys it. What the validation layer says fails the first of them to end.
+///
 /// # Panics
 /// Without such a device, with what to install.
 pub fn device() -> TestDevice {
+    let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(device) = shared.upgrade() {
+        return TestDevice::of(device);
+    }
     let validation = std::env::var("ANTUMBRA_VALIDATE").is_ok_and(|value| value == "1");
-    TestDevice::new(validation)
+    let new = TestDevice::new(validation);
+    *shared = new.device.as_ref().map_or(Weak::new(), Arc::downgrade);
+    new
 }
 
 impl TestDevice {
-    /// As [`device`], with or without the validation layer whatever the environment says.
+    /// As [`device`], but a test's own, with or without the validation layer whatever the environment
+    /// says.
     ///
     /// # Panics
     /// As [`device`].
     pub fn new(validation: bool) -> Self {
         let device = HeadlessDevice::new(&HeadlessOptions { validation, ..Default::default() })
             .unwrap_or_else(|error| panic!("{error}"));
+        Self::of(Arc::new(device))
+    }
+
+    fn of(device: Arc<HeadlessDevice>) -> Self {
         let log = device.message_log();
         Self { device: Some(device), log }
+    }
+
+    /// Whether this driver is so slow that a test runs less on it; the output says then what is left to
+    /// the others, also where the test passes.
+    pub fn leaves_to_others(&self, what: &str) -> bool {
+        let slow = self.name().contains("SwiftShader");
+        if slow {
+            // The harness shows what is printed only where a test fails.
+            let _ =
+                writeln!(std::io::stderr(), "left to other drivers than {}: {what}", self.name());
+        }
+        slow
     }
 
     /// Ends the test here: drops this handle and checks what was said. Dropping does the same.
