@@ -125,7 +125,12 @@ impl HostBuffer {
         let bytes = mapped.unwrap_or_default();
         let bytes = &bytes[..whole.min(bytes.len())];
         let size = size_of::<T>().max(1);
-        bytes.chunks_exact(size).map(bytemuck::pod_read_unaligned).collect()
+        let bytes = &bytes[..bytes.len() / size * size];
+        // Copied whole where memory lies as `T` does, which it all but always does.
+        match bytemuck::try_cast_slice(bytes) {
+            Ok(values) => values.to_vec(),
+            Err(_) => bytes.chunks_exact(size).map(bytemuck::pod_read_unaligned).collect(),
+        }
     }
 
     /// The buffer.
