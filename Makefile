@@ -6,7 +6,7 @@
 #
 # ANTUMBRA_DRIVER=<part of a device name> picks the device for all of them.
 
-.PHONY: demo test bench clean
+.PHONY: demo test test_on_llvmpipe test_on_swiftshader bench clean
 
 CARGO ?= cargo
 SHELL := /bin/bash
@@ -50,6 +50,8 @@ test_once := $(CARGO) test --workspace --lib $(NO_DEVICE:%=--test %)
 # The embed example's own tests are what the node says to an engine that gets something wrong;
 # wrong_light is the benchmark's, that its report sees what is wrong.
 test_on_device := $(CARGO) test --workspace $(DEVICE:%=--test %) --test wrong_light --example embed
+# Cargo must not look for the job server of the make above.
+test_on_driver := env -u MAKEFLAGS $(test_on_device)
 
 # Beside the installed drivers; a device must still be chosen by its name.
 SWIFTSHADER := VK_ADD_DRIVER_FILES=$(CURDIR)/.drivers/vk_swiftshader_icd.json
@@ -64,12 +66,22 @@ test:
 ifdef ANTUMBRA_DRIVER
 	$(SWIFTSHADER) $(test_on_device)
 else
-	ANTUMBRA_DRIVER=llvmpipe $(test_on_device)
-	ANTUMBRA_DRIVER=SwiftShader $(SWIFTSHADER) $(test_on_device)
+	$(test_on_device) --no-run
+	$(MAKE) --no-print-directory -j2 --output-sync=target test_on_llvmpipe test_on_swiftshader
 ifneq ($(GPU),)
 	$(test_on_device)
 endif
 endif
+
+# Both at once: while SwiftShader compiles shaders, and where a test works on one thread, a core is idle.
+# Each shows its output when it is done.
+test_on_llvmpipe test_on_swiftshader: export ANTUMBRA_VALIDATE := 1
+
+test_on_llvmpipe:
+	ANTUMBRA_DRIVER=llvmpipe $(test_on_driver)
+
+test_on_swiftshader:
+	ANTUMBRA_DRIVER=SwiftShader $(SWIFTSHADER) $(test_on_driver)
 
 clean:
 	$(CARGO) clean
