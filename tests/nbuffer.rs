@@ -170,47 +170,56 @@ impl<'a> Machine<'a> {
     }
 }
 
-/// What a scan finds in a window: of each texel's own channel, moved into the map whole.
+/// What a scan finds of one channel in a part of the map: first column and row, then the ones behind the last.
 fn scanned(
-    levels: Levels,
+    side: usize,
     map: &[f32],
     channels: usize,
-    window: [i32; 3],
+    part: [i32; 4],
     channel: usize,
     way: &Way,
 ) -> f32 {
-    let n = levels.map as i32;
+    let [x0, y0, x1, y1] = part.map(|i| i as usize);
+    let mut inside = Vec::with_capacity((x1 - x0) * (y1 - y0));
+    for y in y0..y1 {
+        let row = &map[(y * side + x0) * channels..(y * side + x1) * channels];
+        inside.extend(row.iter().skip(channel).step_by(channels));
+    }
+    (way.of)(&inside)
+}
+
+/// A window, moved into the map whole.
+fn inside(map: u32, window: [i32; 3]) -> [i32; 4] {
+    let n = map as i32;
     let side = window[2].min(n);
     let [x, y] = [window[0], window[1]].map(|i| i.clamp(0, n - side));
-    let texel = |x: i32, y: i32| map[((y * n + x) as usize) * channels + channel];
-    let inside: Vec<f32> =
-        (y..y + side).flat_map(|y| (x..x + side).map(move |x| texel(x, y))).collect();
-    (way.of)(&inside)
+    [x, y, x + side, y + side]
 }
 
 /// The part of the map that the nodes of a mip pyramid hold around a window.
 fn around(levels: Levels, window: [i32; 3]) -> [i32; 4] {
     let n = levels.map as i32;
-    let side = window[2].min(n);
-    let level = levels.covering(side as u32);
-    let [x, y] = [window[0], window[1]].map(|i| i.clamp(0, n - side));
+    let [x0, y0, x1, y1] = inside(levels.map, window);
+    let level = levels.covering((x1 - x0) as u32);
     let down = |i: i32| i >> level << level;
     let up = |i: i32| (((i >> level) + 1) << level).min(n);
-    [down(x), down(y), up(x + side - 1), up(y + side - 1)]
+    [down(x0), down(y0), up(x1 - 1), up(y1 - 1)]
 }
 
 /// Every side from 1 to 300, each kind, of 1, 2 and 4 channels in turn; the least of each, the largest and the
-/// mean of some.
+/// mean of some. Of the sides a third on a slow driver.
 #[test]
 fn levels_and_windows_are_what_a_scan_finds() {
     let device = device();
     let mut runner = TestRunner::deterministic();
+    // They are the same shaders at every side.
+    let thinned = if device.leaves_to_others("two of three sides of n-buffers") { 3 } else { 1 };
     for (nth, way) in WAYS.iter().enumerate() {
         for channels in [1, 2, 4] {
             let mut machine = Machine::new(&device, way, channels);
             let mut tightness = [0.0f64; 3];
             // All sides over the three numbers of channels; fewer where only the way is another.
-            let apart = if nth == 0 { 3 } else { 15 };
+            let apart = if nth == 0 { 3 } else { 15 } * thinned;
             let first = 1 + [1, 2, 4].iter().position(|c| *c == channels).unwrap() as u32;
             for map in (first..=MOST).step_by(apart) {
                 let count = (map * map) as usize * channels;
@@ -225,6 +234,16 @@ fn levels_and_windows_are_what_a_scan_finds() {
                 let windows = prop::collection::vec(window, WINDOWS);
                 let windows: Vec<_> = windows.new_tree(&mut runner).unwrap().current();
                 let windows: Vec<_> = windows.into_iter().map(|(x, y, s)| [x, y, s]).collect();
+                let found_in = |part: [i32; 4], channel: usize| {
+                    scanned(map as usize, &values, channels, part, channel, way)
+                };
+                // Of each window's channels; n-buffers and thirds hold the same.
+                let exact: Vec<f32> = windows
+                    .iter()
+                    .filter(|_| !way.mean)
+                    .flat_map(|&window| (0..channels).map(move |c| (inside(map, window), c)))
+                    .map(|(part, channel)| found_in(part, channel))
+                    .collect();
                 for (kind_nth, kind) in
                     [Kind::NBuffer, Kind::Thirds, Kind::Mip].into_iter().enumerate()
                 {
@@ -242,19 +261,13 @@ fn levels_and_windows_are_what_a_scan_finds() {
                         for channel in 0..channels {
                             let found = results[i * channels + channel];
                             let expected = if kind == Kind::Mip {
-                                let [x0, y0, x1, y1] = around(levels, window);
-                                let texel = |x: i32, y: i32| {
-                                    values[((y * side + x) as usize) * channels + channel]
-                                };
-                                let inside: Vec<f32> = (y0..y1)
-                                    .flat_map(|y| (x0..x1).map(move |x| texel(x, y)))
-                                    .collect();
+                                let part @ [x0, y0, x1, y1] = around(levels, window);
                                 let s = f64::from(window[2].min(side));
                                 tightness[kind_nth] += f64::from((x1 - x0) * (y1 - y0)) / (s * s);
-                                (way.of)(&inside)
+                                found_in(part, channel)
                             } else {
                                 tightness[kind_nth] += 1.0;
-                                scanned(levels, &values, channels, window, channel, way)
+                                exact[i * channels + channel]
                             };
                             assert_eq!(found, expected, "{} of {levels:?}, {window:?}", way.name);
                         }

@@ -26,13 +26,14 @@ impl<V: Copy> Values<V> {
             let finer = &of_level[level as usize - 1];
             let side = levels.side(level);
             let mut values = Vec::with_capacity((side * side) as usize);
+            let mut parts = Vec::with_capacity((fan * fan) as usize);
             for y in 0..side {
                 for x in 0..side {
-                    let parts: Vec<V> = (0..fan * fan)
+                    let places = (0..fan * fan)
                         .map(|i| [times * x + apart * (i % fan), times * y + apart * (i / fan)])
-                        .filter(|at| at.iter().all(|i| *i < end))
-                        .map(|[x, y]| finer[(y * end + x) as usize])
-                        .collect();
+                        .filter(|at| at.iter().all(|i| *i < end));
+                    parts.clear();
+                    parts.extend(places.map(|[x, y]| finer[(y * end + x) as usize]));
                     values.push(combine(&parts));
                 }
             }
