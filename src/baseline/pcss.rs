@@ -75,7 +75,7 @@ pub fn declare(
     let push = pixel_push(taps, inputs);
     let tiles = Tiles::start(graph, gbuffer.extent, need);
     let nearest = Use::bound(2, nearest, Access::BufferReadCompute);
-    tiles.sort(graph, shaders::PCSS_SORT, push, (nearest, visibility), gbuffer, need);
+    tiles.sort(graph, shaders::PCSS_SORT, push, (&[nearest], visibility), gbuffer, need);
     let mut uses = pixel_uses(front, gbuffer);
     uses.push(Use::bound(3, visibility, Access::ImageUpdate));
     tiles.run(graph, (NAME, shaders::PCSS_TILES), push, uses, 4, need);

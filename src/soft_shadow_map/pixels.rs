@@ -32,7 +32,7 @@ pub(super) fn gather(
     if settings.classify {
         let tiles = Tiles::start(graph, gbuffer.extent, inputs.need);
         let families = Use::bound(2, nodes.families, Access::BufferReadCompute);
-        tiles.sort(graph, shaders::TILES, push, (families, visibility), gbuffer, inputs.need);
+        tiles.sort(graph, shaders::TILES, push, (&[families], visibility), gbuffer, inputs.need);
         tiles.run(graph, (NAME, shaders::GATHER_TILES), push, uses, 6, inputs.need);
     } else {
         // 8×8 invocations of 2×2 pixels.

@@ -63,26 +63,26 @@ impl Tiles {
         Self { arguments, list }
     }
 
-    /// Adds the row that sorts tiles by a technique's shader: `occluders` is what it asks, at binding 2.
+    /// Adds the row that sorts tiles by a technique's shader: `occluders` is what it asks, at binding 2 and from 6 on.
     pub fn sort(
         &self,
         graph: &mut Graph,
         shader: Module,
         push: Push,
-        (occluders, visibility): (Use, ResourceId),
+        (occluders, visibility): (&[Use], ResourceId),
         gbuffer: &GBuffer,
         need: &Need,
     ) {
         // 8×8 invocations of a tile.
         let [x, y] = gbuffer.extent.map(|e| e.div_ceil(8 * TILE));
-        let uses = smallvec![
+        let mut uses = smallvec![
             Use::bound(0, gbuffer.depth, Access::SampledCompute),
             Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
-            occluders,
             Use::bound(3, self.arguments, Access::BufferUpdate),
             Use::bound(4, self.list, Access::BufferUpdate),
             Use::bound(5, visibility, Access::ImageWrite),
         ];
+        uses.extend_from_slice(occluders);
         graph.push(Pass::compute("visibility.tiles", shader, [x, y, 1], push, uses, need));
     }
 
