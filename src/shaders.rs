@@ -143,11 +143,29 @@ pub const VISIBILITY_SAT_CORRELATED: Module =
 pub const MEANS_FIRST_LEVEL: Module = module!("occlusion_textures/first_level.comp");
 /// Means of a level's windows.
 pub const MEANS_NEXT_LEVEL: Module = module!("occlusion_textures/next_level.comp");
+/// Which tiles of pixels meet nothing in any slice, by summed-area tables.
+pub const SLICE_TILES_SAT: Module = module!("occlusion_textures/tiles_sat.comp");
+/// The same with what correlated slices have.
+pub const SLICE_TILES_SAT_CORRELATED: Module =
+    module!("occlusion_textures/tiles_sat_correlated.comp");
+/// The visible fraction at the pixels of listed tiles, from summed-area tables.
+pub const LISTED_SAT: Module = module!("occlusion_textures/listed_sat.comp");
+/// The same by what slices have in common.
+pub const LISTED_SAT_CORRELATED: Module = module!("occlusion_textures/listed_sat_correlated.comp");
 /// What slices hide of each pixel, from levels of means.
 pub const VISIBILITY_LEVELS: Module = module!("occlusion_textures/visibility_levels.comp");
 /// The same by what slices have in common.
 pub const VISIBILITY_LEVELS_CORRELATED: Module =
     module!("occlusion_textures/visibility_levels_correlated.comp");
+/// What blocks in squares of the mask.
+pub const SQUARES: Module = module!("occlusion_textures/squares.comp");
+/// Which tiles of pixels meet nothing in any slice, by those.
+pub const SLICE_TILES_LEVELS: Module = module!("occlusion_textures/tiles_levels.comp");
+/// The visible fraction at the pixels of listed tiles, from levels of means.
+pub const LISTED_LEVELS: Module = module!("occlusion_textures/listed_levels.comp");
+/// The same by what slices have in common.
+pub const LISTED_LEVELS_CORRELATED: Module =
+    module!("occlusion_textures/listed_levels_correlated.comp");
 /// Samples evenly along a line.
 pub const LINE_SPREAD: Module = module!("linear_light/spread.comp");
 /// Positions as a line's middle sees them.
@@ -247,10 +265,18 @@ pub const ALL: &[Module] = &[
     SUM_COLUMNS,
     VISIBILITY_SAT,
     VISIBILITY_SAT_CORRELATED,
+    SLICE_TILES_SAT,
+    SLICE_TILES_SAT_CORRELATED,
+    LISTED_SAT,
+    LISTED_SAT_CORRELATED,
     MEANS_FIRST_LEVEL,
     MEANS_NEXT_LEVEL,
     VISIBILITY_LEVELS,
     VISIBILITY_LEVELS_CORRELATED,
+    SQUARES,
+    SLICE_TILES_LEVELS,
+    LISTED_LEVELS,
+    LISTED_LEVELS_CORRELATED,
     LINE_SPREAD,
     MIDDLE_VERT,
     SAMPLE_VERT,

@@ -6,7 +6,7 @@
 use antumbra::occlusion_textures::Combine;
 use antumbra::occlusion_textures::twin::{
     bin_of, hidden_with, hidden_with_correlated, kernel_of, packed, slice_weight, solid_of,
-    tile_means, tile_sums,
+    tile_kernel_of, tile_means, tile_sums,
 };
 use antumbra_tests::compare::Tolerance;
 use antumbra_tests::{Function, device};
@@ -63,6 +63,58 @@ fn kernels_and_weights() {
     .random(4_000, slices)
     .f64(Tolerance::absolute(3e-5), weight::<f64>)
     .check(&device());
+}
+
+/// The kernel of a tile is what its twin says, and holds those of its points, in every plane above them.
+#[test]
+fn kernels_of_tiles_hold_those_of_their_points() {
+    const LIGHT: [f64; 2] = [0.3, 0.7];
+    let glue = "vec4 tile(vec2 per, vec2 first, float eye, vec3 p, vec3 q, float plane, out vec4 t, out float w)
+{
+    MapWindow m = MapWindow(per, first, eye);
+    Tile tile = with_receiver(empty_tile(), centred(m, p, 1.0 / p.z), 1.0 / p.z);
+    tile = rounded_tile(with_receiver(tile, centred(m, q, 1.0 / q.z), 1.0 / q.z));
+    t = vec4(tile.t_min, tile.t_max);
+    w = tile.w.x;
+    return tile_kernel(m, tile, plane, vec2(0.3, 0.7));
+}";
+    let prototype = "vec4 tile(vec2 per, vec2 first, float eye, vec3 p, vec3 q, float plane, out vec4 t, out float w)";
+    let map = ((50.0..300.0f32, 50.0..300.0f32), (0.0..256.0f32, 0.0..256.0f32), 0.0..2.0f32);
+    let point = || (-2.0..2.0f32, -2.0..2.0f32, 2.0..5.0f32);
+    let cases = (map, point(), point(), 0.2..5.0f32);
+    let test = Function::new("occlusion_textures/tile_kernel.glsl", prototype)
+        .glue(glue)
+        .random(4_000, cases);
+    for case in test.outputs(&device()) {
+        let (i, o) = (&case.input, &case.output);
+        let map: [f64; 5] = std::array::from_fn(|k| i[k]);
+        let (held, t) = (&o[..4], [o[4], o[5], o[6], o[7]]);
+        for p in [[i[5], i[6], i[7]], [i[8], i[9], i[10]]] {
+            let own = kernel_of(map, p, i[11], LIGHT);
+            assert!(held[0] <= own[0] && held[1] <= own[1], "{i:?}: {held:?}, {own:?}");
+            assert!(held[2] >= own[2] && held[3] >= own[3], "{i:?}: {held:?}, {own:?}");
+        }
+        let twin = tile_kernel_of(map, t, o[8], i[11], LIGHT);
+        for (a, b) in held.iter().zip(twin) {
+            assert!((a - b).abs() < 2e-3, "{i:?}: {held:?}, {twin:?}");
+        }
+    }
+}
+
+/// What levels are interpolated from around a kernel lies within the reach that tiles take for them.
+#[test]
+fn levels_reach_no_further_than_tiles_look() {
+    for shorter in (10..40_000).map(|s| 0.01 * f64::from(s)) {
+        let window = 2f64.powi(shorter.max(1.0).log2() as i32 + 1);
+        let reach = 3.0 * shorter.max(1.0) + 1.0;
+        // N-buffers move into the map, by a window at most; a node of a mip pyramid begins up to a window and
+        // a half before what is asked for.
+        assert!(window + 1.0 <= reach && 1.5 * window <= reach, "{shorter}");
+    }
+    Function::new("occlusion_textures/tile_kernel.glsl", "float level_reach(float shorter)")
+        .random(1_000, 0.1..400.0f32)
+        .f64(Tolerance::relative(3e-7), |x| vec![3.0 * x[0].max(1.0) + 1.0])
+        .check(&device());
 }
 
 #[test]

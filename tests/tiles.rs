@@ -31,7 +31,7 @@ fn listed(device: &HeadlessDevice, setup: &Setup, words: &str) -> Listed {
     let groups: Vec<u32> = stage.inspect_buffer(&plan, "visibility.tile_arguments").unwrap();
     let tiles = list[1..][..list[0] as usize].to_vec();
     // As many workgroups as the list takes.
-    let a_group = if words.contains("pcss") { 1 } else { 4 };
+    let a_group = if words.contains("technique") { 1 } else { 4 };
     assert_eq!(groups[0] * groups[1], list[0].div_ceil(a_group), "{words}");
     Listed { image: stage.visibility().unwrap(), tiles }
 }
@@ -121,6 +121,24 @@ fn percentage_closer_soft_shadows_are_the_same_with_tiles() {
     same_with_and_without(&["technique=pcss map=96", "technique=pcss map=300 taps=64"]);
 }
 
+#[test]
+fn occlusion_textures_are_the_same_with_tiles() {
+    same_with_and_without(&[
+        "technique=occlusion-textures map=96",
+        "technique=occlusion-textures map=65 slices=7 combine=product placement=uniform fill=on",
+        "technique=occlusion-textures map=64 slices=32 combine=sum",
+    ]);
+}
+
+#[test]
+fn occlusion_textures_by_levels_are_the_same_with_tiles() {
+    same_with_and_without(&[
+        "technique=occlusion-textures map=96 prefilter=mip slices=8",
+        "technique=occlusion-textures map=65 prefilter=n-buffer slices=5 combine=max fill=on",
+        "technique=occlusion-textures map=300 prefilter=mip slices=6 combine=product",
+    ]);
+}
+
 /// What no occluder can be felt from takes no workgroup.
 #[test]
 fn a_view_of_lit_ground_lists_nothing() {
@@ -129,7 +147,13 @@ fn a_view_of_lit_ground_lists_nothing() {
     let mut setup = Setup::ground(&scene, 1.0, 64);
     let aside = glam::DMat4::from_translation(glam::DVec3::new(-6.0, 0.0, 0.0));
     setup.view = View { clip_from_world: setup.view.clip_from_world * aside };
-    for words in ["map=64", "technique=pcss map=64"] {
+    for words in [
+        "map=64",
+        "technique=pcss map=64",
+        "technique=occlusion-textures map=64",
+        "technique=occlusion-textures map=64 combine=product",
+        "technique=occlusion-textures map=64 slices=8 prefilter=n-buffer",
+    ] {
         let listed = listed(&device, &setup, words);
         assert!(listed.tiles.is_empty(), "{words}");
         assert!(listed.image.iter().all(|v| *v == 1.0), "{words}");

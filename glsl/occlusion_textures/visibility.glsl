@@ -30,7 +30,7 @@ bool is_lit(MapWindow m, vec3 position)
 
 float hidden_at(Receiver r)
 {
-    MapWindow m = MapWindow(push.texels_per_uv, push.first, push.eye);
+    MapWindow m = map_window();
     if (is_lit(m, r.position)) {
         return 0.0;
     }
@@ -55,11 +55,21 @@ float hidden_at(Receiver r)
 
 void main()
 {
+#ifdef LISTED
+    uint at = tile_in_list(gl_WorkGroupID.xy, 0u);
+    if (at >= count) {
+        return;
+    }
+    bool felt = is_felt_tile(tiles[at]);
+    ivec2 p = first_pixel(tiles[at]) + ivec2(gl_LocalInvocationID.xy);
+#else
+    bool felt = true;
     ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+#endif
     if (p.x >= push.extent.x || p.y >= push.extent.y) {
         return;
     }
-    GBuffer g = GBuffer(push.light_from_ndc, push.extent, push.background, is_masked());
+    GBuffer g = gbuffer();
     Receiver r = receiver_without_normal(g, p);
     float v = 1.0;
     // Behind the light's plane there is nothing to hide.
@@ -69,7 +79,7 @@ void main()
             r.normal = facet_normal(g, p, depth_at(p), r.position);
             v = fraction_above(r.normal.xy * push.half_light, dot(r.normal, r.position));
         }
-        if (v > 0.0) {
+        if (felt && v > 0.0) {
             v = min(v, 1.0 - hidden_at(r));
         }
     }

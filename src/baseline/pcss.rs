@@ -40,7 +40,7 @@ use smallvec::smallvec;
 const NAME: &str = "baseline.pcss";
 
 /// Nodes a side of the map, as in `nearest.glsl`.
-fn nodes_a_row(map: u32) -> u32 {
+pub(crate) fn nodes_a_row(map: u32) -> u32 {
     map.div_ceil(map.div_ceil(32).max(8))
 }
 

@@ -1,7 +1,8 @@
 //! The rows: slices → mask → tables; pixels → visible fractions.
 
+use super::pixels::{Filtered, declare_pixels};
 use super::push;
-use super::settings::{Combine, Prefilter, Settings};
+use super::settings::{Prefilter, Settings};
 use crate::RectangleLight;
 use crate::depth_layers::{self, DepthLayers, Eye, MapView, Wanted};
 use crate::graph::{
@@ -44,7 +45,7 @@ pub struct Inputs<'a> {
 
 impl Inputs<'_> {
     /// How far behind the light the projection point is, m.
-    fn eye(&self) -> f64 {
+    pub(super) fn eye(&self) -> f64 {
         match self.view.eye {
             Eye::Behind(behind) => behind,
             Eye::Infinity => 0.0,
@@ -74,31 +75,8 @@ pub fn declare(
     } else {
         declare_levels(graph, mask, settings, inputs)
     };
-    let shader = match (sums, settings.is_correlated()) {
-        (true, false) => shaders::VISIBILITY_SAT,
-        (true, true) => shaders::VISIBILITY_SAT_CORRELATED,
-        (false, false) => shaders::VISIBILITY_LEVELS,
-        (false, true) => shaders::VISIBILITY_LEVELS_CORRELATED,
-    };
-    let gbuffer = inputs.gbuffer;
-    let mut uses = smallvec![
-        Use::bound(0, gbuffer.depth, Access::SampledCompute),
-        Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
-        Use::bound(2, placement, Access::SampledCompute),
-        Use::bound(3, filtered, Access::SampledCompute),
-        Use::bound(4, visibility, Access::ImageWrite),
-    ];
-    if !sums {
-        uses.push(Use::bound(5, mask, Access::SampledCompute));
-    }
-    graph.push(Pass::compute(
-        "occlusion_textures.visibility",
-        shader,
-        grid(gbuffer.extent),
-        Push::new(&pixel_push(settings, inputs)),
-        uses,
-        inputs.need,
-    ));
+    let made = Filtered { placement, mask, filtered };
+    declare_pixels(graph, &made, visibility, settings, inputs);
 }
 
 fn declare_placement(
@@ -384,27 +362,4 @@ fn declare_levels(
         ));
     }
     image
-}
-
-fn pixel_push(settings: &Settings, inputs: &Inputs) -> push::Visibility {
-    let Inputs { view, gbuffer, light, .. } = inputs;
-    let combine = match settings.combine {
-        Combine::Product | Combine::Correlated => 0,
-        Combine::Sum => 1,
-        Combine::Max => 2,
-    };
-    push::Visibility {
-        light_from_ndc: gbuffer.light_from_ndc,
-        texels_per_uv: view.texels_per_uv().map(|x| x as f32),
-        first: view.first().map(|x| x as f32),
-        half_light: light.half_extents().map(|x| x as f32),
-        extent: gbuffer.extent.map(|e| e as i32),
-        background: gbuffer.background,
-        eye: inputs.eye() as f32,
-        map: view.side as i32,
-        flags: settings.slices as i32
-            | i32::from(gbuffer.mask.is_some()) << 8
-            | combine << 9
-            | i32::from(settings.prefilter == Prefilter::Mip) << 12,
-    }
 }

@@ -86,7 +86,15 @@ pub struct NextLevel {
     pub level: i32,
 }
 
-/// `visibility_*.comp`
+/// `squares.comp`
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Squares {
+    /// The map's side in texels.
+    pub map: i32,
+}
+
+/// `visibility_*.comp`, `tiles_*.comp` and `listed_*.comp`
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Visibility {

@@ -73,6 +73,8 @@ pub struct Settings {
     pub combine: Combine,
     /// Whether a slice blocks in the next one too (section 3.4).
     pub fill: bool,
+    /// Whether tiles of pixels whose kernels meet nothing are told at once.
+    pub classify: bool,
 }
 
 impl Default for Settings {
@@ -83,6 +85,7 @@ impl Default for Settings {
             prefilter: Prefilter::default(),
             combine: Combine::default(),
             fill: false,
+            classify: true,
         }
     }
 }

@@ -39,6 +39,29 @@ pub fn kernel_of<T: Float>(
     [x0, y0, x1, y1]
 }
 
+/// A rectangle that holds the kernels of a tile's points in a plane, by `[least t, largest t]` of where they are seen
+/// from the light's centre, in texels from that of u = v = 0, and their least w (`tile_kernel.glsl`).
+pub fn tile_kernel_of<T: Float>(
+    [per_x, per_y, first_x, first_y, eye]: [T; 5],
+    [min_x, min_y, max_x, max_y]: [T; 4],
+    w_min: T,
+    plane: T,
+    half_light: [T; 2],
+) -> [T; 4] {
+    let power = |n: i32| (T::one() + T::one()).powi(n);
+    let half = power(-1);
+    let share = plane / (plane + eye);
+    let axis = |min: T, max: T, per: T, first: T, light: T| {
+        let widest = light * per / (plane + eye);
+        let reach = (widest * (T::one() - plane * w_min).max(T::zero())).max(half);
+        let reach = reach + (first.abs() + widest) * power(-20) + power(-10);
+        (min * share + first - reach, max * share + first + reach)
+    };
+    let (x0, x1) = axis(min_x, max_x, per_x, first_x, half_light[0]);
+    let (y0, y1) = axis(min_y, max_y, per_y, first_y, half_light[1]);
+    [x0, y0, x1, y1]
+}
+
 /// How much of a slice counts for a point at distance `z` (section 3.4).
 pub fn slice_weight<T: Float>(z: T, upper: T, lower: T, blocks: bool) -> T {
     let begins = if blocks { lower } else { upper };

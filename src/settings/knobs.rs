@@ -227,7 +227,7 @@ pub const KNOBS: &[Knob] = &[
     },
     Knob {
         key: "classify",
-        techniques: &[Technique::SoftShadowMap, Technique::Pcss],
+        techniques: &[Technique::SoftShadowMap, Technique::Pcss, Technique::OcclusionTextures],
         unit: "switch",
         range: "on, off",
         default: "on",

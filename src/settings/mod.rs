@@ -152,6 +152,9 @@ impl Settings {
             "classify" if technique == Technique::Pcss => {
                 self.baseline.classify = choose(key, value, RayMarch::SWITCH)?;
             }
+            "classify" if technique == Technique::OcclusionTextures => {
+                o.classify = choose(key, value, OcclusionTextures::SWITCH)?;
+            }
             "classify" => s.classify = choose(key, value, RayMarch::SWITCH)?,
             "filter" => r.filter = choose(key, value, RayMarch::SWITCH)?,
             "slices" => o.slices = number(key, value)?,
@@ -205,6 +208,9 @@ impl Settings {
             }
             "classify" if self.technique == Technique::Pcss => {
                 name_of(RayMarch::SWITCH, self.baseline.classify)
+            }
+            "classify" if self.technique == Technique::OcclusionTextures => {
+                name_of(OcclusionTextures::SWITCH, o.classify)
             }
             "classify" => name_of(RayMarch::SWITCH, s.classify),
             "filter" => name_of(RayMarch::SWITCH, r.filter),

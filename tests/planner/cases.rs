@@ -112,6 +112,8 @@ const SLICES: &[&str] = &[
     "occlusion_textures.mask",
     "occlusion_textures.sum_rows",
     "occlusion_textures.sum_columns",
+    "visibility.tiles_start",
+    "visibility.tiles",
     "occlusion_textures.visibility",
 ];
 const LINES: &[&str] = &[

@@ -1,0 +1,34 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "baseline/nearest.glsl"
+
+// What blocks in any texel of each square of the mask. One invocation a square.
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, binding = 0) uniform utexture2D mask;
+layout(set = 0, binding = 1, r32ui) writeonly uniform uimage2D squares;
+
+layout(push_constant) uniform Push {
+    int map; // the map's side in texels
+} push;
+
+void main()
+{
+    ivec2 square = ivec2(gl_GlobalInvocationID.xy);
+    int row = nodes_a_row(push.map);
+    if (square.x >= row || square.y >= row) {
+        return;
+    }
+    int side = node_side(push.map);
+    ivec2 first = square * side;
+    ivec2 end = min(first + side, ivec2(push.map));
+    uint blocking = 0u;
+    for (int y = first.y; y < end.y; ++y) {
+        for (int x = first.x; x < end.x; ++x) {
+            blocking |= texelFetch(mask, ivec2(x, y), 0).x;
+        }
+    }
+    imageStore(squares, square, uvec4(blocking));
+}
