@@ -16,7 +16,12 @@ use glam::{DMat4, DVec3};
 use technique::table::{Table, median};
 use technique::{Options, Ready, Study, in_turns, make_tables, scene, settings};
 
-const STUDIES: [Study; 2] = [("soft_shadow_map", soft_shadow_map), ("pcss", pcss)];
+const STUDIES: [Study; 4] = [
+    ("soft_shadow_map", soft_shadow_map),
+    ("pcss", pcss),
+    ("occlusion_textures", occlusion_textures),
+    ("occlusion_levels", occlusion_levels),
+];
 
 const EXTENT: [u32; 2] = [640, 480];
 
@@ -98,7 +103,10 @@ fn compared(
                 let lit = on.iter().filter(|v| **v == 1.0).count() as f64 / on.len() as f64;
                 let times = in_turns(&mut pair, options.rounds);
                 let without = ms(&times[0], &[pass]);
-                let tiles = ms(&times[1], &["tiles_start", "tiles", "baseline.nearest"]);
+                let tiles = ms(
+                    &times[1],
+                    &["tiles_start", "tiles", "baseline.nearest", "textures.squares"],
+                );
                 let listed = ms(&times[1], &[pass]);
                 table.row(vec![
                     (*scene_name).into(),
@@ -123,4 +131,16 @@ fn soft_shadow_map(device: &HeadlessDevice, options: &Options) -> Table {
 
 fn pcss(device: &HeadlessDevice, options: &Options) -> Table {
     compared("pcss", Technique::Pcss, "", "baseline.pcss", device, options)
+}
+
+fn occlusion_textures(device: &HeadlessDevice, options: &Options) -> Table {
+    let pass = "occlusion_textures.visibility";
+    compared("occlusion_textures", Technique::OcclusionTextures, "", pass, device, options)
+}
+
+/// The same with means from levels.
+fn occlusion_levels(device: &HeadlessDevice, options: &Options) -> Table {
+    let (name, pass) = ("occlusion_levels", "occlusion_textures.visibility");
+    let words = "prefilter=mip slices=8";
+    compared(name, Technique::OcclusionTextures, words, pass, device, options)
 }
