@@ -272,6 +272,13 @@ fn the_list_holds_every_tile_of_the_largest_image() {
         .random(2_000, (0..4096_i32, 0..4096_i32, proptest::bool::ANY))
         .bits(|x| vec![x[0] | x[1] << 15 | x[2] << 30])
         .check(&device);
+    // What is kept of every tile is in rows as long as the image, its last tile a part of one.
+    let glue = "int nth(int x, int y, int width) { return nth_tile(tile_word(ivec2(x, y), true), ivec2(width, 1)); }";
+    Function::new("visibility/tile_list.glsl", "int nth(int x, int y, int width)")
+        .glue(glue)
+        .random(2_000, (0..512_i32, 0..512_i32, 1..4096_i32))
+        .bits(|x| vec![x[1] * x[2].div_ceil(8) + x[0]])
+        .check(&device);
     assert_eq!(listed_tile(3 | 5 << 15 | 1 << 30), ([24, 40], true));
     assert_eq!(listed_tile(3 | 5 << 15), ([24, 40], false));
     // The place of each of a group's tiles, and that the group is dispatched.

@@ -29,6 +29,7 @@ layout(set = 0, binding = 4, r32f) writeonly uniform image2D visibility;
 #define TILES_A_GROUP 1u
 #include "visibility/tile_list.glsl"
 layout(set = 0, binding = 6, std430) readonly buffer Tiles { uint count; uint tiles[]; };
+layout(set = 0, binding = 7, std430) readonly buffer Met { uint met[]; }; // slices, a bit each, tile by tile
 #endif
 
 #endif

@@ -16,6 +16,7 @@ layout(push_constant) uniform Push {
 } push;
 
 int slices() { return push.flags & 255; }
+uint all_slices() { return 0xffffffffu >> (32 - slices()); } // a bit each
 bool is_masked() { return (push.flags & 256) != 0; }
 int combination() { return push.flags >> 9 & 7; }
 int level_kind() { return (push.flags & 1 << 12) != 0 ? 2 : 0; } // MIP, N_BUFFER

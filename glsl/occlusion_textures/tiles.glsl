@@ -15,6 +15,7 @@ layout(set = 0, binding = 3, std430) buffer Arguments { uint groups[4]; };
 layout(set = 0, binding = 4, std430) buffer Tiles { uint count; uint tiles[]; };
 layout(set = 0, binding = 5, r32f) writeonly uniform image2D visibility;
 layout(set = 0, binding = 6) uniform texture2D placement;
+layout(set = 0, binding = 7, std430) buffer Met { uint met[]; }; // slices, a bit each, tile by tile
 
 #include "common/gbuffer.glsl"
 #include "occlusion_textures/placement.glsl"
@@ -40,6 +41,28 @@ vec4 planes_of(int slice)
 bool is_below(vec4 planes, Tile tile)
 {
     return planes.x * tile.w.x >= 1.0;
+}
+
+// Slices that something in a tile may meet, with a bit each.
+uint met_by(Tile tile);
+
+uint met_here = 0u;
+
+bool is_felt_in(Tile tile)
+{
+    met_here = met_by(tile);
+    return met_here != 0u;
+}
+
+#include "visibility/classify.glsl"
+
+void main()
+{
+    ivec2 tile = ivec2(gl_GlobalInvocationID.xy);
+    classify_tile(tile);
+    if (all(lessThan(tile * TILE, push.extent))) {
+        met[tile.y * tiles_a_row(push.extent) + tile.x] = met_here;
+    }
 }
 
 #endif

@@ -10,7 +10,7 @@
 
 layout(set = 0, binding = 2) uniform utexture2D squares;
 
-bool is_felt_in(Tile tile)
+uint met_by(Tile tile)
 {
     MapWindow m = map_window();
     vec4 all = vec4(3.0e38, 3.0e38, -3.0e38, -3.0e38);
@@ -26,20 +26,12 @@ bool is_felt_in(Tile tile)
         all = vec4(min(all.xy, kernel.xy - more), max(all.zw, kernel.zw + more));
         counts |= 1u << uint(slice);
     }
+    uint found = 0u;
     ivec4 around = nodes_around(push.map, all.xy, all.zw);
     for (int y = around.y; y <= around.w; ++y) {
         for (int x = around.x; x <= around.z; ++x) {
-            if ((texelFetch(squares, ivec2(x, y), 0).x & counts) != 0u) {
-                return true;
-            }
+            found |= texelFetch(squares, ivec2(x, y), 0).x;
         }
     }
-    return false;
-}
-
-#include "visibility/classify.glsl"
-
-void main()
-{
-    classify_tile(ivec2(gl_GlobalInvocationID.xy));
+    return found & counts;
 }

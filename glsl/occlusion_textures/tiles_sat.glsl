@@ -7,8 +7,9 @@ layout(set = 0, binding = 2) uniform utexture2D filtered;
 
 #include "occlusion_textures/sat.glsl"
 
-bool is_felt_in(Tile tile)
+uint met_by(Tile tile)
 {
+    uint found = 0u;
     MapWindow m = map_window();
     for (int slice = 0; slice < slices(); ++slice) {
         vec4 planes = planes_of(slice);
@@ -20,16 +21,7 @@ bool is_felt_in(Tile tile)
         ivec2 b = ivec2(clamp(ceil(kernel.zw), 0.0, float(push.map)));
         uvec3 sum = inside(sum_at(slice, a), sum_at(slice, ivec2(b.x, a.y)), sum_at(slice, ivec2(a.x, b.y)),
                            sum_at(slice, b));
-        if (sum.x != 0u) {
-            return true;
-        }
+        found |= uint(sum.x != 0u) << uint(slice);
     }
-    return false;
-}
-
-#include "visibility/classify.glsl"
-
-void main()
-{
-    classify_tile(ivec2(gl_GlobalInvocationID.xy));
+    return found;
 }

@@ -28,7 +28,8 @@ bool is_lit(MapWindow m, vec3 position)
     return any(lessThanEqual(hi, lo)) || is_empty(lo, hi);
 }
 
-float hidden_at(Receiver r)
+// `left`: slices that may block anything, with a bit each.
+float hidden_at(Receiver r, uint left)
 {
     MapWindow m = map_window();
     if (is_lit(m, r.position)) {
@@ -36,16 +37,25 @@ float hidden_at(Receiver r)
     }
     float hidden = 0.0;
     float before = 0.0;
-    for (int slice = 0; slice < slices() && hidden < OPAQUE; ++slice) {
+    int last = -1;
+    while (left != 0u && hidden < OPAQUE) {
+        int slice = findLSB(int(left));
+        left &= left - 1u;
         vec4 planes = texelFetch(placement, ivec2(BINS + slice, 0), 0);
         float weight = slice_weight(r.position.z, planes.x, planes.y, r.blocks || !IS_CORRELATED);
         if (weight == 0.0) {
             break;
         }
         vec3 window = window_of(slice, kernel_of(m, r.position, planes.z, push.half_light));
+        // What blocks nothing hides nothing more.
+        if (window.x == 0.0) {
+            continue;
+        }
 #ifdef CORRELATED
-        hidden = mix(hidden, hidden_with_correlated(hidden, before, window), weight);
+        float right_above = last == slice - 1 ? before : 0.0;
+        hidden = mix(hidden, hidden_with_correlated(hidden, right_above, window), weight);
         before = window.x;
+        last = slice;
 #else
         hidden = hidden_with(combination(), hidden, weight * window.x);
 #endif
@@ -60,10 +70,10 @@ void main()
     if (at >= count) {
         return;
     }
-    bool felt = is_felt_tile(tiles[at]);
+    uint meets = is_felt_tile(tiles[at]) ? met[nth_tile(tiles[at], push.extent)] : 0u;
     ivec2 p = first_pixel(tiles[at]) + ivec2(gl_LocalInvocationID.xy);
 #else
-    bool felt = true;
+    uint meets = all_slices();
     ivec2 p = ivec2(gl_GlobalInvocationID.xy);
 #endif
     if (p.x >= push.extent.x || p.y >= push.extent.y) {
@@ -79,8 +89,8 @@ void main()
             r.normal = facet_normal(g, p, depth_at(p), r.position);
             v = fraction_above(r.normal.xy * push.half_light, dot(r.normal, r.position));
         }
-        if (felt && v > 0.0) {
-            v = min(v, 1.0 - hidden_at(r));
+        if (meets != 0u && v > 0.0) {
+            v = min(v, 1.0 - hidden_at(r, meets));
         }
     }
     imageStore(visibility, p, vec4(v));

@@ -29,6 +29,19 @@ ivec2 first_pixel(uint word)
     return ivec2(word & 0x7fffu, word >> 15u & 0x7fffu) * TILE;
 }
 
+// Tiles side by side, of an image.
+int tiles_a_row(ivec2 extent)
+{
+    return (extent.x + TILE - 1) / TILE;
+}
+
+// Where something that is kept of every tile, row by row, is of a listed one.
+int nth_tile(uint word, ivec2 extent)
+{
+    ivec2 tile = first_pixel(word) / TILE;
+    return tile.y * tiles_a_row(extent) + tile.x;
+}
+
 // The place in the list of the tiles that a workgroup works at.
 uint tile_in_list(uvec2 group, uint nth)
 {

@@ -72,7 +72,8 @@
 //! **Tiles.** A tile of pixels whose kernels touch nothing in any slice that counts for them is lit: by the summed-area
 //! table, with one rectangle a slice that holds the kernels of all its pixels; by squares of the mask where means come
 //! from levels, as windows around a kernel reach further than it does, and a mean does not tell nothing from little.
-//! The other tiles are listed (`visibility/tiles.rs`), and the image is the same to the bit.
+//! The other tiles are listed (`visibility/tiles.rs`) with the slices that they may meet, a bit each: their pixels ask
+//! for no others. The image is the same to the bit.
 //!
 //! **A sun** is a rectangle of its angular size a thousand radii away ([`crate::RectangleLight::sun`]); slices are
 //! between the occluders' own planes, so they are as thin as near a lamp.

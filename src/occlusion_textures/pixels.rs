@@ -65,11 +65,14 @@ pub(super) fn declare_pixels(
         (false, true) => (shaders::SLICE_TILES_LEVELS, shaders::LISTED_LEVELS_CORRELATED),
     };
     let tiles = Tiles::start(graph, gbuffer.extent, inputs.need);
+    let met = graph.buffer("occlusion_textures.met", 4 * Tiles::in_image(gbuffer.extent));
     let asked = [
         Use::bound(2, blocking, Access::SampledCompute),
         Use::bound(6, of.placement, Access::SampledCompute),
+        Use::bound(7, met, Access::BufferWriteCompute),
     ];
     tiles.sort(graph, sort, push, (&asked, visibility), gbuffer, inputs.need);
+    uses.push(Use::bound(7, met, Access::BufferReadCompute));
     tiles.run(graph, (NAME, shader), push, uses, 6, inputs.need);
 }
 

@@ -44,9 +44,14 @@ pub(crate) struct Tiles {
 }
 
 impl Tiles {
+    /// How many there are of an image.
+    pub fn in_image(extent: [u32; 2]) -> u64 {
+        extent.map(|e| u64::from(e.div_ceil(TILE))).iter().product()
+    }
+
     /// Adds the row that begins an empty list.
-    pub fn start(graph: &mut Graph, [width, height]: [u32; 2], need: &Need) -> Self {
-        let tiles = u64::from(width.div_ceil(TILE)) * u64::from(height.div_ceil(TILE));
+    pub fn start(graph: &mut Graph, extent: [u32; 2], need: &Need) -> Self {
+        let tiles = Self::in_image(extent);
         let arguments = graph.buffer("visibility.tile_arguments", 16);
         let list = graph.buffer("visibility.tile_list", HEAD + 4 * tiles);
         graph.push(Pass::compute(
