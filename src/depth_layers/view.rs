@@ -136,33 +136,40 @@ fn extents(
     near: f64,
     of: impl Fn(DVec3) -> [f64; 2],
 ) -> Option<([f64; 2], [f64; 2])> {
-    let mut min = [f64::INFINITY; 2];
-    let mut max = [f64::NEG_INFINITY; 2];
-    let mut add = |p: DVec3| {
+    let mut window = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    let add = |(min, max): &mut ([f64; 2], [f64; 2]), p: DVec3| {
         for (i, x) in of(p).into_iter().enumerate() {
             min[i] = min[i].min(x);
             max[i] = max[i].max(x);
         }
     };
-    for LightBox { corners, min: least, .. } in boxes {
+    let holds = |(min, max): &([f64; 2], [f64; 2]), p: DVec3| {
+        let at = of(p);
+        (0..2).all(|i| min[i] <= at[i] && at[i] <= max[i])
+    };
+    for LightBox { corners, min: least, max: most, .. } in boxes {
         if least.z >= near {
-            corners.iter().for_each(|&p| add(p));
+            // u and v are largest and least in these corners of the box around it: most lie where others do.
+            let outermost = [*least, *most, least.with_z(most.z), most.with_z(least.z)];
+            if !outermost.into_iter().all(|p| holds(&window, p)) {
+                corners.iter().for_each(|&p| add(&mut window, p));
+            }
             continue;
         }
         for (i, &a) in corners.iter().enumerate() {
             if a.z >= near {
-                add(a);
+                add(&mut window, a);
             }
             // The three edges to the neighbours above, where they cross the near plane.
             for b in (0..3).filter(|axis| i >> axis & 1 == 0).map(|axis| corners[i | 1 << axis]) {
                 if (a.z < near) != (b.z < near) {
                     let t = (near - a.z) / (b.z - a.z);
-                    add((a + (b - a) * t).with_z(near));
+                    add(&mut window, (a + (b - a) * t).with_z(near));
                 }
             }
         }
     }
-    (min[0] <= max[0]).then_some((min, max))
+    (window.0[0] <= window.1[0]).then_some(window)
 }
 
 /// Widens a window by one texel on each side, and a window of no width to one that has some.

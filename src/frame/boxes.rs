@@ -41,9 +41,6 @@ impl Boxes {
         (self.not_finite, self.host_drawn, self.host_drawn_blocker) = (None, None, None);
         self.blockers = 0;
         for (index, mesh) in meshes.iter().enumerate() {
-            if !is_finite(mesh) {
-                self.not_finite.get_or_insert(index);
-            }
             let blocks = mesh.role.blocks();
             if let Geometry::HostDrawn(_) = mesh.geometry {
                 self.host_drawn.get_or_insert(index);
@@ -54,6 +51,11 @@ impl Boxes {
             let there = has_triangles(mesh);
             self.blockers += usize::from(there && blocks);
             let [center, half] = around(mesh);
+            // Every number is in one of these, and what is not finite stays so; what is may have become too large.
+            let sound = center.is_finite() && half.is_finite();
+            if !(sound && mesh.world_from_mesh.row(3).is_finite()) && !is_finite(mesh) {
+                self.not_finite.get_or_insert(index);
+            }
             let center = center.as_vec3();
             let rounding = SLACK * (center.x.abs() + center.y.abs() + center.z.abs());
             self.x.push(center.x);
