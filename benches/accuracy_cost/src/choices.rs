@@ -1,7 +1,7 @@
 //! The table that `auto` chooses by: what every candidate did in every view, as text for the crate.
 
 use crate::Problem;
-use crate::groups::{self, CHOICE, Group};
+use crate::groups::{self, Group};
 use crate::options::Options;
 use crate::store::{Row, Store};
 use antumbra::gpu::headless::{HeadlessDevice, HeadlessOptions, Stage, probe};
@@ -13,7 +13,7 @@ use antumbra::{Settings, Technique};
 use std::path::Path;
 
 /// Passes in light space, by what their names begin with; all others run at the pixels.
-const MAPS: [&str; 12] = [
+const MAPS: [&str; 13] = [
     "depth_layers.",
     "soft_shadow_map.blocks",
     "soft_shadow_map.superblocks",
@@ -22,6 +22,7 @@ const MAPS: [&str; 12] = [
     "occlusion_textures.place",
     "occlusion_textures.histogram",
     "occlusion_textures.mask",
+    "occlusion_textures.squares",
     "occlusion_textures.sum_",
     "occlusion_textures.front_slices",
     "occlusion_textures.back_slices",
@@ -37,7 +38,7 @@ pub fn write(options: &Options) -> Result<(), Problem> {
     let device = HeadlessDevice::new(&HeadlessOptions::default()).map_err(|e| e.to_string())?;
     let Measured { maps_ms, pixels_ms, .. } = probe(&device).map_err(|e| e.to_string())?;
     let mut text = format!("{COLUMNS}\n{PROBE},{maps_ms:.3},{pixels_ms:.3}\n");
-    for group in groups::choices(&CHOICE) {
+    for group in groups::choices(&options.choice()) {
         let own: Vec<&Row> =
             rows.iter().filter(|r| r.scene == group.scene && r.light == group.light).collect();
         if own.is_empty() {
@@ -84,7 +85,7 @@ pub fn exam(options: &Options) -> Result<(), Problem> {
     let (_, rows) = Store::read(&options.out.join("measured.jsonl"))?;
     let device = HeadlessDevice::new(&HeadlessOptions::default()).map_err(|e| e.to_string())?;
     let mut views = Vec::new();
-    for group in groups::choices(&CHOICE) {
+    for group in groups::choices(&options.choice()) {
         let own: Vec<&Row> =
             rows.iter().filter(|r| r.scene == group.scene && r.light == group.light).collect();
         if !own.is_empty() {
@@ -114,7 +115,8 @@ pub fn exam(options: &Options) -> Result<(), Problem> {
             let all = CANDIDATES.iter().filter_map(|c| of(&c.settings()));
             let best = all.filter(|x| x.0 <= asked).map(|x| x.1).min_by(f64::total_cmp);
             let budget = Budget { max_error: Some(asked), max_ms: None };
-            let choice = Auto::new(budget, Costs::default()).choose_in(situation, CHOICE.view);
+            let choice =
+                Auto::new(budget, Costs::default()).choose_in(situation, options.choice().view);
             if choice.problem.is_some() {
                 right += u32::from(best.is_none());
                 continue;

@@ -1,5 +1,6 @@
 //! The command line.
 
+use crate::groups::{CHOICE, Scale};
 use clap::Parser;
 use std::path::{Path, PathBuf};
 
@@ -22,13 +23,16 @@ pub struct Options {
     #[arg(long, value_name = "TEXT")]
     pub only: Option<String>,
     /// Measure what `auto` chooses among in every view, and nothing else
-    #[arg(long, conflicts_with_all = ["quick", "scenes"])]
+    #[arg(long, conflicts_with_all = ["quick", "scenes"], group = "of_choices")]
     pub choices: bool,
+    /// With `--choices` or `--exam`: of so many pixels, for an exam in images that the table has not seen
+    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size, requires = "of_choices")]
+    pub size: Option<[u32; 2]>,
     /// Measure nothing: make of what `--choices` has measured in --out the table that `auto` chooses by
     #[arg(long, conflicts_with = "report")]
     pub write_choices: bool,
     /// Measure nothing: how the table that `auto` chooses by does in what `--choices` has measured in --out
-    #[arg(long, conflicts_with = "report")]
+    #[arg(long, conflicts_with = "report", group = "of_choices")]
     pub exam: bool,
     /// Measure nothing: make the report anew of what was measured, by whatever commit
     #[arg(long)]
@@ -58,6 +62,11 @@ impl Options {
         self
     }
 
+    /// How much is measured of what `auto` chooses among.
+    pub fn choice(&self) -> Scale {
+        Scale { view: self.size.unwrap_or(CHOICE.view), ..CHOICE }
+    }
+
     /// The command that makes this run; where it goes changes no number, and is left out.
     pub fn command(&self) -> String {
         let mut words = String::new();
@@ -67,12 +76,24 @@ impl Options {
         if self.choices {
             words.push_str(" --choices");
         }
+        if let Some([width, height]) = self.size {
+            words.push_str(&format!(" --size {width}x{height}"));
+        }
         if let Some(folder) = &self.scenes {
             let shown = folder.strip_prefix(Self::root()).unwrap_or(folder);
             words.push_str(&format!(" --scenes {}", shown.display()));
         }
         let dashes = if words.is_empty() { "" } else { " --" };
         format!("cargo bench --bench accuracy_cost{dashes}{words}")
+    }
+}
+
+/// Reads a width and a height in pixels.
+fn size(word: &str) -> Result<[u32; 2], String> {
+    let sides = word.split_once('x').map(|(w, h)| [w, h].map(str::parse::<u32>));
+    match sides {
+        Some([Ok(width @ 1..=4096), Ok(height @ 1..=4096)]) => Ok([width, height]),
+        _ => Err(format!("{word:?} is no size; write one such as 640x480, of sides up to 4096")),
     }
 }
 
@@ -85,6 +106,13 @@ mod tests {
         let parse =
             |words: &[&str]| Options::parse_from(["x"].iter().chain(words)).resolved().command();
         assert_eq!(parse(&["--bench"]), "cargo bench --bench accuracy_cost");
+        let sized = "cargo bench --bench accuracy_cost -- --choices --size 640x480";
+        assert_eq!(parse(&["--choices", "--size", "640x480"]), sized);
+        for bad in
+            [&["--size", "640x480"][..], &["--exam", "--size", "640"], &["--exam", "--size", "0x9"]]
+        {
+            assert!(Options::try_parse_from(["x"].iter().chain(bad)).is_err(), "{bad:?}");
+        }
         assert_eq!(parse(&["--quick"]), "cargo bench --bench accuracy_cost -- --quick");
         assert_eq!(
             parse(&["--scenes", "mine", "--out", "/elsewhere"]),

@@ -2,7 +2,7 @@
 
 use crate::Problem;
 use crate::choices;
-use crate::groups::{self, CHOICE, FULL, Group, QUICK};
+use crate::groups::{self, FULL, Group, QUICK};
 use crate::measure::Bench;
 use crate::options::Options;
 use crate::progress::{Estimate, Progress, duration};
@@ -47,7 +47,7 @@ pub fn run(options: &Options) -> Result<bool, Problem> {
         );
     }
     let scale = match (options.choices, options.quick) {
-        (true, _) => CHOICE,
+        (true, _) => options.choice(),
         (_, true) => QUICK,
         _ => FULL,
     };
