@@ -123,12 +123,15 @@ pub struct MeshInstance {
     pub role: Role,
     /// Both sides of each triangle are front faces.
     pub double_sided: bool,
+    /// A texture's alpha cuts holes into it. The node knows no textures and draws it whole, which
+    /// [`FramePlan::explain`](super::FramePlan::explain) then says; with [`Geometry::HostDrawn`] the host cuts it.
+    pub cut_out: bool,
 }
 
 impl MeshInstance {
     /// A mesh whose triangles have one front.
     pub fn new(geometry: Geometry, world_from_mesh: DMat4, bounds: MeshBounds, role: Role) -> Self {
-        Self { geometry, world_from_mesh, bounds, role, double_sided: false }
+        Self { geometry, world_from_mesh, bounds, role, double_sided: false, cut_out: false }
     }
 }
 

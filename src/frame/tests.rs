@@ -43,6 +43,7 @@ fn mesh(bounds: MeshBounds, at: DVec3, role: Role) -> MeshInstance {
         bounds,
         role,
         double_sided: false,
+        cut_out: false,
     }
 }
 

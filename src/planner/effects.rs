@@ -40,6 +40,9 @@ pub struct Verdicts {
 /// The widest penumbra that a hard shadow may stand for, pixels: narrower than the pixels that sample it.
 pub const HARD_PIXELS: f64 = 1.0;
 
+/// Why nothing need be cut.
+const UNCUT: &str = "no occluder is cut out by a texture, or drawn by the host";
+
 /// The Gaussian below which the noise filter changes nothing, pixels (`ray_march/filter.glsl`).
 const LEAST_FILTER: f64 = 0.4;
 
@@ -86,7 +89,8 @@ impl Verdicts {
             let eye = settings.technique == Technique::RayMarch
                 && settings.ray_march.layers == ray_march::Layers::Eye;
             set(Effect::EyeLayer, fused && eye, if eye { layers } else { 0.0 });
-            set(Effect::CutOuts, s.host_drawn > 0, if s.host_drawn > 0 { 1.0 } else { 0.0 });
+            let cut = s.host_drawn + s.cut_out > 0;
+            set(Effect::CutOuts, cut, if cut { 1.0 } else { 0.0 });
             set(Effect::Emission, texture, if texture { 1.0 } else { 0.0 });
             if settings.technique == Technique::RayMarch && settings.ray_march.filter {
                 let narrow = s.penumbra_pixels <= filtered_from(&settings.ray_march);
@@ -96,6 +100,10 @@ impl Verdicts {
                     if narrow { 0.0 } else { 1.0 },
                 );
             }
+        }
+        if situation.is_some_and(|s| s.cut_out > 0) {
+            // The node has no textures: these are the host's to draw.
+            all[Effect::CutOuts as usize].outcome = Outcome::NotSimulated;
         }
         Self { all, situation, settings: *settings }
     }
@@ -131,7 +139,7 @@ impl Verdicts {
         {
             return match effect {
                 Effect::SelfShadowing => "no mesh both blocks and receives".into(),
-                Effect::CutOuts => "no occluder is drawn by the host".into(),
+                Effect::CutOuts => UNCUT.into(),
                 Effect::Emission => "the light is the same all over".into(),
                 _ => Why::from("shadows are hard: the widest penumbra spans ")
                     .number(s.penumbra_pixels, 2)
@@ -178,8 +186,13 @@ impl Verdicts {
             Effect::SelfShadowing => "no mesh both blocks and receives".into(),
             Effect::EyeLayer if needs => "layers=3, and occluders have insides".into(),
             Effect::EyeLayer => "layers=3 is not set, or no occluder has an inside".into(),
-            Effect::CutOuts if needs => Why::from("the host draws ").and(s.host_drawn).and(" meshes"),
-            Effect::CutOuts => "no occluder is drawn by the host".into(),
+            Effect::CutOuts if s.cut_out > 0 => Why::default()
+                .and(s.cut_out)
+                .and(" meshes are cut out by textures, and drawn whole"),
+            Effect::CutOuts if needs => {
+                Why::from("the host draws ").and(s.host_drawn).and(" meshes")
+            }
+            Effect::CutOuts => UNCUT.into(),
             Effect::Emission if needs => "the host lends a texture of the light".into(),
             Effect::Emission => "the light is the same all over".into(),
             Effect::Noise if self.settings.technique != Technique::RayMarch => {

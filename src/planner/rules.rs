@@ -130,9 +130,9 @@ pub const RULES: [Rule; COUNT] = [
     Rule {
         effect: Effect::CutOuts,
         name: "cut-outs",
-        needed: "the host draws some mesh itself",
+        needed: "some mesh is cut out by a texture, or drawn by the host",
         bound: "0",
-        passes: "the host's draws in every layer",
+        passes: "the host's draws in every layer; what the node draws it draws whole, and says so",
     },
     Rule {
         effect: Effect::Emission,

@@ -24,6 +24,8 @@ pub struct Situation {
     pub both: usize,
     /// Meshes that the host draws.
     pub host_drawn: usize,
+    /// Meshes that the node draws whole, though a texture cuts holes into them.
+    pub cut_out: usize,
     /// Triangles of the occluders; those of what the host draws are not known.
     pub triangles: u64,
     /// Least and largest distance of occluders; no less than a ten-thousandth of the largest.
@@ -95,6 +97,7 @@ impl Situation {
             receivers: seen.receivers.len(),
             both: 0,
             host_drawn: 0,
+            cut_out: 0,
             triangles: 0,
             occluder_distances: [near, (map.far - behind).max(near)],
             receiver_distances: [nearest_receiver.max(near), shadowed.far.max(near)],
@@ -150,7 +153,10 @@ impl Situation {
 
     fn add(&mut self, mesh: &MeshInstance, placed: &LightBox) {
         let triangles = match mesh.geometry {
-            Geometry::Buffers(buffers) => u64::from(buffers.count / 3),
+            Geometry::Buffers(buffers) => {
+                self.cut_out += usize::from(mesh.cut_out);
+                u64::from(buffers.count / 3)
+            }
             Geometry::HostDrawn(_) => {
                 self.host_drawn += 1;
                 self.edges = f64::INFINITY;

@@ -91,6 +91,8 @@ pub struct Mesh {
     pub indices: Vec<u32>,
     /// Both sides of each triangle are front faces.
     pub double_sided: bool,
+    /// The alpha of a texture cuts holes into it, or lets light through, which its triangles do not tell.
+    pub cut_out: bool,
 }
 
 impl Mesh {

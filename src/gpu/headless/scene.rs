@@ -66,6 +66,7 @@ impl SceneBuffers {
                 bounds: mesh.bounds,
                 role: i.role,
                 double_sided: scene.meshes[i.mesh].double_sided,
+                cut_out: scene.meshes[i.mesh].cut_out,
             })
         };
         scene.instances.iter().filter_map(instance).collect()

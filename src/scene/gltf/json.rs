@@ -105,6 +105,15 @@ pub(super) struct Perspective {
 pub(super) struct Material {
     #[serde(default)]
     pub double_sided: bool,
+    /// `OPAQUE` where it is not there.
+    pub alpha_mode: Option<String>,
+}
+
+impl Material {
+    /// Whether its alpha cuts holes into triangles, or lets light through.
+    pub fn cuts(&self) -> bool {
+        self.alpha_mode.as_deref().is_some_and(|mode| mode != "OPAQUE")
+    }
 }
 
 #[derive(Debug, Deserialize)]

@@ -34,6 +34,8 @@ const MAX_COORDINATE: f64 = 1e9;
 /// - Triangles, strips and fans of the default scene (the first, where none is the default; all
 ///   nodes, where there is no scene), each node an instance; points and lines are passed over.
 ///   A mesh that mixes single- and double-sided materials becomes two instances of one name.
+/// - Textures are not read. A mesh of whose materials one is not opaque (`alphaMode`) is marked
+///   [`Mesh::cut_out`](super::Mesh::cut_out), and its triangles count whole.
 /// - Missing normals are flat, as glTF has it. Vertices that no triangle uses are left out.
 /// - Skinned and morphed meshes stand at rest, as their vertices say.
 /// - Area lights and roles come from the nodes' extras: `"area_light": "rectangle"` with `"width"`,

@@ -100,9 +100,12 @@ impl<'a> Reader<'a> {
         };
         // Without positions there is nothing to draw (glTF 2.0 §3.7.2.1).
         let Some(position) = primitive.attributes.position else { return Ok(()) };
-        let double_sided = match primitive.material {
-            Some(m) => at(&self.root.materials, m, "materials", || label.into())?.double_sided,
-            None => false,
+        let (double_sided, cut_out) = match primitive.material {
+            Some(m) => {
+                let material = at(&self.root.materials, m, "materials", || label.into())?;
+                (material.double_sided, material.cuts())
+            }
+            None => (false, false),
         };
         let owner = |what: &'static str| move || format!("the {what} of {label}");
         let positions = Vectors::open(self.root, self.buffers, position, &owner("POSITION"))?;
@@ -130,6 +133,7 @@ impl<'a> Reader<'a> {
         })?;
         let [single, double] = sides;
         let mesh = if double_sided { double } else { single };
+        mesh.cut_out |= cut_out;
         Source { topology, positions, normals, indices, label }.append_to(mesh, triangles)
     }
 }

@@ -250,6 +250,8 @@ fn double_sided_materials_part_a_mesh_in_two() {
     let found: Vec<_> =
         scene.meshes.iter().map(|m| (m.double_sided, m.indices.len() / 3)).collect();
     assert_eq!(found, [(false, 2), (true, 4)]);
+    let cut: Vec<_> = scene.meshes.iter().map(|m| m.cut_out).collect();
+    assert_eq!(cut, [true, false], "of these one is not opaque");
     let mut scene = scene;
     scene.set_role("thing", Role::Receiver).unwrap();
     assert!(scene.instances.iter().all(|i| i.role == Role::Receiver), "both are the node's");
