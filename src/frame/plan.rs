@@ -322,16 +322,7 @@ pub(crate) fn plan_into(
     let shape = Shape { needs, points, lines, kept: plan.keeping.uses() };
     plan.imports.clear();
     plan.imports.extend(imports(&ids, frame));
-    borders.clear();
-    let of_import = |(resource, i): &(ResourceId, HostImage)| Border {
-        resource: *resource,
-        before: i.before,
-        after: i.after,
-    };
-    borders.extend(plan.imports.iter().map(of_import));
-    if let Visibility::Own { before, after } = frame.visibility {
-        borders.push(Border { resource: ids.visibility, before, after });
-    }
+    fill_borders(borders, &plan.imports, ids.visibility, frame);
     let place = frame.border_barriers == BorderBarriers::Node;
     let same = before.as_ref().is_some_and(|(_, before)| *before == shape);
     compiler.compile(graph, borders, place, same, &mut plan.plan)?;
@@ -357,24 +348,51 @@ pub(crate) fn plan_into(
         _ => SmallVec::new(),
     };
     let of = (fit.number(), occluder_clips, receiver_clips);
-    if same && drawn.as_ref() == Some(&of) {
-        return Ok(());
+    if !same || drawn.as_ref() != Some(&of) {
+        *drawn = None;
+        fill_draws(plan, description, frame.meshes, fit, [&of.1, &of.2])?;
+        *drawn = Some(of);
     }
-    *drawn = None;
-    let (_, occluder_clips, receiver_clips) = &of;
-    // What no row draws needs no matrices.
-    let FramePlan { plan: of_rows, occluders, receivers, .. } = plan;
+    Ok(())
+}
+
+/// The lists of what is drawn; what no row draws needs no matrices.
+fn fill_draws(
+    plan: &mut FramePlan,
+    description: &Description,
+    meshes: &[MeshInstance],
+    fit: &Fit,
+    [occluder_clips, receiver_clips]: [&Clips; 2],
+) -> Result<(), Error> {
+    let FramePlan { plan, occluders, receivers, .. } = plan;
     for (list, draws, placed, clips) in [
         (MeshList::Occluders, occluders, &fit.occluders, occluder_clips),
         (MeshList::Receivers, receivers, &fit.receivers, receiver_clips),
     ] {
-        match is_drawn(of_rows, list) {
-            true => draws.fill(description, placed.meshes(frame.meshes), clips)?,
+        match is_drawn(plan, list) {
+            true => draws.fill(description, placed.meshes(meshes), clips)?,
             false => draws.clear(),
         }
     }
-    *drawn = Some(of);
     Ok(())
+}
+
+/// How the host's resources and the result are left and taken back.
+fn fill_borders(
+    borders: &mut Vec<Border>,
+    imports: &[(ResourceId, HostImage)],
+    visibility: ResourceId,
+    frame: &Frame,
+) {
+    borders.clear();
+    borders.extend(imports.iter().map(|(resource, i)| Border {
+        resource: *resource,
+        before: i.before,
+        after: i.after,
+    }));
+    if let Visibility::Own { before, after } = frame.visibility {
+        borders.push(Border { resource: visibility, before, after });
+    }
 }
 
 /// Light and outline as linear lights take them, longer along x.
