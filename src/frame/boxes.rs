@@ -52,8 +52,9 @@ impl Boxes {
             self.blockers += usize::from(there && blocks);
             let [center, half] = around(mesh);
             // Every number is in one of these, and what is not finite stays so; what is may have become too large.
-            let sound = center.is_finite() && half.is_finite();
-            if !(sound && mesh.world_from_mesh.row(3).is_finite()) && !is_finite(mesh) {
+            let sound =
+                center.is_finite() && half.is_finite() && mesh.world_from_mesh.row(3).is_finite();
+            if !(sound || is_finite(mesh)) {
                 self.not_finite.get_or_insert(index);
             }
             let center = center.as_vec3();
@@ -123,10 +124,8 @@ impl Surroundings {
 
 /// Whether every number of a mesh is finite.
 fn is_finite(mesh: &MeshInstance) -> bool {
-    let bounds = mesh.bounds.as_flattened().iter().fold(0.0, |sum, x| sum + (x - x));
-    // What is not finite differs from itself, or by no number.
-    let transform = mesh.world_from_mesh.to_cols_array().iter().fold(0.0, |sum, x| sum + (x - x));
-    bounds == 0.0 && transform == 0.0
+    let bounds = mesh.bounds.as_flattened();
+    mesh.world_from_mesh.is_finite() && bounds.iter().all(|x| x.is_finite())
 }
 
 /// The middle of a mesh's box in the world, and half its extents along the world's axes.

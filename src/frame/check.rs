@@ -88,7 +88,7 @@ impl Frame<'_> {
                 return bad("the occluder map's window must have finite tangents, least first");
             }
         }
-        if let Some(reach) = self.reach.filter(|reach| !(*reach > 0.0)) {
+        if let Some(reach) = self.reach.filter(|reach| reach.is_nan() || *reach <= 0.0) {
             return bad(format!(
                 "the light's reach is {reach}, and must be above 0 metres; leave it out for a light that \
                  reaches everything"

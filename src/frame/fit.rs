@@ -64,7 +64,7 @@ impl Placed {
 
 /// What a fit is for: frames that agree in it have the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Of {
+struct Inputs {
     revision: u64,
     light: RectangleLight,
     reach: Option<f64>,
@@ -76,7 +76,7 @@ struct Of {
 /// Which meshes matter to a light, and how its maps look at them.
 #[derive(Clone, Debug)]
 pub(super) struct Fit {
-    of: Option<Of>,
+    of: Option<Inputs>,
     pub light_from_world: DMat4,
     /// None where the host lends maps.
     pub occluders: Placed,
@@ -129,7 +129,7 @@ impl Fit {
         frame: &Frame,
         surroundings: &mut Surroundings,
     ) -> Result<(), Error> {
-        let of = Of::of(settings, frame);
+        let of = Inputs::of(settings, frame);
         if of.is_some() && self.of == of {
             return Ok(());
         }
@@ -311,7 +311,7 @@ impl Fit {
     }
 }
 
-impl Of {
+impl Inputs {
     /// None where the host gives no number; a camera of the host's maps is looked at each time.
     fn of(settings: &Settings, frame: &Frame) -> Option<Self> {
         if frame.occluder_maps.is_some() {

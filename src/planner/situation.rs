@@ -139,8 +139,8 @@ impl Situation {
     /// The same with what a camera's pixels are to it.
     pub(crate) fn seen_by(mut self, camera: &Camera, shadowed: &MapView, map: &MapView) -> Self {
         let [smallest, largest] = pixel_sizes(camera, shadowed);
-        let by_pixel = |metres: f64| if smallest > 0.0 { metres / smallest } else { f64::INFINITY };
-        self.penumbra_pixels = by_pixel(self.penumbra);
+        let inside = smallest <= 0.0;
+        self.penumbra_pixels = if inside { f64::INFINITY } else { self.penumbra / smallest };
         self.edges_a_pixel = (self.edges * largest).min(1.0);
         let side = (0..2).map(|i| map.max[i] - map.min[i]).fold(f64::INFINITY, f64::min);
         let reach = match map.eye {
