@@ -138,7 +138,7 @@ fn around(mesh: &MeshInstance) -> [DVec3; 2] {
 }
 
 /// Whether there is anything to draw of a mesh.
-pub(super) fn has_triangles(mesh: &MeshInstance) -> bool {
+fn has_triangles(mesh: &MeshInstance) -> bool {
     match mesh.geometry {
         Geometry::Buffers(buffers) => buffers.count >= 3,
         Geometry::HostDrawn(_) => true,

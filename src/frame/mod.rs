@@ -3,12 +3,14 @@
 mod accesses;
 mod boxes;
 mod check;
+mod draws;
 mod fit;
 mod host;
 mod hull;
 mod keep;
 mod left;
 mod look;
+mod make;
 mod plan;
 mod plans;
 mod rows;
@@ -17,6 +19,7 @@ mod tests;
 
 pub use accesses::{BufferAccess, HostAccess, ImageBarrier, NodeUse};
 pub(crate) use boxes::Surroundings;
+pub use draws::{Faces, MeshDraw};
 pub use host::{
     BorderBarriers, Geometry, HostImage, MeshBuffers, MeshInstance, OccluderMaps, Visibility,
 };
@@ -24,8 +27,10 @@ pub(crate) use left::{Left, Whose};
 pub(crate) use look::Looker;
 #[cfg(test)]
 pub(crate) use look::situation;
-pub use plan::{Faces, FramePlan, MeshDraw, plan, plan_all};
-pub(crate) use plan::{Memory, Stamp, Workspace, plan_into};
+pub(crate) use make::{Memory, Workspace, plan_into};
+pub use make::{plan, plan_all};
+pub use plan::FramePlan;
+pub(crate) use plan::Stamp;
 pub use plans::FramePlans;
 pub(crate) use rows::nominal;
 pub use rows::{Limits, full_graph};

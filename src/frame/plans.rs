@@ -1,6 +1,7 @@
 //! The plans of all lights of a frame, in memory that stays.
 
-use super::plan::{FramePlan, Memory, Workspace};
+use super::FramePlan;
+use super::make::{Memory, Workspace};
 use crate::Error;
 
 /// The plans of a frame's lights: a host keeps them from frame to frame, so that planning needs no new memory, and

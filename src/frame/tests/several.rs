@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::frame::Left;
-use crate::frame::plan::plan_with;
+use crate::frame::make::plan_with;
 
 /// Rows of a soft shadow map, and those of them that look at pixels.
 const ALL: usize = 7;

@@ -1,0 +1,270 @@
+//! From one frame to what it records.
+
+use super::accesses::{HostAccess, NodeUse};
+use super::boxes::Surroundings;
+use super::fit::Fit;
+use super::keep::{self, Kept, Revisions, Ties};
+use super::look::look;
+use super::plan::{FramePlan, Stamp};
+use super::rows::{Ids, Limits, build, wanted};
+use super::{BorderBarriers, Description, Frame, FramePlans, HostImage, MeshInstance, Visibility};
+use crate::graph::{self, Border, Compiler, Draw, Graph, MeshList, ResourceId, Work};
+use crate::light::outline;
+use crate::linear_light;
+use crate::settings::Technique;
+use crate::{Error, RectangleLight};
+use ash::vk;
+use glam::DMat4;
+use smallvec::{SmallVec, smallvec};
+use std::borrow::Cow;
+
+/// Memory that planning uses again from frame to frame, for all lights.
+#[derive(Debug, Default)]
+pub(crate) struct Workspace {
+    graph: Graph,
+    compiler: Compiler,
+    borders: Vec<Border>,
+    pub surroundings: Surroundings,
+}
+
+/// What is remembered of a light from frame to frame.
+#[derive(Debug, Default)]
+pub(crate) struct Memory {
+    fit: Fit,
+    ties: Ties,
+    /// What the rows of its last plan came of.
+    rows: Option<(Description, Shape)>,
+    /// What its last draws came of: of which look at the meshes, from where.
+    drawn: Option<(u64, Clips, Clips)>,
+}
+
+/// Matrices from the world into views: few techniques have more than one.
+type Clips = SmallVec<[DMat4; 1]>;
+
+/// What decides which rows a description has in a frame, and which of them run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Shape {
+    needs: u8,
+    points: usize,
+    lines: usize,
+    kept: [bool; 3],
+}
+
+/// Plans one frame: fits the maps, decides what runs, derives the barriers. Pure: no Vulkan calls.
+///
+/// # Errors
+/// [`Error::Frame`] for numbers that are not finite, a line or an outline that the technique does not
+/// take, an outline that is not what [`Frame::outline`] asks for, an image of another size, format,
+/// usage or layout than the description and the passes need, images or strides that the description
+/// does not have, or a light, settings or a frame slot beyond those of the description.
+pub fn plan(description: &Description, limits: Limits, frame: &Frame) -> Result<FramePlan, Error> {
+    plan_with(description, limits, frame, &Kept::default())
+}
+
+/// As [`plan`], of several lights, in memory that is kept: see [`ShadowNode::plan_all`](crate::ShadowNode::plan_all).
+///
+/// # Errors
+/// As [`plan`]; the plans are then those of the frames before the one that is refused.
+pub fn plan_all(
+    description: &Description,
+    limits: Limits,
+    frames: &[Frame],
+    plans: &mut FramePlans,
+) -> Result<(), Error> {
+    plans.begin();
+    let kept = Kept::default();
+    frames.iter().try_for_each(|frame| {
+        let description = &*description.choosing(frame.settings_index)?;
+        plans.add(|workspace, memory, plan| {
+            plan_into(description, limits, frame, &kept, workspace, memory, plan)
+        })
+    })
+}
+
+/// As [`plan`], for a node in which earlier frames have left something.
+pub(crate) fn plan_with(
+    description: &Description,
+    limits: Limits,
+    frame: &Frame,
+    kept: &Kept,
+) -> Result<FramePlan, Error> {
+    let description = &*description.choosing(frame.settings_index)?;
+    let (mut plan, mut memory) = (FramePlan::default(), Memory::default());
+    let workspace = &mut Workspace::default();
+    plan_into(description, limits, frame, kept, workspace, &mut memory, &mut plan)?;
+    Ok(plan)
+}
+
+/// As [`plan_with`], by a description that has the frame's settings alone, and in the memory of earlier frames of the
+/// light. After an error the plan is of no frame.
+pub(crate) fn plan_into(
+    description: &Description,
+    limits: Limits,
+    frame: &Frame,
+    kept: &Kept,
+    workspace: &mut Workspace,
+    memory: &mut Memory,
+    plan: &mut FramePlan,
+) -> Result<(), Error> {
+    // Where it fails, nothing of the frame before is left to build on.
+    plan.stamp = Stamp::default();
+    let settings = &description.settings;
+    frame.check(description, settings)?;
+    let (light, outline) = match settings.technique {
+        Technique::LinearLight => along(frame),
+        _ => (frame.light, frame.outline.map(Cow::Borrowed)),
+    };
+    let frame = &Frame { light, outline: outline.as_deref(), ..*frame };
+    let Workspace { graph, compiler, borders, surroundings } = workspace;
+    let Memory { fit, ties, rows, drawn } = memory;
+    fit.update(description, settings, frame, surroundings)?;
+    let (views, verdicts) = look(description, frame, fit)?;
+    graph.clear();
+    let ids = build(graph, description, limits, &light, &views);
+    let occluder_clips = views.occluder_clips();
+    let receiver_view = views.receivers;
+    let (points, lines) = (views.points.len(), views.lines.len());
+    let needs = views.needs.bits();
+    // Which rows there are is told by description and needs, before it is told what of them is kept.
+    let before = rows.take().filter(|(of, shape)| {
+        of == description && (shape.needs, shape.points, shape.lines) == (needs, points, lines)
+    });
+    if before.is_none() {
+        ties.find(graph, ids.pixels());
+    }
+    let revisions = Revisions { scene: frame.revision, view: frame.view_revision };
+    plan.keeping = keep::apply(graph, ties, &frame.visibility, revisions, kept);
+    let shape = Shape { needs, points, lines, kept: plan.keeping.uses() };
+    plan.imports.clear();
+    plan.imports.extend(imports(&ids, frame));
+    fill_borders(borders, &plan.imports, ids.visibility, frame);
+    let place = frame.border_barriers == BorderBarriers::Node;
+    let same = before.as_ref().is_some_and(|(_, before)| *before == shape);
+    compiler.compile(graph, borders, place, same, &mut plan.plan)?;
+    // The next frame's rows are built where this one's have been.
+    graph.clear();
+    graph.reserve_for(&plan.plan.graph);
+    let of = before.map_or_else(|| description.clone(), |(of, _)| of);
+    *rows = Some((of, shape));
+    plan.accesses.clear();
+    for border in &*borders {
+        plan.accesses.push(access_of(&plan.plan, border, &plan.imports, frame.light_index));
+    }
+    plan.visibility = ids.visibility;
+    plan.verdicts = verdicts;
+    plan.slot = frame.slot;
+    (plan.light_index, plan.settings_index) = (frame.light_index, frame.settings_index);
+
+    let to_light = fit.light_from_world;
+    let occluder_clips: Clips = occluder_clips.iter().map(|clip| *clip * to_light).collect();
+    let receiver_clips = match (wanted(settings).receiver_map, &receiver_view) {
+        (Some(_), Some(view)) => smallvec![view.clip_from_light() * to_light],
+        _ if settings.technique == Technique::LinearLight => occluder_clips.clone(),
+        _ => SmallVec::new(),
+    };
+    let of = (fit.number(), occluder_clips, receiver_clips);
+    if !same || drawn.as_ref() != Some(&of) {
+        *drawn = None;
+        fill_draws(plan, description, frame.meshes, fit, [&of.1, &of.2])?;
+        *drawn = Some(of);
+    }
+    Ok(())
+}
+
+/// The lists of what is drawn; what no row draws needs no matrices.
+fn fill_draws(
+    plan: &mut FramePlan,
+    description: &Description,
+    meshes: &[MeshInstance],
+    fit: &Fit,
+    [occluder_clips, receiver_clips]: [&Clips; 2],
+) -> Result<(), Error> {
+    let FramePlan { plan, occluders, receivers, .. } = plan;
+    for (list, draws, placed, clips) in [
+        (MeshList::Occluders, occluders, &fit.occluders, occluder_clips),
+        (MeshList::Receivers, receivers, &fit.receivers, receiver_clips),
+    ] {
+        match is_drawn(plan, list) {
+            true => draws.fill(description, placed.meshes(meshes), clips)?,
+            false => draws.clear(),
+        }
+    }
+    Ok(())
+}
+
+/// How the host's resources and the result are left and taken back.
+fn fill_borders(
+    borders: &mut Vec<Border>,
+    imports: &[(ResourceId, HostImage)],
+    visibility: ResourceId,
+    frame: &Frame,
+) {
+    borders.clear();
+    borders.extend(imports.iter().map(|(resource, i)| Border {
+        resource: *resource,
+        before: i.before,
+        after: i.after,
+    }));
+    if let Visibility::Own { before, after } = frame.visibility {
+        borders.push(Border { resource: visibility, before, after });
+    }
+}
+
+/// Light and outline as linear lights take them, longer along x.
+fn along<'a>(frame: &Frame<'a>) -> (RectangleLight, Option<Cow<'a, [[f64; 2]]>>) {
+    let turned = linear_light::turned(&frame.light);
+    let outline = match turned == frame.light {
+        true => frame.outline.map(Cow::Borrowed),
+        false => frame.outline.map(|corners| Cow::Owned(outline::quarter_turned(corners))),
+    };
+    (turned, outline)
+}
+
+/// The host's images by resource.
+fn imports(ids: &Ids, frame: &Frame) -> impl Iterator<Item = (ResourceId, HostImage)> {
+    let lent = |id: Option<ResourceId>, image: Option<HostImage>| id.zip(image);
+    let maps = frame.occluder_maps;
+    let result = match frame.visibility {
+        Visibility::Lent(image) => Some(image),
+        Visibility::Own { .. } => None,
+    };
+    [
+        lent(Some(ids.depth), Some(frame.depth)),
+        lent(ids.mask, frame.mask),
+        lent(ids.occluder_maps[0], maps.map(|m| m.front)),
+        lent(ids.occluder_maps[1], maps.and_then(|m| m.back)),
+        lent(ids.light_texture, frame.light_texture),
+        lent(Some(ids.visibility), result),
+    ]
+    .into_iter()
+    .flatten()
+}
+
+/// Whether some row that runs draws the meshes of a list.
+fn is_drawn(plan: &graph::Plan, list: MeshList) -> bool {
+    plan.steps.iter().any(|step| match plan.graph.passes()[step.pass].work {
+        Work::Raster { draw: Draw::Layer { layer, .. }, .. } => layer.meshes() == list,
+        _ => false,
+    })
+}
+
+/// What a host must know of one image of the border.
+fn access_of(
+    plan: &graph::Plan,
+    border: &Border,
+    imports: &[(ResourceId, HostImage)],
+    light_index: u32,
+) -> HostAccess {
+    let resource = plan.graph.resource(border.resource);
+    let used = plan.boundary.iter().find(|b| b.resource == border.resource);
+    let host = imports.iter().find(|(id, _)| *id == border.resource);
+    HostAccess {
+        name: resource.name,
+        image: host.map_or(vk::Image::null(), |(_, i)| i.image),
+        layer: if host.is_none() { light_index } else { 0 },
+        aspect: graph::aspects(resource.shape),
+        before: border.before,
+        node: used.map(|b| NodeUse { entry: b.entry, exit: b.exit, writes: b.writes }),
+        after: border.after,
+    }
+}
