@@ -17,13 +17,7 @@ use glam::{DMat4, DVec3};
 
 /// Cubes over a ground, in a row.
 fn meshes(shift: f64) -> Vec<MeshInstance> {
-    let buffers = MeshBuffers {
-        positions: vk::Buffer::from_raw(3),
-        positions_offset: 0,
-        positions_stride: 12,
-        indices: None,
-        count: 36,
-    };
+    let buffers = MeshBuffers::indexed(vk::Buffer::from_raw(3), 12, vk::Buffer::from_raw(4), 36);
     let mesh = |bounds, at, role| {
         MeshInstance::new(Geometry::Buffers(buffers), DMat4::from_translation(at), bounds, role)
     };
