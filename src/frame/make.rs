@@ -56,7 +56,7 @@ struct Shape {
 /// [`Error::Frame`] for numbers that are not finite, a line or an outline that the technique does not
 /// take, an outline that is not what [`Frame::outline`] asks for, an image of another size, format,
 /// usage or layout than the description and the passes need, images or strides that the description
-/// does not have, or a light, settings or a frame slot beyond those of the description.
+/// does not have, a reach that is not above 0, or a light, settings or a frame slot beyond those of the description.
 pub fn plan(description: &Description, limits: Limits, frame: &Frame) -> Result<FramePlan, Error> {
     plan_with(description, limits, frame, &Kept::default())
 }
