@@ -76,12 +76,12 @@ impl FramePlan {
         format!("{}\n{}", self.plan.table(), self.verdicts)
     }
 
-    /// The barriers to place before the node, for a host that asked for [`BorderBarriers::Host`].
+    /// The barriers to place before the node, for a host that asked for [`BorderBarriers::Host`](super::BorderBarriers::Host).
     pub fn entry_barriers(&self) -> impl Iterator<Item = ImageBarrier> + '_ {
         self.accesses.iter().filter_map(HostAccess::entry_barrier)
     }
 
-    /// The barriers to place behind the node, for a host that asked for [`BorderBarriers::Host`].
+    /// The barriers to place behind the node, for a host that asked for [`BorderBarriers::Host`](super::BorderBarriers::Host).
     pub fn exit_barriers(&self) -> impl Iterator<Item = ImageBarrier> + '_ {
         self.accesses.iter().filter_map(HostAccess::exit_barrier)
     }
