@@ -5,7 +5,7 @@
 
 use antumbra::gpu::headless::{HeadlessDevice, Stage};
 use antumbra::scene::{Scene, generate};
-use antumbra::{Error, Frame, FramePlan, RectangleLight, Scope, Visibility};
+use antumbra::{Error, Frame, FramePlan, FramePlans, RectangleLight, Scope, Visibility};
 use antumbra_tests::device;
 use antumbra_tests::measure::{Setup, settings};
 use glam::{DMat4, DVec3};
@@ -113,6 +113,39 @@ fn four_lights_in_one_submit_are_four_nodes_to_the_bit() {
         assert_eq!(timed[4], None);
     }
     assert_eq!(node.node().unwrap().timings_of(2, 0), None);
+}
+
+/// In memory that is kept, while camera and scene move or stay.
+#[test]
+fn lights_planned_together_are_lights_planned_alone() {
+    let device = device();
+    let scene = cards();
+    let words = ["map=64", "technique=pcss map=128"];
+    let [mut together, mut apart] = [(); 2].map(|()| stage(&device, &scene, 4, &words));
+    let mut plans = FramePlans::new();
+    // How far the camera and the lights have moved, and how often.
+    let moments =
+        [(0.0, 0.0, 1, 1), (0.2, 0.0, 1, 2), (0.2, 0.0, 1, 2), (0.2, 0.3, 2, 3), (0.0, 0.0, 3, 4)];
+    for (nth, (camera, moved, scene_revision, view_revision)) in moments.into_iter().enumerate() {
+        let lamp = |index: u32| light(shift(index) + moved, false);
+        let change = |index: usize, frame: &mut Frame| {
+            frame.light_index = index as u32;
+            frame.settings_index = u32::from(index == 3);
+            frame.revision = Some(scene_revision);
+            frame.view_revision = Some(view_revision);
+            aside(frame, camera);
+        };
+        together.plan_all_with(&[0, 1, 2, 3].map(lamp), change, &mut plans).unwrap();
+        let alone = |i: u32| apart.plan_with(&lamp(i), |f| change(i as usize, f)).unwrap();
+        let alone: Vec<_> = (0..4).map(alone).collect();
+        assert_eq!(steps(plans.all()), steps(&alone), "moment {nth}");
+        assert_eq!(nth == 2, steps(&alone) == [0; 4], "moment {nth} alone is idle");
+        let images = run(&mut together, plans.all());
+        assert!(images == run(&mut apart, &alone), "moment {nth}");
+    }
+    // Plans of a node that has been made anew since are refused, and made again.
+    configure(&mut together, 4, &words).unwrap();
+    assert!(together.run_all(plans.all()).is_err());
 }
 
 #[test]

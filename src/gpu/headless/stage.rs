@@ -10,8 +10,8 @@ use crate::graph::{Scope, Shape};
 use crate::planner::{Auto, Choice};
 use crate::scene::{AreaLight, Instance, Scene};
 use crate::{
-    Description, Error, Frame, FramePlan, Host, MeshInstance, RectangleLight, Settings, ShadowNode,
-    Visibility, visibility,
+    Description, Error, Frame, FramePlan, FramePlans, Host, MeshInstance, RectangleLight, Settings,
+    ShadowNode, Visibility, visibility,
 };
 use std::sync::{Arc, PoisonError};
 use std::time::{Duration, Instant};
@@ -189,6 +189,23 @@ impl Stage {
         let node =
             self.node.as_ref().ok_or_else(|| Error::Frame("the stage has no node".into()))?;
         node.plan(&frame)
+    }
+
+    /// Plans together what `change` makes of a frame of each light, by its place.
+    ///
+    /// # Errors
+    /// As [`ShadowNode::plan_all`].
+    pub fn plan_all_with<'f>(
+        &'f mut self,
+        lights: &[RectangleLight],
+        change: impl Fn(usize, &mut Frame<'f>),
+        plans: &mut FramePlans,
+    ) -> Result<(), Error> {
+        let mut frames: Vec<_> = lights.iter().map(|light| self.frame(light)).collect();
+        frames.iter_mut().enumerate().for_each(|(place, frame)| change(place, frame));
+        let node =
+            self.node.as_ref().ok_or_else(|| Error::Frame("the stage has no node".into()))?;
+        node.plan_all(&frames, plans)
     }
 
     /// A frame under the light's whole rectangle.
