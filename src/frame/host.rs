@@ -117,7 +117,7 @@ pub struct MeshInstance {
     pub geometry: Geometry,
     /// Mesh space to world space.
     pub world_from_mesh: DMat4,
-    /// A box around the positions, in mesh space; what reaches beyond it may cast nothing.
+    /// A box around the positions, in mesh space; what reaches beyond it may cast no shadow, and show none.
     pub bounds: MeshBounds,
     /// Occluder, receiver or both.
     pub role: Role,

@@ -294,9 +294,9 @@ pub struct Frame<'a> {
     /// frame lets what is behind average over frames; 0 keeps the noise where it is.
     pub noise: u32,
     /// The host's number for the light and the meshes as they stand to each other: geometry, transforms, roles, what
-    /// it lends of them, and [`Self::window`]. As long as it gives the same one, what the node has made of them is kept. None: everything
-    /// may have changed. What a frame makes counts as made once it is recorded: it must be submitted, and before what
-    /// is recorded after it.
+    /// it lends of them, [`Self::reach`] and [`Self::window`]. As long as it gives the same one, what the node has made
+    /// of them is kept. None: everything may have changed. What a frame makes counts as made once it is recorded: it
+    /// must be submitted, and before what is recorded after it.
     pub revision: Option<u64>,
     /// The same for what the pixels show: camera and G-buffer, [`Self::noise`], and who uses the result how. With both
     /// numbers as they were in the frame before, a visibility image of the node's own stays as it is and no pass runs.

@@ -139,6 +139,7 @@ impl Graph {
 
     /// Whether it is another one in push constants, grids and reasons alone: then it runs the same rows behind the same
     /// barriers.
+    #[cfg(test)]
     pub(super) fn differs_in_numbers_alone(&self, other: &Self) -> bool {
         let same = |(a, b): (&Pass, &Pass)| a.is_row_of(b) && a.need.is_yes() == b.need.is_yes();
         self.resources == other.resources

@@ -157,7 +157,7 @@ impl Verdicts {
                 .and(s.given.saturating_sub(s.occluders))
                 .and(" of ")
                 .and(s.given)
-                .and(" occluder meshes lie outside the hull of light and receivers, or are flat, with both on one side"),
+                .and(" occluder meshes lie outside the hull of light and receivers or the light's reach, or are flat, with all on one side"),
             Effect::Penumbra | Effect::InnerPenumbra => Why::from("the widest penumbra spans ")
                 .number(s.penumbra_pixels, 2)
                 .and(" pixels, with at most ")
