@@ -47,7 +47,7 @@ fn turns_of_pixels() {
 #[test]
 fn clearance_above_a_receivers_plane() {
     let glue = "float clear_of(vec3 p, vec3 n, vec2 per, vec2 first, vec2 at, float w_o, \
-                float reach) { return clearance(map_plane(p, n, per, first, 0.0, 0.0), at, w_o, reach); }";
+                float reach) { return clearance(map_plane(p, n, true, per, first, 0.0, 0.0), at, w_o, reach); }";
     let prototype =
         "float clear_of(vec3 p, vec3 n, vec2 per, vec2 first, vec2 at, float w_o, float reach)";
     fn twin<T: Float>(x: &[T]) -> Vec<T> {

@@ -141,12 +141,18 @@ fn normals_face_the_viewer() {
         n.length() > 0.1 && n.normalize().dot(c).abs() > 1e-3
     };
     let steps = (step(), step(), step()).prop_filter("neither parallel nor edge-on", apart);
+    // Scenes of any scale: whose squares of squares would not be floats.
+    let scaled = (steps.clone(), -30..=30_i32).prop_map(|((a, b, c), exponent)| {
+        let scale = |v: Triple| -> Triple { (Vec3::from(v) * 10.0_f32.powi(exponent)).into() };
+        (scale(a), scale(b), c)
+    });
     Function::new(
         "common/receiver.glsl",
         "vec3 plane_normal(vec3 along_x, vec3 along_y, vec3 to_viewer)",
     )
     .case(((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, -1.0)))
     .random(5_000, steps)
+    .random(5_000, scaled)
     .f32(Tolerance::absolute(4e-6), twin::<f32>)
     .f64(Tolerance::absolute(4e-6), twin::<f64>)
     .check(&device());

@@ -30,14 +30,11 @@ bool hidden(ivec2 pixel)
     }
     vec3 normal = texelFetch(normals, pixel, 0).xyz;
     vec3 p = position.xyz - vec3(push.point, 0.0);
+    // The point is below the pixel's own surface.
     if (dot(normal, p) >= 0.0) {
-        // The point is below the pixel's plane, whose other side is seen where it does not block.
-        if (position.w == 2.0) {
-            return true;
-        }
-        normal = -normal;
+        return true;
     }
-    MapPlane m = map_plane(p, normal, push.texels_per_uv, push.first, push.snap, 0.0);
+    MapPlane m = map_plane(p, normal, position.w == 2.0, push.texels_per_uv, push.first, push.snap, 0.0);
     ivec2 texel = ivec2(floor(m.t));
     if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(push.map)))) {
         return false;

@@ -53,7 +53,7 @@ bool covered(MapPlane m, vec2 lo, vec2 hi, float w_min)
     vec2 middle = 0.5 * (lo + hi) + 0.5;
     vec2 half_size = 0.5 * (hi - lo);
     float least = dot(middle, m.n) - dot(half_size, abs(m.n)) + m.n_0 - m.c * w_min;
-    return w_min > m.w && m.c < 0.0 && least > m.rounding + OWN_SLOPE * 0.5 * length(m.texel);
+    return w_min > m.w && m.c < 0.0 && least > m.rounding + m.slope * 0.5 * length(m.texel);
 }
 
 float hidden_of(MapPlane m)

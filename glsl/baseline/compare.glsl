@@ -13,11 +13,12 @@ struct MapPlane {
     float c;       // above 0 where the map's eye is below the plane
     float rounding;
     vec2 texel;    // a texel's size in u and v
+    float slope;   // how steeply the receiver's own surface may rise above its plane
 };
 
 // `position` and `normal` as the map's eye has them: its own place is the origin.
-MapPlane map_plane(vec3 position, vec3 normal, vec2 texels_per_uv, vec2 first, float snap,
-                   float depth_error)
+MapPlane map_plane(vec3 position, vec3 normal, bool blocks, vec2 texels_per_uv, vec2 first,
+                   float snap, float depth_error)
 {
     float w = 1.0 / position.z;
     vec2 t = position.xy * w * texels_per_uv + first;
@@ -25,7 +26,7 @@ MapPlane map_plane(vec3 position, vec3 normal, vec2 texels_per_uv, vec2 first, f
     float n_0 = normal.z - dot(n, first);
     float c = dot(normal, position);
     float rounding = plane_rounding(n, n_0, c, t, w, snap, depth_error);
-    return MapPlane(t, w, n, n_0, c, rounding, 1.0 / texels_per_uv);
+    return MapPlane(t, w, n, n_0, c, rounding, 1.0 / texels_per_uv, own_slope(blocks));
 }
 
 // How far a texel's surface, w_o at its centre `at`, lies above the receiver's plane beyond what the
@@ -34,7 +35,7 @@ MapPlane map_plane(vec3 position, vec3 normal, vec2 texels_per_uv, vec2 first, f
 float clearance(MapPlane m, vec2 at, float w_o, float reach)
 {
     float above = dot(at, m.n) + m.n_0 - m.c * w_o;
-    return above - OWN_SLOPE * max(0.5 * length(m.texel), reach);
+    return above - m.slope * max(0.5 * length(m.texel), reach);
 }
 
 // Whether a texel's surface hides what lies behind the texel itself: the receiver-plane depth bias.

@@ -20,16 +20,12 @@ Receiver pixel_receiver(ivec2 p)
     Receiver r = receiver_at(gbuffer(), p);
     // Behind the light's plane there is nothing to hide.
     r.receives = r.receives && r.position.z > 0.0;
-    // A surface that does not block is seen from its other side as well.
-    if (!r.blocks && dot(r.normal, r.position) > 0.0) {
-        r.normal = -r.normal;
-    }
     return r;
 }
 
 MapPlane pixel_plane(Receiver r)
 {
-    return map_plane(r.position, r.normal, push.texels_per_uv, push.first, push.snap,
+    return map_plane(r.position, r.normal, r.blocks, push.texels_per_uv, push.first, push.snap,
                      push.depth_error);
 }
 

@@ -84,9 +84,7 @@ Receiver receiver_without_normal(GBuffer g, ivec2 p)
 Receiver receiver_at(GBuffer g, ivec2 p)
 {
     Receiver r = receiver_without_normal(g, p);
-    if (r.receives) {
-        r.normal = facet_normal(g, p, depth_at(p), r.position);
-    }
+    r.normal = r.blocks ? facet_normal(g, p, depth_at(p), r.position) : TOWARDS_LIGHT;
     return r;
 }
 

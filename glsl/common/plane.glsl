@@ -13,6 +13,13 @@
 // 0.4, 0.3, 0.2 %.)
 const float OWN_SLOPE = 0.3;
 
+// What does not block is not in the maps, and has nothing of its own to rise.
+float own_slope(bool blocks)
+{
+    return blocks ? OWN_SLOPE : 0.0;
+}
+
+
 // Rounding of (u, v, w), of the sum that tells above from below, and of the G-buffer's position.
 const float ROUNDING = 1.0 / 2097152.0;
 

@@ -45,17 +45,14 @@ vec4 told_by(Line line, int nth, float at, vec3 position, vec3 normal, bool bloc
 {
     sees = 0.0;
     vec3 p = position - vec3((at - 0.5) * line.span, 0.0, 0.0);
+    // The sample is below the pixel's own surface.
     if (dot(normal, p) >= 0.0) {
-        // The sample is below the pixel's plane, whose other side is seen where it does not block.
-        if (blocks) {
-            return vec4(0.0);
-        }
-        normal = -normal;
+        return vec4(0.0);
     }
     vec2 u = window_at(line.u_window, at);
     vec2 v = line.v_window;
     vec2 per_uv = float(push.map) / vec2(u.y - u.x, v.y - v.x);
-    MapPlane m = map_plane(p, normal, per_uv, -vec2(u.x, v.x) * per_uv, push.snap, 0.0);
+    MapPlane m = map_plane(p, normal, blocks, per_uv, -vec2(u.x, v.x) * per_uv, push.snap, 0.0);
     vec2 corner = floor(m.t - 0.5);
     // Nothing is in the outermost texels of a map, nor beyond.
     if (any(lessThan(corner, vec2(0.0))) || any(greaterThanEqual(corner, vec2(push.map - 1)))) {

@@ -113,24 +113,25 @@ float part_above(Receiver r)
 Place place_of(Receiver r)
 {
     vec3 position = r.position;
-    vec2 n = r.normal.xy / push.texels_per_unit;
+    vec3 normal = r.blocks ? r.normal : TOWARDS_LIGHT;
+    vec2 n = normal.xy / push.texels_per_unit;
     float offset = dot(n, push.first);
     Place p;
     p.n = n;
     if (is_orthographic()) {
         p.w = push.eye - position.z;
         p.t = position.xy * push.texels_per_unit + push.first;
-        p.n_0 = r.normal.z * push.eye - dot(r.normal, position) - offset;
-        p.c = r.normal.z;
+        p.n_0 = normal.z * push.eye - dot(normal, position) - offset;
+        p.c = normal.z;
     } else {
         position.z += push.eye;
         p.w = 1.0 / position.z;
         p.t = position.xy * p.w * push.texels_per_unit + push.first;
-        p.n_0 = r.normal.z - offset;
-        p.c = dot(r.normal, position);
+        p.n_0 = normal.z - offset;
+        p.c = dot(normal, position);
     }
     p.margin = plane_rounding(n, p.n_0, p.c, p.t, p.w, push.snap, push.depth_error) +
-               OWN_SLOPE * 0.5 * length(1.0 / push.texels_per_unit);
+               own_slope(r.blocks) * 0.5 * length(1.0 / push.texels_per_unit);
     return p;
 }
 

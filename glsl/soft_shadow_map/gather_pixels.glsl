@@ -98,7 +98,7 @@ void main()
         r.n_0[i] = p.normal.z - dot(n, push.first);
         r.c[i] = c;
         // A patch stands for the surface within half a texel's diagonal of its centre.
-        r.bias[i] = OWN_SLOPE * 0.5 * length(1.0 / push.texels_per_uv) +
+        r.bias[i] = own_slope(p.blocks) * 0.5 * length(1.0 / push.texels_per_uv) +
                     plane_rounding(n, r.n_0[i], c, t, w, push.snap, push.depth_error);
         below[i] = there && p.blocks ? 1.0 - fraction_above(p.normal.xy * half_light, c) : 0.0;
         // From a tile without occluders nothing is hidden but by its own surfaces.

@@ -86,11 +86,12 @@ void main()
         return;
     }
     GBuffer g = GBuffer(push.light_from_ndc, push.extent, push.background, (push.flags & 1) != 0);
-    Receiver r = receiver_at(g, p);
+    Receiver r = receiver_without_normal(g, p);
     float v = 1.0;
     // Behind the light's plane there is nothing to hide.
     if (r.receives && r.position.z > 0.0) {
-        v = 1.0 - min(filtered(r.position, r.normal), 1.0);
+        vec3 normal = facet_normal(g, p, depth_at(p), r.position);
+        v = 1.0 - min(filtered(r.position, normal), 1.0);
     }
     imageStore(visibility, p, vec4(v));
 }

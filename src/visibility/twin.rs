@@ -57,6 +57,8 @@ pub fn towards_viewer<T: Float>(light_from_ndc: &[T], p: [T; 3], background: T) 
 
 /// The unit normal of the plane along two steps, on the side that `to_viewer` points to.
 pub fn plane_normal<T: Float>(x: [T; 3], y: [T; 3], to_viewer: [T; 3]) -> [T; 3] {
+    let size = |v: [T; 3]| v.iter().fold(T::min_positive_value(), |most, c| most.max(c.abs()));
+    let [x, y] = [x, y].map(|v| v.map(|c| c / size(v)));
     let n = [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]];
     let dot = |a: [T; 3], b: [T; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let length = dot(n, n).sqrt();
