@@ -3,11 +3,15 @@
 use super::boxes::Boxes;
 use super::rows::wanted;
 use super::{Description, Frame, HostImage, Visibility};
+use crate::depth_layers::LightBox;
 use crate::graph::is_depth_format;
 use crate::light::outline;
 use crate::settings::{Settings, Technique};
 use crate::{Error, visibility};
 use ash::vk::{self, ImageLayout as Layout, ImageUsageFlags as Usage};
+
+/// Lengths in metres whose squares, and those over each other, single precision holds with room to spare.
+const LENGTHS: std::ops::RangeInclusive<f64> = 1e-15..=1e15;
 
 fn bad<T>(what: impl Into<String>) -> Result<T, Error> {
     Err(Error::Frame(what.into()))
@@ -78,6 +82,12 @@ impl Frame<'_> {
                 technique.name()
             ));
         }
+        let [width, height] = self.light.half_extents().map(|half| 2.0 * half);
+        if !LENGTHS.contains(&width) || !(height == 0.0 || LENGTHS.contains(&height)) {
+            return bad(format!(
+                "the light is {width:e} by {height:e} m; a side must be from 1e-15 to 1e15 m, so scale the scene"
+            ));
+        }
         self.check_outline(technique)?;
         if !self.world_from_ndc.is_finite() || self.world_from_ndc.determinant() == 0.0 {
             return bad("world_from_ndc must be finite and invertible");
@@ -118,6 +128,17 @@ impl Frame<'_> {
             }),
             _ => Ok(()),
         }
+    }
+
+    /// Whether an occluder, the mesh at a place of the frame's list, is near enough to be told in single precision.
+    pub(super) fn check_reach(place: u32, of: &LightBox) -> Result<(), Error> {
+        let reach = of.min.abs().max(of.max.abs()).max_element();
+        if reach <= *LENGTHS.end() {
+            return Ok(());
+        }
+        bad(format!(
+            "mesh {place} blocks up to {reach:e} m from the light, and must within 1e15 m; cut it, or scale the scene"
+        ))
     }
 
     fn check_outline(&self, technique: Technique) -> Result<(), Error> {

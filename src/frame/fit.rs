@@ -161,6 +161,8 @@ impl Fit {
         };
         boxes.near(light, frame.reach, near);
         let gone = self.place(frame, near);
+        let Placed { places, boxes: placed } = &self.occluders;
+        places.iter().zip(placed).try_for_each(|(&place, of)| Frame::check_reach(place, of))?;
         self.centre = match &self.host_maps {
             Some(maps) => Some(maps.view),
             None => depth_layers::fit_boxes(&self.occluders.boxes, frame.window, settings.map),

@@ -21,6 +21,32 @@ fn a_line_is_refused_by_what_needs_an_area() {
     }
 }
 
+/// A light of no size that a float could tell is none, and nor are occluders as far away as galaxies.
+#[test]
+fn lengths_that_single_precision_does_not_hold_are_refused() {
+    let meshes = meshes();
+    for side in [1e-100, 1e-16, 1e16, 1e100] {
+        let light = generate::square_light(side).unwrap();
+        let sentence =
+            plan(&description(&[]), Limits::default(), &Frame { light, ..frame(&meshes) })
+                .unwrap_err()
+                .to_string();
+        assert!(
+            sentence.starts_with(&format!("the light is {side:e} by {side:e} m")),
+            "{sentence}"
+        );
+    }
+    for side in [2e-15, 5e14] {
+        let light = generate::square_light(side).unwrap();
+        make(&description(&[]), &Frame { light, ..frame(&meshes) });
+    }
+    let huge = MeshInstance { bounds: [[-1e16; 3], [1e16; 3]], ..meshes[1] };
+    let meshes = [meshes[0], huge];
+    let planned = plan(&description(&[]), Limits::default(), &frame(&meshes));
+    let sentence = planned.unwrap_err().to_string();
+    assert!(sentence.starts_with("mesh 1 blocks up to"), "{sentence}");
+}
+
 /// Of the techniques two look at an outline; the others say which.
 #[test]
 fn an_outline_is_refused_by_what_knows_rectangles_alone() {
