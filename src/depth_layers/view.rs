@@ -172,13 +172,15 @@ fn extents(
     (window.0[0] <= window.1[0]).then_some(window)
 }
 
-/// Widens a window by one texel on each side, and a window of no width to one that has some.
+/// Widens a window by one texel on each side, or by half of what it shows where a map has no three, and a window of
+/// no width to one that has some.
 fn pad(min: &mut [f64; 2], max: &mut [f64; 2], side: u32) {
+    let wider = if side > 2 { f64::from(side) / (f64::from(side) - 2.0) } else { 2.0 };
     for i in 0..2 {
         let middle = 0.5 * (min[i] + max[i]);
         let least = 1e-6 * (1.0 + middle.abs());
         let half = (0.5 * (max[i] - min[i])).max(least);
-        let half = half * f64::from(side) / (f64::from(side) - 2.0);
+        let half = half * wider;
         min[i] = middle - half;
         max[i] = middle + half;
     }
@@ -298,7 +300,8 @@ pub(crate) fn fit_receiver_boxes(
     for (i, half) in light.into_iter().enumerate() {
         min[i] = min[i].max(occluders.min[i] - half * spread);
         max[i] = max[i].min(occluders.max[i] + half * spread);
-        if min[i] >= max[i] {
+        // Equal are those of receivers whose plane holds the light's centre.
+        if min[i] > max[i] {
             return None;
         }
     }
@@ -336,6 +339,17 @@ mod tests {
     }
 
     #[test]
+    fn the_smallest_maps_hold_every_corner() {
+        let at = DMat4::from_translation(DVec3::new(0.3, 2.0, -0.1));
+        let wide = fit_occluders(&ceiling(), &[(UNIT, at)], None, 1 << 20).unwrap();
+        for side in 1..8 {
+            let view = fit_occluders(&ceiling(), &[(UNIT, at)], None, side).unwrap();
+            let holds = |i: usize| view.min[i] < wide.min[i] && view.max[i] > wide.max[i];
+            assert!(holds(0) && holds(1) && view.max[0].is_finite(), "{side}");
+        }
+    }
+
+    #[test]
     fn what_lies_behind_the_light_is_left_out() {
         let above = DMat4::from_translation(DVec3::new(0.0, 6.0, 0.0));
         assert_eq!(fit_occluders(&ceiling(), &[(UNIT, above)], None, 64), None);
@@ -370,6 +384,13 @@ mod tests {
         // The penumbra's outer edge: the light's far edge through the card's edge, at x = 1.5.
         let edge = view.max[0] * 62.0 / 64.0 * 4.0;
         assert!((edge - 1.5).abs() < 0.05, "{edge}");
+        // A light that stands on the ground, half of it beneath: its centre sees the ground edge-on.
+        let standing =
+            RectangleLight::new(DVec3::X * -3.0, DVec3::Z * 0.5, DVec3::Y * 0.5).unwrap();
+        let wall = DMat4::from_rotation_z(std::f64::consts::FRAC_PI_2);
+        let walled = fit_occluders(&standing, &[(card, wall)], None, 64).unwrap();
+        let seen = fit_receivers(&standing, &[(ground, DMat4::IDENTITY)], &walled, 64).unwrap();
+        assert!((0..2).all(|i| seen.min[i] < seen.max[i]));
         // A shelf above the card receives nothing.
         let shelf = DMat4::from_translation(DVec3::new(0.0, 3.0, 0.0));
         assert_eq!(fit_receivers(&light, &[(card, shelf)], &occluders, 64), None);
