@@ -63,7 +63,7 @@ impl Graph {
         self.add(Resource { name, shape, owner })
     }
 
-    /// Declares a transient array of images of one size; shaders see all of its layers, and barriers
+    /// Declares a transient array of images of one size, of at least one; shaders see all of its layers, and barriers
     /// are for all of them at once.
     pub fn image_array(
         &mut self,
@@ -72,13 +72,15 @@ impl Graph {
         [width, height]: [u32; 2],
         layers: u32,
     ) -> ResourceId {
-        let shape = Shape::Image { format, width, height, layers: Some(layers) };
+        let shape = Shape::Image { format, width, height, layers: Some(layers.max(1)) };
         self.add(Resource { name, shape, owner: Owner::Transient })
     }
 
-    /// Declares a transient buffer.
+    /// Declares a transient buffer, of at least a vector of four: what the smallest maps leave empty has to be bound
+    /// all the same.
     pub fn buffer(&mut self, name: &'static str, bytes: u64) -> ResourceId {
-        self.add(Resource { name, shape: Shape::Buffer { bytes }, owner: Owner::Transient })
+        let shape = Shape::Buffer { bytes: bytes.max(16) };
+        self.add(Resource { name, shape, owner: Owner::Transient })
     }
 
     /// Makes what one frame wrote into a transient stay for the next ones.

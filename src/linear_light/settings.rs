@@ -103,7 +103,7 @@ impl Settings {
         if fits(map) {
             return Ok(());
         }
-        let most = (16..map).rev().find(|&m| fits(m)).unwrap_or(16);
+        let most = (1..map).rev().find(|&m| fits(m)).unwrap_or(1);
         Err(Error::Setting {
             key: "map".into(),
             problem: format!(

@@ -147,7 +147,7 @@ impl Settings {
         if self.fits(map) {
             return Ok(());
         }
-        let most = (16..map).rev().find(|&m| self.fits(m)).unwrap_or(16);
+        let most = (1..map).rev().find(|&m| self.fits(m)).unwrap_or(1);
         Err(Error::Setting {
             key: "map".into(),
             problem: format!(

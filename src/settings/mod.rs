@@ -77,7 +77,7 @@ impl FromStr for Technique {
 pub struct Settings {
     /// How the visible fraction is computed.
     pub technique: Technique,
-    /// The side of the light-space maps, texels, 16 to 4096; 256 by default.
+    /// The side of the light-space maps, texels, 1 to 4096; 256 by default.
     pub map: u32,
     /// The other knobs of [`Technique::SoftShadowMap`].
     pub soft_shadow_map: SoftShadowMap,
@@ -242,7 +242,7 @@ impl Settings {
     /// Checks the knob with this key against its range.
     fn check_range(&self, key: &str) -> Result<(), Error> {
         let good = match key {
-            "map" => (16..=4096).contains(&self.map),
+            "map" => (1..=4096).contains(&self.map),
             _ => {
                 self.soft_shadow_map.in_range(key)
                     && self.baseline.in_range(key)
@@ -332,9 +332,9 @@ mod tests {
     fn wrong_values_are_refused_with_what_would_be_right() {
         let refuse =
             |key: &str, value: &str| Settings::default().set(key, value).unwrap_err().to_string();
-        assert!(refuse("map", "15").contains("16 to 4096"));
-        assert!(refuse("map", "4097").contains("16 to 4096"));
-        assert!(refuse("map", "-1").contains("16 to 4096"));
+        assert!(refuse("map", "0").contains("1 to 4096"));
+        assert!(refuse("map", "4097").contains("1 to 4096"));
+        assert!(refuse("map", "-1").contains("1 to 4096"));
         assert!(refuse("tolerance", "NaN").contains("0 to 0.1"));
         assert!(refuse("sides", "three").contains("one, bottom, two, mean"));
         assert!(refuse("rays", "4").contains("it has map"));
@@ -348,7 +348,7 @@ mod tests {
         assert!(refuse(Technique::ManyLights, "seed", "-1").contains("4294967295"));
         assert!(refuse(Technique::RayMarch, "rays", "0").contains("1 to 256"));
         assert!(refuse(Technique::RayMarch, "rays", "257").contains("1 to 256"));
-        assert!(refuse(Technique::RayMarch, "map", "0").contains("16 to 4096"));
+        assert!(refuse(Technique::RayMarch, "map", "0").contains("1 to 4096"));
         assert!(refuse(Technique::RayMarch, "layers", "1").contains("2, 3, 4"));
         let mut large = Settings { technique: Technique::RayMarch, ..Settings::default() };
         large.set("map", "2048").unwrap();

@@ -61,7 +61,7 @@ impl Accumulate {
 /// Every knob of soft shadow maps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// The soft shadow map's side, texels, 16 to 4096; 256 by default. Unused at the pixels.
+    /// The soft shadow map's side, texels, 1 to 4096; 256 by default. Unused at the pixels.
     pub receiver_map: u32,
     /// Where visibility is computed.
     pub receivers: Receivers,
@@ -93,7 +93,7 @@ impl Settings {
     /// Whether the knob with this key is within its range; keys of other techniques pass.
     pub(crate) fn in_range(&self, key: &str) -> bool {
         match key {
-            "receiver_map" => (16..=4096).contains(&self.receiver_map),
+            "receiver_map" => (1..=4096).contains(&self.receiver_map),
             "tolerance" => (0.0..=0.1).contains(&self.tolerance),
             _ => true,
         }
