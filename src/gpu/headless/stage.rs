@@ -34,6 +34,7 @@ pub struct Stage {
     node: Option<ShadowNode>,
     host: Host,
     gbuffer: GBuffer,
+    painter: GBufferPainter,
     view: View,
     instances: Vec<MeshInstance>,
     /// The buffers that `instances` name.
@@ -59,7 +60,8 @@ impl Stage {
     ) -> Result<Self, Error> {
         let buffers = SceneBuffers::new(device, scene)?;
         let gbuffer = GBuffer::new(device, extent)?;
-        GBufferPainter::new(device)?.paint(&gbuffer, scene, &buffers, view, keep)?;
+        let painter = GBufferPainter::new(device)?;
+        painter.paint(&gbuffer, scene, &buffers, view, keep)?;
         // SAFETY: the handles come from one device, which the stage keeps; everything given to the
         // node is the stage's own, and each frame is waited for before the next.
         let mut host = unsafe {
@@ -81,12 +83,32 @@ impl Stage {
             node: None,
             host,
             gbuffer,
+            painter,
             view: *view,
             instances: buffers.instances(scene),
             buffers,
         };
         stage.configure(settings)?;
         Ok(stage)
+    }
+
+    /// Shows another scene, or the same from elsewhere, to the node as it is.
+    ///
+    /// # Errors
+    /// Whatever the device refuses; what was shown before then stays with the node, and the G-buffer may be
+    /// half painted.
+    pub fn show(
+        &mut self,
+        scene: &Scene,
+        view: &View,
+        keep: impl Fn(&Instance) -> bool,
+    ) -> Result<(), Error> {
+        let buffers = SceneBuffers::new(&self.device, scene)?;
+        self.painter.paint(&self.gbuffer, scene, &buffers, view, keep)?;
+        self.view = *view;
+        self.instances = buffers.instances(scene);
+        self.buffers = buffers;
+        Ok(())
     }
 
     /// Makes the node anew with other settings.
