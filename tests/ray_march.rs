@@ -67,6 +67,25 @@ fn classification_changes_nothing() {
     }
 }
 
+/// Open pixels are more than one row of workgroups is for: those of the second row are worked at too.
+#[test]
+fn a_list_of_two_rows_of_workgroups_is_worked_at_whole() {
+    let device = device();
+    let tall_box = generate::tall_box(light(1.0));
+    let setup = Setup::ground(&tall_box, 3.5, 1040);
+    let words = "technique=ray-march map=32 rays=1 filter=off";
+    let mut stage = setup.stage(&device, &format!("{words} classify=off"));
+    let plan = stage.plan(&setup.light(), None).unwrap();
+    stage.run(&plan).unwrap();
+    let groups: Vec<u32> = stage.inspect_buffer(&plan, "ray_march.arguments").unwrap();
+    assert_eq!(groups[..3], [16384, 2, 1], "64 pixels each, 16384 a row");
+    let without = stage.visibility().unwrap();
+    let with = image(&device, &setup, words);
+    let differ = with.iter().zip(&without).filter(|(a, b)| a.to_bits() != b.to_bits()).count();
+    assert_eq!(differ, 0, "of {} pixels", with.len());
+    assert!(with.contains(&0.0) && with.contains(&1.0));
+}
+
 /// Whatever the windows, the same rays meet the same columns; a linear search halves to an eighth of a texel,
 /// and some rays that pass as near to a column's rim are otherwise.
 #[test]

@@ -3,6 +3,7 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used)]
 
+use antumbra::graph::STORAGE_BYTES;
 use antumbra::ray_march::twin::{
     beveled, bounds_of, cell_of, filter_weight, filter_width, md5, one_interval, pcg, sobol,
     step_down, two_intervals,
@@ -196,3 +197,29 @@ fn hashes_of_neighbours_have_nothing_in_common() {
         println!("{name}: chi squared {chi:.0} of 255, largest correlation {most:.4}");
     }
 }
+
+/// As many workgroups as are dispatched reach every place in the list of the largest image, in rows that every
+/// device takes.
+#[test]
+fn the_list_reaches_every_pixel_of_the_largest_image() {
+    let glue = "uvec3 reached(uint at) { uvec2 n = groups_up_to(at); uint group = at / PIXELS_A_GROUP; \
+                uvec2 id = uvec2(group % GROUPS_A_ROW, group / GROUPS_A_ROW); \
+                return uvec3(place_in_list(id, at % PIXELS_A_GROUP), n); }";
+    // The list's words behind its head, three a pixel, in the largest buffer.
+    let most = ((STORAGE_BYTES - 80) / 12) as u32;
+    assert!(most > 3840 * 2160);
+    Function::new("ray_march/list.glsl", "uvec3 reached(uint at)")
+        .glue(glue)
+        .case(0_u32)
+        .case(most - 1)
+        .random(2_000, (0..most).prop_map(|at| at))
+        .bits(|x| {
+            let group = x[0] / 64;
+            vec![x[0], (group + 1).min(16384), group / 16384 + 1]
+        })
+        .check(&device());
+    assert!(most / 64 > GROUPS && most / 64 / 16384 < GROUPS, "a row alone would not do");
+}
+
+/// Workgroups that every device takes in a direction (maxComputeWorkGroupCount).
+const GROUPS: u32 = 65_535;

@@ -4,6 +4,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 #include "ray_march/pixel.glsl"
 #include "ray_march/open.glsl"
+#include "ray_march/list.glsl"
 
 layout(set = 0, binding = 4, std430) buffer Arguments { uint groups[4]; };
 layout(set = 0, binding = 5, std430) buffer Pixels { uint count; uint none[3]; mat4 ndc_from_light; uint pixels[]; };
@@ -12,9 +13,6 @@ layout(set = 0, binding = 6, FRACTION_FORMAT) writeonly uniform image2D halfway;
 #define NOISY_BINDING 7
 #define SURFACE_BINDING 8
 #include "ray_march/noisy.glsl"
-
-// Pixels a group of the passes over the list.
-const uint GROUP = 64u;
 
 void main()
 {
@@ -28,8 +26,10 @@ void main()
     bool open = is_open(p, r, v, reach);
     if (open) {
         uint at = atomicAdd(count, 1u);
-        if (at % GROUP == 0u) {
-            atomicAdd(groups[0], 1u);
+        if (at % PIXELS_A_GROUP == 0u) {
+            uvec2 reach = groups_up_to(at);
+            atomicMax(groups[0], reach.x);
+            atomicMax(groups[1], reach.y);
         }
         pixels[3u * at] = uint(p.x) | uint(p.y) << 16u;
         pixels[3u * at + 1u] = floatBitsToUint(reach.start);

@@ -25,6 +25,7 @@ layout(set = 0, binding = 5) uniform texture2D surfaces;
 #include "common/receiver.glsl"
 #include "ray_march/filter.glsl"
 #include "ray_march/normal.glsl"
+#include "ray_march/list.glsl"
 
 layout(push_constant) uniform Push {
     mat4 light_from_ndc;
@@ -64,7 +65,7 @@ vec4 surface_at(ivec2 p)
 
 void main()
 {
-    uint nth = gl_GlobalInvocationID.x;
+    uint nth = place_in_list(gl_WorkGroupID.xy, gl_LocalInvocationIndex);
     if (nth >= count) {
         return;
     }

@@ -14,7 +14,7 @@ layout(push_constant) uniform Push {
 void main()
 {
     groups[0] = 0u;
-    groups[1] = 1u;
+    groups[1] = 0u;
     groups[2] = 1u;
     count = 0u;
     ndc_from_light = push.ndc_from_light;

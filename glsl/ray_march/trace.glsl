@@ -15,6 +15,7 @@ bool seen(vec2 t, float w);
 #include "ray_march/pixel.glsl"
 #include "ray_march/rays.glsl"
 #include "ray_march/filter.glsl"
+#include "ray_march/list.glsl"
 
 #define NOISY_BINDING 5
 #define SURFACE_BINDING 6
@@ -40,7 +41,7 @@ bool seen(vec2 t, float w)
 
 void main()
 {
-    uint at = gl_GlobalInvocationID.x;
+    uint at = place_in_list(gl_WorkGroupID.xy, gl_LocalInvocationIndex);
     if (at >= count) {
         return;
     }

@@ -3,14 +3,14 @@
 #ifndef VISIBILITY_TILE_LIST_GLSL
 #define VISIBILITY_TILE_LIST_GLSL
 
+#include "common/groups.glsl"
+
 // Pixels a side.
 const int TILE = 8;
 // Listed tiles a workgroup of 64 invocations: of four pixels each, unless the including shader says one.
 #ifndef TILES_A_GROUP
 #define TILES_A_GROUP uint(256 / (TILE * TILE))
 #endif
-// Workgroups a row of an indirect dispatch: less than what every device takes (65,535).
-const uint GROUPS_A_ROW = 16384u;
 
 // A listed tile is one word: x, y, and whether any occluder may be felt there. Where none is, what its pixels'
 // own surfaces hide is all there is to tell.
@@ -45,14 +45,13 @@ int nth_tile(uint word, ivec2 extent)
 // The place in the list of the tiles that a workgroup works at.
 uint tile_in_list(uvec2 group, uint nth)
 {
-    return (group.y * GROUPS_A_ROW + group.x) * TILES_A_GROUP + nth;
+    return nth_group(group) * TILES_A_GROUP + nth;
 }
 
 // Workgroups in x and y that reach as far as the tile at a place in the list.
 uvec2 groups_with(uint at)
 {
-    uint group = at / TILES_A_GROUP;
-    return uvec2(min(group + 1u, GROUPS_A_ROW), group / GROUPS_A_ROW + 1u);
+    return groups_as_far_as(at / TILES_A_GROUP);
 }
 
 #endif
