@@ -10,8 +10,6 @@ use crate::frame::{
 use crate::gpu::{Allocator, Host, HostDraw, NodeObjects, Requirements, Retired};
 use crate::graph::{Draw, Graph, Layer, Owner, Pass, Shape, Target, Work};
 use crate::planner::{self, Auto, Choice};
-use crate::settings::Technique;
-use crate::soft_shadow_map::Accumulate;
 use crate::{Error, depth_layers};
 use ash::vk;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -50,8 +48,9 @@ impl ShadowNode {
     ///
     /// # Errors
     /// [`Error::Device`] with every gap of the device; [`Error::Setting`] or [`Error::Frame`] for a
-    /// description that cannot work; [`Error::DeviceLost`], [`Error::Vulkan`] or [`Error::Memory`]
-    /// where the driver or the allocator refuses. Nothing is left behind.
+    /// description that cannot work, or not on this device; [`Error::DeviceLost`], [`Error::Vulkan`] or
+    /// [`Error::Memory`] where the driver or the allocator refuses. Nothing is left behind: every object is
+    /// destroyed and every piece of memory given back.
     pub fn new(
         host: Host,
         allocator: &mut dyn Allocator,
@@ -60,19 +59,7 @@ impl ShadowNode {
         let requirements = Requirements::of(&host);
         requirements.met()?;
         description.check()?;
-        let blends = description.all_settings().any(|settings| {
-            settings.technique == Technique::SoftShadowMap
-                && settings.soft_shadow_map.accumulate == Accumulate::Blend
-        });
-        if blends && !requirements.blends_f32 {
-            return Err(Error::Setting {
-                key: "accumulate".into(),
-                problem: format!(
-                    "{} cannot blend R32_SFLOAT; set accumulate=gather",
-                    requirements.device
-                ),
-            });
-        }
+        requirements.allow(&description)?;
         let limits = Limits { snap: 0.5f32.powi(requirements.sub_pixel_bits.min(16) as i32) };
         let graphs = graphs(&description, limits)?;
         let objects = NodeObjects::new(&host, allocator, &graphs, &description)?;
@@ -145,7 +132,7 @@ impl ShadowNode {
     ///
     /// # Errors
     /// [`Error::Frame`] where the plan was made by another node, or before a resize, or has meshes
-    /// that the host draws; nothing is recorded then.
+    /// that the host draws, or where there is no command buffer; nothing is recorded then.
     pub fn record(&self, cmd: vk::CommandBuffer, plan: &FramePlan) -> Result<(), Error> {
         if plan.has_host_draws() {
             return Err(Error::Frame(
@@ -172,6 +159,9 @@ impl ShadowNode {
                 "this plan was made by another node, or before a resize; plan the frame again"
                     .into(),
             ));
+        }
+        if cmd == vk::CommandBuffer::null() {
+            return Err(Error::Frame("the command buffer to record into is a null handle".into()));
         }
         let mut left = self.left();
         if !left.agrees(plan.whose(), &plan.keeping) {
@@ -226,7 +216,7 @@ impl ShadowNode {
     /// and so do the timings of frames in flight.
     ///
     /// # Errors
-    /// As [`Self::new`]; the node then goes on at its old size.
+    /// As [`Self::new`]; the node then goes on at its old size, and plans made before still fit it.
     pub fn resize(
         &mut self,
         allocator: &mut dyn Allocator,
@@ -234,6 +224,7 @@ impl ShadowNode {
     ) -> Result<Retired, Error> {
         let description = Description { extent, ..self.description.clone() };
         description.check()?;
+        Requirements::of(&self.host).allow(&description)?;
         let graphs = graphs(&description, self.limits)?;
         if !self.objects.keeps_pipelines(&graphs) {
             return self.reconfigure(allocator, description);
@@ -249,7 +240,7 @@ impl ShadowNode {
     /// Makes everything anew for another description and gives back what to retire.
     ///
     /// # Errors
-    /// As [`Self::new`]; the node then goes on as it was.
+    /// As [`Self::new`]; the node then goes on as it was, and plans made before still fit it.
     pub fn reconfigure(
         &mut self,
         allocator: &mut dyn Allocator,

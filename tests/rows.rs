@@ -4,7 +4,7 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
 use antumbra::depth_layers::DepthPush;
-use antumbra::graph::{Draw, Graph, PUSH_BYTES, Pass, Work};
+use antumbra::graph::{Draw, Graph, INVOCATIONS, PUSH_BYTES, Pass, Work};
 use antumbra::shaders::Module;
 use antumbra::{Description, LightTexture, frame};
 use antumbra_tests::measure::settings;
@@ -149,7 +149,7 @@ fn disagreements(graph: &Graph, pass: &Pass) -> Vec<String> {
         }
         if pass.work.compute_shader().is_some() {
             let invocations: u32 = shader.workgroup.iter().product();
-            if !(1..=256).contains(&invocations) {
+            if !(1..=INVOCATIONS).contains(&invocations) {
                 found.push(format!("{}: workgroup {:?}", module.path, shader.workgroup));
             }
         }

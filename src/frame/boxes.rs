@@ -2,7 +2,8 @@
 
 use super::{Geometry, MeshInstance};
 use crate::RectangleLight;
-use glam::DVec3;
+use ash::vk;
+use glam::{DVec3, DVec4};
 
 /// Spheres tested at once.
 const BATCH: usize = 64;
@@ -24,6 +25,8 @@ pub(crate) struct Boxes {
     pub blockers: usize,
     /// The first mesh whose transform or bounds are no finite numbers.
     pub not_finite: Option<usize>,
+    /// The first one that cannot be drawn as it is said to be, and why.
+    pub unsound: Option<(usize, &'static str)>,
     /// The first one that the host draws.
     pub host_drawn: Option<usize>,
     /// The first one that the host draws and that blocks.
@@ -39,7 +42,7 @@ impl Boxes {
             of.reserve(meshes.len());
         }
         (self.not_finite, self.host_drawn, self.host_drawn_blocker) = (None, None, None);
-        self.blockers = 0;
+        (self.blockers, self.unsound) = (0, None);
         for (index, mesh) in meshes.iter().enumerate() {
             let blocks = mesh.role.blocks();
             if let Geometry::HostDrawn(_) = mesh.geometry {
@@ -47,6 +50,9 @@ impl Boxes {
                 if blocks {
                     self.host_drawn_blocker.get_or_insert(index);
                 }
+            }
+            if self.unsound.is_none() {
+                self.unsound = problem(mesh).map(|problem| (index, problem));
             }
             let there = has_triangles(mesh);
             self.blockers += usize::from(there && blocks);
@@ -126,6 +132,44 @@ impl Surroundings {
 fn is_finite(mesh: &MeshInstance) -> bool {
     let bounds = mesh.bounds.as_flattened();
     mesh.world_from_mesh.is_finite() && bounds.iter().all(|x| x.is_finite())
+}
+
+/// How far the last row of a transform may be from 0, 0, 0, 1: what hosts round.
+const PROJECTIVE: f64 = 1e-6;
+
+/// What of a mesh cannot be: its transform or its buffers.
+fn problem(mesh: &MeshInstance) -> Option<&'static str> {
+    let last = mesh.world_from_mesh.row(3) - DVec4::W;
+    // What is not finite is told elsewhere.
+    if last.abs().max_element() > PROJECTIVE {
+        return Some("its transform must end in the row 0, 0, 0, 1; is it transposed?");
+    }
+    let Geometry::Buffers(buffers) = &mesh.geometry else { return None };
+    if buffers.count == 0 {
+        return None;
+    }
+    let no_buffer = |buffer: vk::Buffer| buffer == vk::Buffer::null();
+    if no_buffer(buffers.positions) || buffers.indices.is_some_and(|(buffer, ..)| no_buffer(buffer))
+    {
+        return Some("its buffer of positions or of indices is a null handle");
+    }
+    if !buffers.count.is_multiple_of(3) {
+        return Some(
+            "its count of indices or vertices must be a multiple of 3: it is a list of triangles",
+        );
+    }
+    if !buffers.positions_offset.is_multiple_of(4) {
+        return Some("its positions must begin at a multiple of 4 bytes, as floats do");
+    }
+    let (_, offset, kind) = buffers.indices?;
+    let bytes = match kind {
+        vk::IndexType::UINT16 => 2,
+        vk::IndexType::UINT32 => 4,
+        // An extension's, which its device has or has not.
+        vk::IndexType::UINT8_KHR => 1,
+        _ => return Some("its indices must be of 16 or 32 bits"),
+    };
+    (!offset.is_multiple_of(bytes)).then_some("its indices must begin at a multiple of their size")
 }
 
 /// The middle of a mesh's box in the world, and half its extents along the world's axes.

@@ -1,30 +1,17 @@
-//! What a frame's numbers and images must be, each refusal a sentence in the host's words.
+//! What a frame's numbers and meshes must be, each refusal a sentence in the host's words.
 
 use super::boxes::Boxes;
-use super::rows::wanted;
-use super::{Description, Frame, HostImage, Visibility};
+use super::{Description, Frame};
+use crate::Error;
 use crate::depth_layers::LightBox;
-use crate::graph::is_depth_format;
 use crate::light::outline;
 use crate::settings::{Settings, Technique};
-use crate::{Error, visibility};
-use ash::vk::{self, ImageLayout as Layout, ImageUsageFlags as Usage};
 
 /// Lengths in metres whose squares, and those over each other, single precision holds with room to spare.
 const LENGTHS: std::ops::RangeInclusive<f64> = 1e-15..=1e15;
 
-fn bad<T>(what: impl Into<String>) -> Result<T, Error> {
+pub(super) fn bad<T>(what: impl Into<String>) -> Result<T, Error> {
     Err(Error::Frame(what.into()))
-}
-
-/// What one of the host's images must be.
-struct Wanted {
-    name: &'static str,
-    format: vk::Format,
-    extent: [u32; 2],
-    usage: Usage,
-    /// Its content is read.
-    read: bool,
 }
 
 /// Whether a technique divides by the light's area or works in both of its half-extents, and so has no
@@ -89,12 +76,20 @@ impl Frame<'_> {
             ));
         }
         self.check_outline(technique)?;
-        if !self.world_from_ndc.is_finite() || self.world_from_ndc.determinant() == 0.0 {
+        // Of numbers so large or small that it is none, a determinant is not known either.
+        if !self.world_from_ndc.is_finite() || !self.world_from_ndc.determinant().is_normal() {
             return bad("world_from_ndc must be finite and invertible");
         }
+        if self.background != 0.0 && self.background != 1.0 {
+            return bad(format!(
+                "background is {}; a pixel that shows nothing has depth 0 where depth is reversed, else 1",
+                self.background
+            ));
+        }
         if let Some([min, max]) = self.window {
-            let good = (0..2).all(|i| min[i].is_finite() && max[i].is_finite() && min[i] < max[i]);
-            if !good {
+            // Which the shaders divide by, in 32 bits.
+            let is_width = |i: usize| ((max[i] - min[i]) as f32).is_normal() && min[i] < max[i];
+            if !(0..2).all(is_width) {
                 return bad("the occluder map's window must have finite tangents, least first");
             }
         }
@@ -111,6 +106,9 @@ impl Frame<'_> {
     pub(super) fn check_meshes(&self, boxes: &Boxes, settings: &Settings) -> Result<(), Error> {
         if let Some(index) = boxes.not_finite {
             return bad(format!("mesh {index}: its transform and bounds must be finite numbers"));
+        }
+        if let Some((index, problem)) = boxes.unsound {
+            return bad(format!("mesh {index}: {problem}"));
         }
         match settings.technique {
             // A sample's place on the line is known on the device alone.
@@ -157,132 +155,5 @@ impl Frame<'_> {
             Some(problem) => bad(format!("the light's outline: {problem}")),
             None => Ok(()),
         }
-    }
-
-    fn check_images(&self, description: &Description, settings: &Settings) -> Result<(), Error> {
-        let Description { extent, depth_format, mask_format, .. } = *description;
-        let read = |name, format, extent| Wanted {
-            name,
-            format,
-            extent,
-            usage: Usage::SAMPLED,
-            read: true,
-        };
-        check_image(&self.depth, &read("gbuffer.depth", depth_format, extent))?;
-        match (&self.mask, mask_format) {
-            (Some(mask), Some(format)) => check_image(mask, &read("gbuffer.mask", format, extent))?,
-            (None, None) => {}
-            _ => {
-                return bad(
-                    "a mask must be given each frame exactly where the description has one",
-                );
-            }
-        }
-        let written = Wanted {
-            name: "visibility",
-            format: visibility::format(description.has_color()),
-            extent,
-            usage: Usage::STORAGE,
-            read: false,
-        };
-        match (&self.visibility, description.lent_visibility) {
-            (Visibility::Lent(image), true) => check_image(image, &written)?,
-            (Visibility::Own { .. }, false) => {}
-            _ => {
-                return bad(
-                    "a visibility image must be lent each frame exactly where the description says \
-                     lent_visibility",
-                );
-            }
-        }
-        match (&self.light_texture, description.light_texture) {
-            (Some(image), Some(texture)) => {
-                check_image(image, &read("light.texture", texture.format, image.extent))?;
-            }
-            (None, None) => {}
-            _ => {
-                return bad(
-                    "a light texture must be lent each frame exactly where the description has one",
-                );
-            }
-        }
-        let (maps, format) = match (&self.occluder_maps, description.occluder_maps) {
-            (Some(maps), Some(format)) => (maps, format),
-            (None, None) => return Ok(()),
-            _ => {
-                return bad(
-                    "occluder maps must be lent each frame exactly where the description has a \
-                     format for them",
-                );
-            }
-        };
-        if self.window.is_some() {
-            return bad("the occluder maps have a window of their own; give no other");
-        }
-        let wanted = wanted(settings);
-        let sides = [wanted.map; 2];
-        check_image(&maps.front, &read("occluder_maps.front", format, sides))?;
-        match &maps.back {
-            Some(back) => check_image(back, &read("occluder_maps.back", format, sides)),
-            None if !wanted.back => Ok(()),
-            None => bad("occluder_maps.back is missing; lend it, or set sides=one"),
-        }
-    }
-}
-
-fn check_image(image: &HostImage, wanted: &Wanted) -> Result<(), Error> {
-    let Wanted { name, format, extent: [w, h], usage, read } = *wanted;
-    if image.image == vk::Image::null() || image.view == vk::ImageView::null() {
-        return bad(format!("{name}: its image or view is a null handle"));
-    }
-    if image.extent != [w, h] {
-        let [iw, ih] = image.extent;
-        return bad(format!(
-            "{name} is {iw}×{ih}, where this node is made for {w}×{h}; resize the node, or lend an \
-             image of its size"
-        ));
-    }
-    if image.format != format {
-        return bad(format!(
-            "{name} has the format {:?}, where {format:?} was described",
-            image.format
-        ));
-    }
-    if !image.usage.contains(usage) {
-        return bad(format!(
-            "{name} was created without {usage:?} usage ({:?}), which the node needs of it",
-            image.usage
-        ));
-    }
-    let before = image.before.layout;
-    if read && matches!(before, Layout::UNDEFINED | Layout::PREINITIALIZED) {
-        return bad(format!(
-            "{name}: nothing is in an image whose layout before the node is {before:?}; say which \
-             layout the host's last pass leaves it in"
-        ));
-    }
-    for layout in [before, image.after.layout] {
-        if let Some(other) = foreign(layout, is_depth_format(format)) {
-            return bad(format!("{name}: {layout:?} is a layout of {other}, which it is not"));
-        }
-    }
-    Ok(())
-}
-
-/// What kind of image a layout is for, where that is another than this one.
-fn foreign(layout: Layout, depth: bool) -> Option<&'static str> {
-    match layout {
-        Layout::COLOR_ATTACHMENT_OPTIMAL if depth => Some("color attachments"),
-        Layout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL
-        | Layout::DEPTH_STENCIL_READ_ONLY_OPTIMAL
-        | Layout::DEPTH_ATTACHMENT_OPTIMAL
-        | Layout::DEPTH_READ_ONLY_OPTIMAL
-        | Layout::DEPTH_READ_ONLY_STENCIL_ATTACHMENT_OPTIMAL
-        | Layout::DEPTH_ATTACHMENT_STENCIL_READ_ONLY_OPTIMAL
-            if !depth =>
-        {
-            Some("depth images")
-        }
-        _ => None,
     }
 }

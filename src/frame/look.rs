@@ -1,6 +1,7 @@
 //! What a frame's boxes and its camera tell: what of the technique is needed.
 
 use super::boxes::Surroundings;
+use super::check::bad;
 use super::fit::Fit;
 use super::rows::{Needs, PLACEHOLDER, Views};
 use super::{Description, Frame};
@@ -21,6 +22,14 @@ pub(super) fn look<'a>(
     let needs = Needs::of(description, fit.need, &verdicts);
     let is_soft = needs.technique.is_yes();
     let light_from_ndc = fit.light_from_world * frame.world_from_ndc;
+    let ndc_from_light = light_from_ndc.inverse();
+    let [from_ndc, from_light] = [light_from_ndc, ndc_from_light].map(|m| m.as_mat4());
+    if !(from_ndc.is_finite() && from_light.is_finite()) {
+        return bad(
+            "world_from_ndc brings pixels further from the light, or nearer to each other, than \
+             32-bit floats tell",
+        );
+    }
     let (behind, centre, host_maps) = (fit.behind, fit.centre, fit.host_maps);
     let receivers = Some(fit.shadowed.unwrap_or(PLACEHOLDER));
     let (points, lines) = match is_soft {
@@ -34,9 +43,9 @@ pub(super) fn look<'a>(
         host_maps,
         receivers,
         needs,
-        light_from_ndc: light_from_ndc.as_mat4().to_cols_array(),
+        light_from_ndc: from_ndc.to_cols_array(),
         noise: frame.noise,
-        ndc_from_light: light_from_ndc.inverse().as_mat4().to_cols_array(),
+        ndc_from_light: from_light.to_cols_array(),
         background: frame.background,
     };
     Ok((views, verdicts))

@@ -7,6 +7,7 @@ mod draws;
 mod fit;
 mod host;
 mod hull;
+mod images;
 mod keep;
 mod left;
 mod look;
@@ -169,7 +170,10 @@ impl Description {
             )));
         }
         if !(1..=8).contains(&self.frames_in_flight) {
-            return Err(Error::Frame("frames_in_flight must be 1 to 8".into()));
+            return Err(Error::Frame(format!(
+                "frames_in_flight is {}, and must be 1 to 8",
+                self.frames_in_flight
+            )));
         }
         let formats = [Some(self.depth_format), self.occluder_maps];
         for (format, whose) in
@@ -179,13 +183,13 @@ impl Description {
                 return Err(Error::Frame(format!("{whose} format {format:?} holds no depth")));
             }
         }
-        if let Some(texture) = &self.light_texture
-            && graph::is_depth_format(texture.format)
-        {
-            return Err(Error::Frame(format!(
-                "the light texture's format {:?} holds no color",
-                texture.format
-            )));
+        let color = [self.mask_format, self.light_texture.map(|t| t.format)];
+        for (format, whose) in color.into_iter().zip(["the mask's", "the light texture's"]) {
+            if let Some(format) = format.filter(|&f| !graph::is_color_format(f)) {
+                return Err(Error::Frame(format!(
+                    "{whose} format {format:?} holds no color that a shader reads as floats"
+                )));
+            }
         }
         match self.position_strides.iter().find(|&&s| s < 12 || s % 4 != 0 || s > 2048) {
             Some(s) => Err(Error::Frame(format!(

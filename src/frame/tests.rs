@@ -23,11 +23,14 @@ fn image(format: vk::Format, extent: [u32; 2], usage: vk::ImageUsageFlags) -> Ho
 }
 
 fn depth() -> HostImage {
-    image(vk::Format::D32_SFLOAT, [64, 48], vk::ImageUsageFlags::SAMPLED)
+    let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
+    image(vk::Format::D32_SFLOAT, [64, 48], usage)
 }
 
 fn target() -> HostImage {
-    image(vk::Format::R32_SFLOAT, [64, 48], vk::ImageUsageFlags::STORAGE)
+    let usage = vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::SAMPLED;
+    let image = image(vk::Format::R32_SFLOAT, [64, 48], usage);
+    HostImage { image: vk::Image::from_raw(5), ..image }
 }
 
 fn mesh(bounds: MeshBounds, at: DVec3, role: Role) -> MeshInstance {

@@ -1,7 +1,10 @@
 //! What the host lends, and whether it is enough.
 
 use super::layouts::SharedLayouts;
-use crate::graph::PUSH_BYTES;
+use crate::frame::Description;
+use crate::graph::{INVOCATIONS, PUSH_BYTES};
+use crate::settings::Technique;
+use crate::soft_shadow_map::Accumulate;
 use crate::{Error, depth_layers, visibility};
 use ash::{ext, vk};
 use std::ffi::CStr;
@@ -107,6 +110,8 @@ pub struct Requirements {
     pub gaps: Vec<String>,
     /// Whether R32_SFLOAT can be blended: `accumulate=blend` needs it.
     pub blends_f32: bool,
+    /// The most pixels that an image has along a side; every device has 4096 and so the largest maps.
+    pub image_side: u32,
     /// Sub-pixel bits of the rasters.
     pub sub_pixel_bits: u32,
     /// Whether passes can be timed on the queue family.
@@ -162,8 +167,8 @@ impl Requirements {
                 limits.max_push_constants_size
             ));
         }
-        if limits.max_compute_work_group_invocations < 64 {
-            gaps.push("compute workgroups of fewer than 64 invocations".into());
+        if limits.max_compute_work_group_invocations < INVOCATIONS {
+            gaps.push(format!("compute workgroups of fewer than {INVOCATIONS} invocations"));
         }
         let wanted = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;
         let serves = |f: &vk::QueueFamilyProperties| f.queue_flags.contains(wanted);
@@ -191,6 +196,7 @@ impl Requirements {
             device: name_of(properties),
             gaps,
             blends_f32: single.contains(F::COLOR_ATTACHMENT_BLEND),
+            image_side: limits.max_image_dimension2_d,
             sub_pixel_bits: limits.sub_pixel_precision_bits,
             timestamps: limits.timestamp_period > 0.0
                 && chosen.is_some_and(|f| f.timestamp_valid_bits > 0),
@@ -204,6 +210,31 @@ impl Requirements {
             return Ok(());
         }
         Err(Error::Device { device: self.device.clone(), gaps: self.gaps.clone() })
+    }
+
+    /// Whether the device has what a description asks for beyond what every node needs.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for settings that it cannot run; [`Error::Frame`] for a G-buffer larger than its images.
+    pub fn allow(&self, description: &Description) -> Result<(), Error> {
+        let blends = description.all_settings().any(|settings| {
+            settings.technique == Technique::SoftShadowMap
+                && settings.soft_shadow_map.accumulate == Accumulate::Blend
+        });
+        if blends && !self.blends_f32 {
+            return Err(Error::Setting {
+                key: "accumulate".into(),
+                problem: format!("{} cannot blend R32_SFLOAT; set accumulate=gather", self.device),
+            });
+        }
+        let [width, height] = description.extent;
+        if width.max(height) > self.image_side {
+            return Err(Error::Frame(format!(
+                "a G-buffer of {width}×{height} pixels is more than {} has; its images have up to {} a side",
+                self.device, self.image_side
+            )));
+        }
+        Ok(())
     }
 }
 
@@ -228,6 +259,7 @@ mod tests {
             vk::PhysicalDeviceProperties { api_version: vk::API_VERSION_1_1, ..Default::default() };
         properties.limits.max_push_constants_size = 128;
         properties.limits.max_compute_work_group_invocations = 128;
+        properties.limits.max_image_dimension2_d = 4096;
         properties.limits.sub_pixel_precision_bits = 4;
         properties.limits.timestamp_period = 1.0;
         properties
@@ -247,6 +279,21 @@ mod tests {
     }
 
     #[test]
+    fn what_it_has_not_is_refused_by_name() {
+        let both = family(QueueFlags::GRAPHICS | QueueFlags::COMPUTE);
+        let found = Requirements::judge(&modest(), &[both], Some(0), guaranteed);
+        let mut description = Description::new([4096, 4096]);
+        found.allow(&description).unwrap();
+        let refuse = |d: &Description| found.allow(d).unwrap_err().to_string();
+        description.extent = [1, 4097];
+        assert!(refuse(&description).contains("1×4097"), "{}", refuse(&description));
+        let mut blend = description.settings;
+        blend.soft_shadow_map.accumulate = Accumulate::Blend;
+        description.other_settings.push(blend);
+        assert!(refuse(&description).contains("set accumulate=gather"));
+    }
+
+    #[test]
     fn every_gap_is_listed_at_once() {
         let mut poor = modest();
         poor.api_version = vk::API_VERSION_1_0;
@@ -256,7 +303,7 @@ mod tests {
         let found = Requirements::judge(&poor, &[transfer], Some(0), |_| F::empty());
         let sentence = found.met().unwrap_err().to_string();
         for gap in
-            ["1.0", "64 bytes", "64 invocations", "queue family 0", "D32_SFLOAT", "R32_SFLOAT"]
+            ["1.0", "64 bytes", "128 invocations", "queue family 0", "D32_SFLOAT", "R32_SFLOAT"]
         {
             assert!(sentence.contains(gap), "{gap}: {sentence}");
         }

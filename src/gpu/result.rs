@@ -34,12 +34,8 @@ impl ResultImage {
             shape: Shape::Image { format, width, height, layers: several },
             owner: Owner::Exported,
         };
-        // What hosts do with it: sample it, or copy it out.
-        let usage = vk::ImageUsageFlags::STORAGE
-            | vk::ImageUsageFlags::SAMPLED
-            | vk::ImageUsageFlags::TRANSFER_SRC;
         let owned = Owned::new(resource.name, host, allocator, |owned, host, allocator| {
-            owned.image(host, allocator, &resource, usage)
+            owned.image(host, allocator, &resource, visibility::USAGE)
         })?;
         let mut made = Self { owned, views: Vec::new() };
         match (0..several.unwrap_or(0)).try_for_each(|layer| made.add_view(host, format, layer)) {

@@ -21,13 +21,13 @@ mod why;
 pub use access::{Access, Scope};
 pub use barrier::{Barrier, State};
 pub use pass::{
-    COLOR_ATTACHMENTS, Draw, Layer, MeshList, Need, PUSH_BYTES, Pass, Push, Reason, STORAGE_BYTES,
-    Target, Use, Uses, Work,
+    COLOR_ATTACHMENTS, Draw, INVOCATIONS, Layer, MeshList, Need, PUSH_BYTES, Pass, Push, Reason,
+    STORAGE_BYTES, Target, Use, Uses, Work,
 };
 pub(crate) use plan::Compiler;
 pub use plan::{Barriers, Border, BoundaryUse, Plan, ResourceBarrier, Skipped, Step, compile};
 pub(crate) use resource::aspects;
-pub use resource::{Owner, Resource, ResourceId, Shape, is_depth_format};
+pub use resource::{Owner, Resource, ResourceId, Shape, is_color_format, is_depth_format};
 pub use show::Run;
 pub use why::{Part, Why};
 

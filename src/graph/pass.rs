@@ -8,6 +8,9 @@ use smallvec::SmallVec;
 /// The most that Vulkan guarantees for push constants.
 pub const PUSH_BYTES: usize = 128;
 
+/// The most invocations that a workgroup has on every device (maxComputeWorkGroupInvocations).
+pub const INVOCATIONS: u32 = 128;
+
 /// The largest storage buffer that every device binds (maxStorageBufferRange), in bytes.
 pub const STORAGE_BYTES: u64 = 1 << 27;
 

@@ -87,6 +87,61 @@ pub fn is_depth_format(format: vk::Format) -> bool {
     )
 }
 
+/// Whether a format holds color that shaders read as floats: no whole numbers, no depth, no stencil.
+pub fn is_color_format(format: vk::Format) -> bool {
+    use vk::Format as F;
+    let whole = matches!(
+        format,
+        F::R8_UINT
+            | F::R8_SINT
+            | F::R8G8_UINT
+            | F::R8G8_SINT
+            | F::R8G8B8_UINT
+            | F::R8G8B8_SINT
+            | F::B8G8R8_UINT
+            | F::B8G8R8_SINT
+            | F::R8G8B8A8_UINT
+            | F::R8G8B8A8_SINT
+            | F::B8G8R8A8_UINT
+            | F::B8G8R8A8_SINT
+            | F::A8B8G8R8_UINT_PACK32
+            | F::A8B8G8R8_SINT_PACK32
+            | F::A2R10G10B10_UINT_PACK32
+            | F::A2R10G10B10_SINT_PACK32
+            | F::A2B10G10R10_UINT_PACK32
+            | F::A2B10G10R10_SINT_PACK32
+            | F::R16_UINT
+            | F::R16_SINT
+            | F::R16G16_UINT
+            | F::R16G16_SINT
+            | F::R16G16B16_UINT
+            | F::R16G16B16_SINT
+            | F::R16G16B16A16_UINT
+            | F::R16G16B16A16_SINT
+            | F::R32_UINT
+            | F::R32_SINT
+            | F::R32G32_UINT
+            | F::R32G32_SINT
+            | F::R32G32B32_UINT
+            | F::R32G32B32_SINT
+            | F::R32G32B32A32_UINT
+            | F::R32G32B32A32_SINT
+            | F::R64_UINT
+            | F::R64_SINT
+            | F::R64_SFLOAT
+            | F::R64G64_UINT
+            | F::R64G64_SINT
+            | F::R64G64_SFLOAT
+            | F::R64G64B64_UINT
+            | F::R64G64B64_SINT
+            | F::R64G64B64_SFLOAT
+            | F::R64G64B64A64_UINT
+            | F::R64G64B64A64_SINT
+            | F::R64G64B64A64_SFLOAT
+    );
+    !(whole || is_depth_format(format) || matches!(format, F::UNDEFINED | F::S8_UINT))
+}
+
 /// The aspects that a barrier on an image must name.
 pub(crate) fn aspects(shape: Shape) -> vk::ImageAspectFlags {
     match shape {

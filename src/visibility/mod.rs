@@ -20,6 +20,13 @@ pub const FORMAT: vk::Format = vk::Format::R32_SFLOAT;
 /// The same where the visible fraction is one of red, green and blue each; alpha is 1.
 pub const COLOR_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
+/// What hosts do with a node's own visibility image: sample it, or copy it out.
+pub(crate) const USAGE: vk::ImageUsageFlags = vk::ImageUsageFlags::from_raw(
+    vk::ImageUsageFlags::STORAGE.as_raw()
+        | vk::ImageUsageFlags::SAMPLED.as_raw()
+        | vk::ImageUsageFlags::TRANSFER_SRC.as_raw(),
+);
+
 /// The visibility image's format, with color or without.
 pub fn format(color: bool) -> vk::Format {
     if color { COLOR_FORMAT } else { FORMAT }

@@ -16,6 +16,10 @@ pub struct Interface {
     pub push: Vec<PushMember>,
     /// Invocations a workgroup in x, y, z; zeros for a vertex or fragment shader.
     pub workgroup: [u32; 3],
+    /// Bytes that a workgroup's invocations share.
+    pub shared_bytes: u32,
+    /// The SPIR-V capabilities that it declares, by number.
+    pub capabilities: Vec<u32>,
 }
 
 /// A resource that the module declares.
@@ -87,7 +91,27 @@ pub fn reflect(spirv: &[u8]) -> Result<Interface, String> {
         .flat_map(|block| &block.members)
         .map(|m| PushMember { name: m.name.clone(), offset: m.absolute_offset, size: m.size })
         .collect();
-    Ok(Interface { bindings, push, workgroup: entry.workgroup_size })
+    let shared = module.global_variables.iter().filter(|(_, v)| v.space == AddressSpace::WorkGroup);
+    let shared_bytes = shared.map(|(_, v)| module.types[v.ty].inner.size(module.to_ctx())).sum();
+    let (workgroup, capabilities) = (entry.workgroup_size, capabilities(spirv));
+    Ok(Interface { bindings, push, workgroup, shared_bytes, capabilities })
+}
+
+/// The operands of every OpCapability: an instruction's first word holds how many words it has, and which it is.
+fn capabilities(spirv: &[u8]) -> Vec<u32> {
+    const HEAD: usize = 5;
+    const OP_CAPABILITY: u32 = 17;
+    let words: Vec<u32> =
+        spirv.chunks_exact(4).map(|w| u32::from_le_bytes([w[0], w[1], w[2], w[3]])).collect();
+    let mut found = Vec::new();
+    let mut at = HEAD;
+    while let Some(first) = words.get(at) {
+        if first & 0xffff == OP_CAPABILITY {
+            found.push(words[at + 1]);
+        }
+        at += (first >> 16).max(1) as usize;
+    }
+    found
 }
 
 /// Whether the module may read and write a binding.
