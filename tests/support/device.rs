@@ -1,6 +1,6 @@
 //! The device of a test.
 
-use antumbra::gpu::headless::{HeadlessDevice, HeadlessOptions, MessageLog};
+use antumbra::gpu::headless::{HeadlessDevice, HeadlessOptions, MessageLog, Tables};
 use std::io::Write;
 use std::ops::Deref;
 use std::sync::{Arc, Mutex, PoisonError, Weak};
@@ -46,8 +46,20 @@ impl TestDevice {
     /// # Panics
     /// As [`device`].
     pub fn new(validation: bool) -> Self {
-        let device = HeadlessDevice::new(&HeadlessOptions { validation, ..Default::default() })
-            .unwrap_or_else(|error| panic!("{error}"));
+        Self::with(&HeadlessOptions { validation, ..Default::default() })
+    }
+
+    /// A test's own, under the validation layer, whose calls go through tables.
+    ///
+    /// # Panics
+    /// As [`device`].
+    pub fn through(tables: Tables) -> Self {
+        let tables = Some(tables);
+        Self::with(&HeadlessOptions { validation: true, tables, ..Default::default() })
+    }
+
+    fn with(options: &HeadlessOptions) -> Self {
+        let device = HeadlessDevice::new(options).unwrap_or_else(|error| panic!("{error}"));
         Self::of(Arc::new(device))
     }
 

@@ -4,6 +4,7 @@
 // A test says what went wrong by panicking.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+pub mod bench;
 pub mod compare;
 pub mod compile;
 pub mod device;
@@ -13,6 +14,7 @@ pub mod layer;
 pub mod measure;
 pub mod reflect;
 mod signature;
+pub mod tables;
 
 pub use device::{TestDevice, device};
 pub use function::{Case, Function};

@@ -3,8 +3,8 @@
 use super::choose::{Candidate, choose};
 use super::instance::Instance;
 use super::messages::MessageLog;
-use crate::Error;
 use crate::gpu::layouts::SharedLayouts;
+use crate::{Error, Host};
 use ash::{ext, vk};
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use std::fmt;
@@ -25,6 +25,20 @@ pub struct HeadlessOptions {
     pub driver: Option<String>,
     /// Turn on pipeline statistics where the device has them, for [`HeadlessDevice::count`]; off by default.
     pub statistics: bool,
+    /// Go through other tables of functions; none by default.
+    pub tables: Option<Tables>,
+}
+
+/// What stands between a program and its driver, for tests: a device on which calls fail, or that says it has less
+/// than it has.
+///
+/// Each takes what Vulkan loaded and gives what is called instead; objects are the same.
+#[derive(Clone, Copy, Debug)]
+pub struct Tables {
+    /// Of the instance, and so of what is asked of the physical device.
+    pub instance: fn(&ash::Instance) -> ash::Instance,
+    /// Of the device, its queue and its command buffers.
+    pub device: fn(&ash::Device) -> ash::Device,
 }
 
 /// A device of Vulkan 1.1 with one graphics and compute queue, no device extension and no optional feature
@@ -89,7 +103,10 @@ impl HeadlessDevice {
     /// device lacks Vulkan 1.1 or the queue; [`Error::Vulkan`] and [`Error::Memory`] if the driver
     /// refuses.
     pub fn new(options: &HeadlessOptions) -> Result<Self, Error> {
-        let instance = Instance::new(options.validation)?;
+        let mut instance = Instance::new(options.validation)?;
+        if let Some(tables) = options.tables {
+            instance.raw = (tables.instance)(&instance.raw);
+        }
         // SAFETY: the instance lives.
         let physical_devices = unsafe { instance.raw.enumerate_physical_devices() }
             .map_err(Error::vulkan("listing the devices"))?;
@@ -117,6 +134,7 @@ impl HeadlessDevice {
         // SAFETY: the family was reported by this device, and so was the one feature that `info` may name.
         let device = unsafe { instance.raw.create_device(physical_device, &info, None) }
             .map_err(Error::vulkan(format!("creating the device {name}")))?;
+        let device = options.tables.map_or(device.clone(), |tables| (tables.device)(&device));
         let mut device = Device(device, vk::PipelineCache::null(), Arc::default());
         let empty = vk::PipelineCacheCreateInfo::default();
         // SAFETY: the device was just made. `Device` destroys the cache, a null one too.
@@ -192,9 +210,22 @@ impl HeadlessDevice {
         self.0.device.1
     }
 
-    /// Layouts that nodes on this device share.
-    pub(super) fn layouts(&self) -> &Arc<SharedLayouts> {
-        &self.0.device.2
+    /// What the device lends a node: itself, its pipeline cache, layouts that its nodes share, and names and labels
+    /// where the instance has them.
+    ///
+    /// # Safety
+    /// As [`Host::borrow`]'s, whose first point holds while a handle to the device does.
+    pub unsafe fn host(&self) -> Host {
+        let Shared { instance, physical_device, device, queue_family, .. } = &*self.0;
+        // SAFETY: the handles belong together; the rest is the caller's promise.
+        let mut host = unsafe {
+            Host::borrow(instance.raw.clone(), *physical_device, device.0.clone(), *queue_family)
+        };
+        host = host.with_pipeline_cache(device.1).with_layouts(Arc::clone(&device.2));
+        match self.debug_utils() {
+            Some(debug_utils) => host.with_debug_utils(debug_utils.clone()),
+            None => host,
+        }
     }
 
     /// Names and labels, where the instance has `VK_EXT_debug_utils`.

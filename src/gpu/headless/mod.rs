@@ -27,7 +27,7 @@ mod view;
 pub use buffer::HostBuffer;
 pub use compute::{ComputeProgram, run_compute};
 pub use costs::{measure_costs, probe};
-pub use device::{HeadlessDevice, HeadlessOptions};
+pub use device::{HeadlessDevice, HeadlessOptions, Tables};
 pub use forward::Forward;
 pub use gbuffer::{GBuffer, GBufferPainter};
 pub use image::{ImageSource, OwnedImage, bytes_per_texel, read_image};

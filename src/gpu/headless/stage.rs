@@ -13,7 +13,7 @@ use crate::{
     Description, Error, Frame, FramePlan, FramePlans, Host, MeshInstance, RectangleLight, Settings,
     ShadowNode, Visibility, visibility,
 };
-use std::sync::{Arc, PoisonError};
+use std::sync::PoisonError;
 use std::time::{Duration, Instant};
 
 /// What one frame of the node took.
@@ -62,22 +62,9 @@ impl Stage {
         let gbuffer = GBuffer::new(device, extent)?;
         let painter = GBufferPainter::new(device)?;
         painter.paint(&gbuffer, scene, &buffers, view, keep)?;
-        // SAFETY: the handles come from one device, which the stage keeps; everything given to the
-        // node is the stage's own, and each frame is waited for before the next.
-        let mut host = unsafe {
-            Host::borrow(
-                device.instance().clone(),
-                device.physical_device(),
-                device.device().clone(),
-                device.queue_family(),
-            )
-        };
-        host = host
-            .with_pipeline_cache(device.pipeline_cache())
-            .with_layouts(Arc::clone(device.layouts()));
-        if let Some(debug_utils) = device.debug_utils() {
-            host = host.with_debug_utils(debug_utils.clone());
-        }
+        // SAFETY: the stage keeps the device; everything given to the node is the stage's own, and each
+        // frame is waited for before the next.
+        let host = unsafe { device.host() };
         let mut stage = Self {
             device: device.clone(),
             node: None,
