@@ -8,10 +8,11 @@ const int SUM = 1;
 const int MAXIMUM = 2;
 
 // What is hidden of the light behind one more slice, that hides `more` of it for itself: as if slices knew
-// nothing of each other (eq. 5), as if none were behind another, as if all were.
+// nothing of each other (eq. 5), as if none were behind another, as if all were. Written so that no rounding makes
+// it more than 1: from 0.5 on 1 - hidden is exact, and below it what is left of it rounds to 1 at most.
 float hidden_with(int combine, float hidden, float more)
 {
-    return combine == PRODUCT ? hidden + more - hidden * more
+    return combine == PRODUCT ? hidden + (1.0 - hidden) * more
            : combine == SUM   ? min(hidden + more, 1.0)
                               : max(hidden, more);
 }
