@@ -61,6 +61,7 @@ vec4 told_by(Line line, int nth, float at, vec3 position, vec3 normal, bool bloc
     }
     vec2 f = m.t - 0.5 - corner;
     vec4 sum = vec4(0.0);
+    bool clear = true;
     for (int row = 0; row < 2; ++row) {
         ivec2 texel = ivec2(corner) + ivec2(0, row);
         vec4 told = texelFetch(maps, ivec3(texel, line.row * push.most + nth), 0);
@@ -68,20 +69,27 @@ vec4 told_by(Line line, int nth, float at, vec3 position, vec3 normal, bool bloc
         vec2 at_centre = vec2(texel) + 0.5;
         bool hides = in_front_of_filter(m, at_centre, told.x);
         float part = hides ? 0.0 : weight * (1.0 - f.x);
-        sum += part * unpacked(told.y);
+        vec4 by = unpacked(told.y);
+        sum += part * by;
         sees += part;
+        clear = clear && !hides && by.z * by.w == 1.0;
         hides = in_front_of_filter(m, at_centre + vec2(1.0, 0.0), told.z);
         part = hides ? 0.0 : weight * f.x;
-        sum += part * unpacked(told.w);
+        by = unpacked(told.w);
+        sum += part * by;
         sees += part;
+        clear = clear && !hides && by.z * by.w == 1.0;
     }
-    return sum;
+    // Weights add up to 1 but for rounding, and where nothing hides a receiver it is lit to the last bit.
+    sees = clear ? 1.0 : sees;
+    return clear ? vec4(0.0, 0.0, 1.0, 1.0) : sum;
 }
 
 // The part of a line that a receiver sees.
 float part_of(Line line, int count, vec3 position, vec3 normal, bool blocks)
 {
     float sum = 0.0;
+    float least = 1.0;
     float before = 0.0;
     vec2 told = vec2(0.0);
     float saw = 0.0;
@@ -89,12 +97,15 @@ float part_of(Line line, int count, vec3 position, vec3 normal, bool blocks)
         float at = texelFetch(places, ivec2(SAMPLES_AT + nth, line.row), 0).x;
         float sees;
         vec4 by = told_by(line, nth, at, position, normal, blocks, sees);
-        sum += nth > 0 ? (at - before) * part_of_segment(told, by.xz, vec2(saw, sees)) : 0.0;
+        float part = nth > 0 ? part_of_segment(told, by.xz, vec2(saw, sees)) : 1.0;
+        sum += nth > 0 ? (at - before) * part : 0.0;
+        least = min(least, part);
         before = at;
         told = by.yw;
         saw = sees;
     }
-    return sum;
+    // Segments add up to the line but for rounding, as lines do to the light.
+    return least == 1.0 ? 1.0 : sum;
 }
 
 void main()
@@ -109,6 +120,7 @@ void main()
     // Behind the light's plane there is nothing to hide.
     if (r.receives && r.position.z > 0.0) {
         v = 0.0;
+        float least = 1.0;
         for (int row = 0; row < push.lines; ++row) {
             vec4 turn = texelFetch(places, ivec2(0, row), 0);
             vec4 of_line = texelFetch(places, ivec2(2, row), 0);
@@ -125,8 +137,9 @@ void main()
                 sum = min(sum, fraction_above(slope, dot(normal, position)));
             }
             v += of_line.w * sum;
+            least = min(least, sum);
         }
-        v = min(v, 1.0);
+        v = least == 1.0 ? 1.0 : min(v, 1.0);
     }
     imageStore(visibility, p, vec4(v));
 }
