@@ -76,10 +76,14 @@ impl Line {
     }
 }
 
+/// How much longer one side must be to be the longer one, as a share: more than rounding makes of equal ones, or the
+/// lines of a square would jump from one direction to the other as it turns.
+const LONGER: f64 = 1e-6;
+
 /// A light that is as long along x as its longer side: lines run along x.
 pub fn turned(light: &RectangleLight) -> RectangleLight {
     let [a, b] = light.half_extents();
-    if b > a { light.quarter_turned() } else { *light }
+    if b > a * (1.0 + LONGER) { light.quarter_turned() } else { *light }
 }
 
 /// What lines are fitted to.
