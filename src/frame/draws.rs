@@ -41,20 +41,25 @@ impl DrawList {
         self.clip_from_mesh.clear();
     }
 
-    /// The meshes as each of some views sees them.
+    /// The meshes as each of some views sees them, which are given as light space to clip space. Meshes come into light
+    /// space first: there a scene's distance from the world's origin is gone, before anything is rounded.
     pub fn fill<'a>(
         &mut self,
         description: &Description,
-        meshes: impl Iterator<Item = &'a MeshInstance> + Clone,
+        meshes: impl ExactSizeIterator<Item = &'a MeshInstance>,
+        light_from_world: &DMat4,
         views: &[DMat4],
     ) -> Result<(), Error> {
         self.clear();
-        for clip in views {
-            let matrix = |m: &MeshInstance| (*clip * m.world_from_mesh).as_mat4().to_cols_array();
-            self.clip_from_mesh.extend(meshes.clone().map(matrix));
-        }
-        for mesh in meshes {
+        let count = meshes.len();
+        self.clip_from_mesh.resize(views.len() * count, [0.0; 16]);
+        for (nth, mesh) in meshes.enumerate() {
             self.meshes.push(draw_of(description, mesh)?);
+            let light_from_mesh = *light_from_world * mesh.world_from_mesh;
+            for (view, clip) in views.iter().enumerate() {
+                let matrix = (*clip * light_from_mesh).as_mat4().to_cols_array();
+                self.clip_from_mesh[view * count + nth] = matrix;
+            }
         }
         Ok(())
     }

@@ -155,10 +155,8 @@ pub(crate) fn plan_into(
     plan.slot = frame.slot;
     (plan.light_index, plan.settings_index) = (frame.light_index, frame.settings_index);
 
-    let to_light = fit.light_from_world;
-    let occluder_clips: Clips = occluder_clips.iter().map(|clip| *clip * to_light).collect();
     let receiver_clips = match (wanted(settings).receiver_map, &receiver_view) {
-        (Some(_), Some(view)) => smallvec![view.clip_from_light() * to_light],
+        (Some(_), Some(view)) => smallvec![view.clip_from_light()],
         _ if settings.technique == Technique::LinearLight => occluder_clips.clone(),
         _ => SmallVec::new(),
     };
@@ -185,7 +183,7 @@ fn fill_draws(
         (MeshList::Receivers, receivers, &fit.receivers, receiver_clips),
     ] {
         match is_drawn(plan, list) {
-            true => draws.fill(description, placed.meshes(meshes), clips)?,
+            true => draws.fill(description, placed.meshes(meshes), &fit.light_from_world, clips)?,
             false => draws.clear(),
         }
     }
