@@ -1,4 +1,4 @@
-//! The device, its one queue, its allocator, and a submit that waits.
+//! The device, its one queue and its allocator.
 
 use super::choose::{Candidate, choose};
 use super::instance::Instance;
@@ -9,7 +9,6 @@ use ash::{ext, vk};
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
 
 /// The environment variable that picks a device by a part of its name.
 const DRIVER_VARIABLE: &str = "ANTUMBRA_DRIVER";
@@ -274,115 +273,18 @@ impl HeadlessDevice {
         self.0.instance.log.clone()
     }
 
-    /// Records a command buffer, submits it and waits until it is done. For set-up and read-back;
-    /// a frame loop wants command buffers of its own.
-    ///
-    /// All writes are visible to the host and to later submits afterwards.
-    ///
-    /// # Errors
-    /// What `record` returns, and then nothing is submitted; [`Error::Vulkan`] if the driver
-    /// refuses.
-    pub fn submit_and_wait<T>(
+    /// Submits command buffers, one thread at a time.
+    pub(super) fn submit_to_queue(
         &self,
-        record: impl FnOnce(vk::CommandBuffer) -> Result<T, Error>,
-    ) -> Result<T, Error> {
-        self.submit_timed(record).map(|(value, _)| value)
-    }
-
-    /// As [`Self::submit_and_wait`], with the time from the submit to the fence.
-    ///
-    /// # Errors
-    /// As [`Self::submit_and_wait`].
-    pub fn submit_timed<T>(
-        &self,
-        record: impl FnOnce(vk::CommandBuffer) -> Result<T, Error>,
-    ) -> Result<(T, Duration), Error> {
-        let device = self.device();
-        let objects = OneShot::new(device, self.0.queue_family)?;
-        let begin = vk::CommandBufferBeginInfo::default()
-            .flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
-        // SAFETY: the command buffer is new, and no other thread knows its pool.
-        unsafe { device.begin_command_buffer(objects.cmd, &begin) }
-            .map_err(Error::vulkan("beginning a command buffer"))?;
-        let value = record(objects.cmd)?;
-        let to_host = [vk::MemoryBarrier::default()
-            .src_access_mask(vk::AccessFlags::MEMORY_WRITE)
-            .dst_access_mask(vk::AccessFlags::HOST_READ | vk::AccessFlags::HOST_WRITE)];
-        // SAFETY: the command buffer is recording, outside a render pass.
-        unsafe {
-            device.cmd_pipeline_barrier(
-                objects.cmd,
-                vk::PipelineStageFlags::ALL_COMMANDS,
-                vk::PipelineStageFlags::HOST,
-                vk::DependencyFlags::empty(),
-                &to_host,
-                &[],
-                &[],
-            );
-        }
-        // SAFETY: recording was begun above.
-        unsafe { device.end_command_buffer(objects.cmd) }
-            .map_err(Error::vulkan("ending a command buffer"))?;
-
-        let started = Instant::now();
-        let cmds = [objects.cmd];
-        let submit = [vk::SubmitInfo::default().command_buffers(&cmds)];
-        {
-            let _held = self.0.queue_lock.lock().unwrap_or_else(PoisonError::into_inner);
-            // SAFETY: the lock keeps other threads off the queue; the fence is new.
-            unsafe { device.queue_submit(self.0.queue, &submit, objects.fence) }
-                .map_err(Error::vulkan("submitting a command buffer"))?;
-        }
-        // SAFETY: the fence was submitted above.
-        unsafe { device.wait_for_fences(&[objects.fence], true, u64::MAX) }
-            .map_err(Error::vulkan("waiting for a command buffer"))?;
-        Ok((value, started.elapsed()))
-    }
-}
-
-/// A command pool with one command buffer, and a fence.
-struct OneShot<'d> {
-    device: &'d ash::Device,
-    pool: vk::CommandPool,
-    cmd: vk::CommandBuffer,
-    fence: vk::Fence,
-}
-
-impl<'d> OneShot<'d> {
-    fn new(device: &'d ash::Device, queue_family: u32) -> Result<Self, Error> {
-        let mut new = Self {
-            device,
-            pool: vk::CommandPool::null(),
-            cmd: vk::CommandBuffer::null(),
-            fence: vk::Fence::null(),
-        };
-        let info = vk::CommandPoolCreateInfo::default()
-            .flags(vk::CommandPoolCreateFlags::TRANSIENT)
-            .queue_family_index(queue_family);
-        // SAFETY: the family is one that the device was created with.
-        new.pool = unsafe { device.create_command_pool(&info, None) }
-            .map_err(Error::vulkan("creating a command pool"))?;
-        let info = vk::CommandBufferAllocateInfo::default()
-            .command_pool(new.pool)
-            .level(vk::CommandBufferLevel::PRIMARY)
-            .command_buffer_count(1);
-        // SAFETY: the pool is new, and no other thread knows it.
-        let cmds = unsafe { device.allocate_command_buffers(&info) }
-            .map_err(Error::vulkan("allocating a command buffer"))?;
-        new.cmd = cmds[0];
-        // SAFETY: the device lives.
-        new.fence = unsafe { device.create_fence(&vk::FenceCreateInfo::default(), None) }
-            .map_err(Error::vulkan("creating a fence"))?;
-        Ok(new)
-    }
-}
-
-impl Drop for OneShot<'_> {
-    fn drop(&mut self) {
-        // SAFETY: not submitted, or waited for, or the device is lost; null handles are allowed.
-        unsafe { self.device.destroy_fence(self.fence, None) };
-        // SAFETY: as above; the pool frees its command buffer.
-        unsafe { self.device.destroy_command_pool(self.pool, None) };
+        cmds: &[vk::CommandBuffer],
+        fence: vk::Fence,
+    ) -> Result<(), Error> {
+        let submit = [vk::SubmitInfo::default().command_buffers(cmds)];
+        let _held = self.0.queue_lock.lock().unwrap_or_else(PoisonError::into_inner);
+        // SAFETY: the lock keeps other threads off the queue; command buffers and fence are the caller's, recorded
+        // and new.
+        unsafe { self.device().queue_submit(self.0.queue, &submit, fence) }
+            .map_err(Error::vulkan("submitting a command buffer"))
     }
 }
 

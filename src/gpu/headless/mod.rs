@@ -22,6 +22,7 @@ mod readback;
 mod scene;
 mod stage;
 mod statistics;
+mod submit;
 mod view;
 
 pub use buffer::HostBuffer;
@@ -36,4 +37,5 @@ pub use readback::{ReadbackScheme, ReadbackTimes};
 pub use scene::SceneBuffers;
 pub use stage::{FrameTimes, Stage};
 pub use statistics::Invocations;
+pub use submit::Submitted;
 pub use view::View;
