@@ -20,6 +20,9 @@ pub struct TestDevice {
 /// The device of the tests that run at the moment.
 static SHARED: Mutex<Weak<HeadlessDevice>> = Mutex::new(Weak::new());
 
+/// The same without the validation layer.
+static UNWATCHED: Mutex<Weak<HeadlessDevice>> = Mutex::new(Weak::new());
+
 /// The device that `ANTUMBRA_DRIVER` names, or the best there is; under the validation layer if
 /// `ANTUMBRA_VALIDATE` is 1.
 ///
@@ -29,11 +32,24 @@ static SHARED: Mutex<Weak<HeadlessDevice>> = Mutex::new(Weak::new());
 /// # Panics
 /// Without such a device, with what to install.
 pub fn device() -> TestDevice {
-    let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
+    let validation = std::env::var("ANTUMBRA_VALIDATE").is_ok_and(|value| value == "1");
+    shared(&SHARED, validation)
+}
+
+/// As [`device`], but never under the validation layer: for laws on thousands of images, which would take half as
+/// long again.
+///
+/// # Panics
+/// As [`device`].
+pub fn unwatched() -> TestDevice {
+    shared(&UNWATCHED, false)
+}
+
+fn shared(place: &Mutex<Weak<HeadlessDevice>>, validation: bool) -> TestDevice {
+    let mut shared = place.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(device) = shared.upgrade() {
         return TestDevice::of(device);
     }
-    let validation = std::env::var("ANTUMBRA_VALIDATE").is_ok_and(|value| value == "1");
     let new = TestDevice::new(validation);
     *shared = new.device.as_ref().map_or(Weak::new(), Arc::downgrade);
     new

@@ -12,7 +12,9 @@ pub mod example;
 pub mod function;
 pub mod layer;
 pub mod measure;
+pub mod random;
 pub mod reflect;
+pub mod rig;
 mod signature;
 pub mod tables;
 

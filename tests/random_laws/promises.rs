@@ -1,0 +1,171 @@
+//! What each technique promises of a law, and why.
+
+use antumbra::occlusion_textures::{Combine, Placement};
+use antumbra::soft_shadow_map::Accumulate;
+use antumbra::{Settings, Technique};
+
+/// What is continuous changes by less when its inputs are rounded otherwise. A position 5 m away is rounded to
+/// 2⁻²⁴ of that, and the closest occluders are seen ten times as large and more on the light: under 2⁻¹² of it.
+pub const SMOOTH: f64 = 1.0 / 4096.0;
+
+/// The same of slices that are put where faces are: these are counted in 960 bins of the distance, and where a face's
+/// rounding takes it to the next one, planes of slices move by a bin or two, and with them the rims of all kernels.
+pub const A_BIN: f64 = 1.0 / 128.0;
+
+/// How much is rounding; where a gather may be off by its tolerance, it may be so on either side, as other texels
+/// make a node.
+pub fn smooth(settings: &Settings) -> f64 {
+    let fitted = settings.occlusion_textures.placement == Placement::Fitted;
+    match settings.technique {
+        Technique::OcclusionTextures if fitted => A_BIN,
+        Technique::SoftShadowMap => SMOOTH + 2.0 * f64::from(settings.soft_shadow_map.tolerance),
+        _ => SMOOTH,
+    }
+}
+
+/// How many pixels of an image may change more than that. Rasters put vertices on a grid of 2⁻⁴ to 2⁻⁸ texels:
+/// what is rounded otherwise takes the next place on it once in some ten thousand times, and an edge then gains or
+/// loses a texel. One of something close to the light shadows as much as all the rest.
+pub const ONE_TEXEL: f64 = 0.5;
+
+/// And how many of all pixels of a law's images: that happens in fewer than one image in fifty.
+pub const FEW_TEXELS: f64 = 2e-3;
+
+/// The same under mirrors. A raster that moves vertices by up to 2⁻⁴ texels (four bits are what Vulkan asks for) need not
+/// move them the other way there: of the texels at an edge one in 16 is won or lost, and 4/24 of a map of 24² are at
+/// the edge of what fills it.
+pub const FEW_TEXELS_MIRRORED: f64 = 4.0 / 24.0 / 16.0;
+
+/// How an image of the same scene differs, turned, mirrored or seen with other random numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Likeness {
+    /// By rounding alone ([`SMOOTH`], [`ONE_TEXEL`]).
+    Rounding,
+    /// By the noise of so many samples, which is as often too much as too little.
+    Noise(u32),
+    /// By no more than this in the mean over pixels that are not lit.
+    Mean(f64),
+}
+
+/// A scene mirrored, or a light whose axes are told of otherwise.
+pub fn turned(settings: &Settings) -> Likeness {
+    match settings.technique {
+        Technique::Hard | Technique::OcclusionTextures => Likeness::Rounding,
+        Technique::SoftShadowMap
+            if settings.soft_shadow_map.accumulate != Accumulate::BlendFp16 =>
+        {
+            Likeness::Rounding
+        }
+        // Patches are added in another order: up to map² times half a step of 2⁻¹¹ off, an eighth of that here.
+        Technique::SoftShadowMap => Likeness::Mean(0.02),
+        // Samples are where others were: the disc's taps and the points have no symmetry.
+        Technique::Pcss => Likeness::Mean(0.1),
+        Technique::ManyLights => Likeness::Noise(settings.baseline.samples),
+        Technique::RayMarch => Likeness::Noise(settings.ray_march.rays),
+        // A texel is widened to its right and lower neighbours, which were its left and upper ones: an occluder's
+        // edge moves by part of a texel.
+        Technique::BackProjection => Likeness::Mean(0.03),
+        // Samples are put one after the other, the first of two as good ones first.
+        Technique::LinearLight => Likeness::Mean(0.03),
+    }
+}
+
+/// Whether another occluder may raise the visible fraction where the maps' texels stay as they are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Rise {
+    /// By no more than this: each texel, slice or point only gains what blocks, and what is made of them only falls by
+    /// that.
+    By(f64),
+    /// By the technique's model, which keeps a face or two of each texel: a new one takes the place of what was
+    /// there. A known fault.
+    Hides,
+}
+
+/// Another occluder anywhere.
+pub fn with_another(settings: &Settings) -> Rise {
+    let textures = &settings.occlusion_textures;
+    match settings.technique {
+        // Nearer surfaces hide what is behind them for one point of the light, and so they should.
+        Technique::Hard | Technique::ManyLights => Rise::By(SUMMED),
+        // Every face is counted, in slices that stay. What lies behind slices that hide all but 1/1024 is not asked
+        // for. Fitted ones move, and what slices have in common is a guess.
+        Technique::OcclusionTextures
+            if textures.placement == Placement::Uniform
+                && textures.combine != Combine::Correlated =>
+        {
+            Rise::By(1.0 / 1024.0 + SUMMED)
+        }
+        _ => Rise::Hides,
+    }
+}
+
+/// How much higher the visible fraction may be in the mean of all pixels with an occluder more.
+pub const HIDES: f64 = 0.01;
+
+/// How far the mean of a light's halves is from the whole light, as a mean over pixels that are not lit by all
+/// three. Halves are seen from elsewhere, so each of the three images is off by an error of its own on such scenes:
+/// maps of 16² to 33² texels, things that cross and touch, are open and lie one behind the other. Half as much again
+/// as was measured on either driver.
+pub fn halves(settings: &Settings) -> f64 {
+    match settings.technique {
+        // It sees the light's centre alone, and halves have others: a known fault, small where lights are.
+        Technique::Hard => 0.11,
+        Technique::Pcss => 0.14,
+        // Up to twelve points, and others for the halves: the noise of a dozen is 0.16.
+        Technique::ManyLights => 0.16,
+        // Nearest faces alone, of which each half sees others.
+        Technique::BackProjection | Technique::SoftShadowMap => 0.21,
+        Technique::RayMarch => 0.14,
+        Technique::OcclusionTextures => 0.15,
+        Technique::LinearLight => 0.08,
+    }
+}
+
+/// The share of pixels beyond a texel of a hard shadow's edges where a light of 0.1 mm differs from it.
+pub fn shrunk(settings: &Settings) -> f64 {
+    match settings.technique {
+        Technique::Hard => 0.0,
+        // Slices flatten what is in them: contacts are lost, and edges move by half a slice.
+        Technique::OcclusionTextures => 0.1,
+        _ => 0.05,
+    }
+}
+
+/// Sums of a few hundred numbers up to 1, of which each may round otherwise.
+pub const SUMMED: f64 = 1e-6;
+
+/// How far from a plane through the light's centre occluders are that are apart, as a tangent.
+pub const APART: f64 = 0.1;
+
+/// The most that an occluder which shares no texel with others may raise a pixel; none where neighbours, slices or
+/// samples depend on it all the same.
+pub fn with_another_elsewhere(settings: &Settings) -> Option<f64> {
+    if let Rise::By(bound) = with_another(settings) {
+        return Some(bound);
+    }
+    match settings.technique {
+        // Texels are added up. A node's closed form is off by the tolerance at most on either side.
+        Technique::SoftShadowMap => match settings.soft_shadow_map.accumulate {
+            Accumulate::Gather => Some(2.0 * f64::from(settings.soft_shadow_map.tolerance) + 1e-5),
+            // Of map² additions each rounds to 2⁻²⁴.
+            Accumulate::Blend => Some(1e-4),
+            Accumulate::BlendFp16 => None,
+        },
+        Technique::BackProjection => Some(1e-5),
+        // Each ray stays where it is. What a filter makes of them does not.
+        Technique::RayMarch if !settings.ray_march.filter => Some(SUMMED),
+        _ => None,
+    }
+}
+
+/// How much higher the visible fraction may be in the mean of all pixels with an occluder more that is elsewhere.
+pub const HIDES_ELSEWHERE: f64 = 5e-3;
+
+/// The mean |difference| of two estimates of so many samples: √2 times the standard deviation of a share of N, which
+/// is ½/√N at most, times √(2/π).
+pub fn noise(samples: u32) -> f64 {
+    0.57 / f64::from(samples).sqrt()
+}
+
+/// How much brighter the halves may be than the whole, as a mean over pixels that are not lit by all three.
+pub const BRIGHTER: f64 = 0.1;
