@@ -236,7 +236,7 @@ impl<'d> Engine<'d> {
         if lamp.line {
             let takes =
                 |w: &&str| ["hard", "many-lights", "linear-light"].iter().any(|t| w.contains(t));
-            match words.iter().position(|w| takes(w)) {
+            match words.iter().position(takes) {
                 Some(place) => chosen = place,
                 // An area instead.
                 None => {
