@@ -39,7 +39,7 @@ const SIZES: &[[u32; 2]] = &[[16, 16], [24, 8], [9, 31], [1, 1], [32, 32]];
 /// So many frames share a scene, a size, and a node.
 const SCENE: u64 = 7;
 const SIZE: u64 = 23;
-const NODE: u64 = 400;
+const NODE: u64 = 200;
 
 /// How often an image is read, and held between 0 and 1.
 const READ: u64 = 5;
@@ -151,8 +151,8 @@ impl<'d> Engine<'d> {
     pub fn frame(&mut self) {
         self.frames += 1;
         if self.frames.is_multiple_of(NODE) {
-            let node = self.random.below(NODES.len());
-            self.set_node(node);
+            // In turn, so that a driver has seen all of them before the second lap ends.
+            self.set_node((self.frames / NODE) as usize % NODES.len());
         }
         if self.frames.is_multiple_of(SIZE) {
             let size = SIZES[self.random.below(SIZES.len())];
