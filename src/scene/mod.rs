@@ -221,9 +221,10 @@ impl Bounds {
 }
 
 impl Scene {
-    /// How many triangles all instances draw together.
+    /// How many triangles all instances draw together; `usize::MAX` where that cannot be said.
     pub fn triangles(&self) -> usize {
-        self.instances.iter().map(|i| self.meshes[i.mesh].indices.len() / 3).sum()
+        let of_each = self.instances.iter().map(|i| self.meshes[i.mesh].indices.len() / 3);
+        of_each.fold(0, usize::saturating_add)
     }
 
     /// Every vertex of the instances that `keep` accepts, in world space.

@@ -6,7 +6,7 @@ use super::json::{self, Root, at};
 
 /// The most elements of an accessor that has no bytes of its own and is zero wherever its sparse
 /// part says nothing: nothing else bounds the count.
-const MAX_ZEROS: u64 = 1 << 20;
+const MAX_ZEROS: u64 = 1 << 16;
 
 const U8: u32 = 5121;
 const U16: u32 = 5123;
@@ -201,7 +201,11 @@ fn overlay<'a>(
     let (bytes, _) = buffers.view(sparse.values.buffer_view, owner)?;
     let values = Elements::new(bytes, None, size, sparse.values.byte_offset, sparse.count, owner)?;
     let overlay = Overlay { indices, values, count: sparse.count as usize };
-    // The search for an element relies on their order.
+    // The search for an element relies on their order. That is the accessor's, and looked at once: many
+    // primitives may share it.
+    if sparse.in_order.get() {
+        return Ok(overlay);
+    }
     let mut past = None;
     for i in 0..overlay.count {
         let index = indices.get(i);
@@ -213,6 +217,7 @@ fn overlay<'a>(
         }
         past = index;
     }
+    sparse.in_order.set(true);
     Ok(overlay)
 }
 

@@ -6,12 +6,15 @@ use base64::Engine as _;
 use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use percent_encoding::percent_decode_str;
-use std::cell::{Cell, OnceCell};
+use std::borrow::Cow;
+use std::cell::{Cell, OnceCell, RefCell};
+use std::collections::BTreeMap;
 use std::io::Read as _;
 use std::path::{Component, Path, PathBuf};
+use std::rc::Rc;
 
-/// The most that all buffers of a scene may hold together, so that a small file which names a large
-/// one many times cannot fill the memory.
+/// The most that the files which hold a scene's buffers may hold together, so that a small file which
+/// names large ones cannot fill the memory.
 const MAX_BYTES: u64 = 4 << 30;
 
 /// Padded or not: exporters differ.
@@ -74,14 +77,25 @@ pub(super) struct Buffers<'a> {
     /// The .glb's binary chunk.
     chunk: Option<&'a [u8]>,
     folder: &'a Path,
-    read: Vec<OnceCell<Vec<u8>>>,
+    read: Vec<OnceCell<Rc<Vec<u8>>>>,
+    /// By where they really are: a file is read once, however many buffers name it, and in whatever way.
+    files: RefCell<BTreeMap<PathBuf, Rc<Vec<u8>>>>,
+    /// How much `files` hold together.
     total: Cell<u64>,
+    /// The scene's own file, data URIs and all.
+    own: usize,
 }
 
 impl<'a> Buffers<'a> {
-    pub fn new(root: &'a Root, chunk: Option<&'a [u8]>, folder: &'a Path) -> Self {
+    /// The buffers of a file of `own` bytes.
+    pub fn new(root: &'a Root, own: usize, chunk: Option<&'a [u8]>, folder: &'a Path) -> Self {
         let read = root.buffers.iter().map(|_| OnceCell::new()).collect();
-        Self { root, chunk, folder, read, total: Cell::new(0) }
+        Self { root, chunk, folder, read, files: RefCell::default(), total: Cell::new(0), own }
+    }
+
+    /// How many bytes were had so far: the file's own and those of files beside it.
+    pub fn held(&self) -> u64 {
+        (self.own as u64).saturating_add(self.total.get())
     }
 
     /// The bytes of `bufferViews[index]`, and its stride; `owner` is who asks, for the sentence.
@@ -111,19 +125,14 @@ impl<'a> Buffers<'a> {
         let buffer = at(&self.root.buffers, index, "buffers", || format!("bufferViews[{view}]"))?;
         let cell = at(&self.read, index, "buffers", || format!("bufferViews[{view}]"))?;
         let bytes = match (&buffer.uri, cell.get()) {
-            (_, Some(bytes)) => bytes,
+            (_, Some(bytes)) => bytes.as_slice(),
             (Some(uri), None) => {
-                let total = self.total.get().saturating_add(buffer.byte_length);
-                if total > MAX_BYTES {
-                    return Err(format!(
-                        "its buffers hold more than {} GiB together",
-                        MAX_BYTES >> 30
-                    ));
-                }
-                self.total.set(total);
-                let bytes = read(uri, buffer.byte_length, self.folder)
-                    .map_err(|problem| format!("buffers[{index}]: {problem}"))?;
-                cell.get_or_init(|| bytes)
+                let bytes = match uri.strip_prefix("data:") {
+                    Some(data) => decode(data).map(Rc::new),
+                    None => self.file(uri),
+                };
+                let bytes = bytes.map_err(|problem| format!("buffers[{index}]: {problem}"))?;
+                cell.get_or_init(|| bytes).as_slice()
             }
             (None, None) => self.chunk.filter(|_| index == 0).ok_or_else(|| {
                 format!("buffers[{index}] has no uri, and the file no binary chunk for it")
@@ -138,23 +147,38 @@ impl<'a> Buffers<'a> {
             )
         })
     }
-}
 
-/// The bytes behind a URI, at most `length` of a file's.
-fn read(uri: &str, length: u64, folder: &Path) -> Result<Vec<u8>, Problem> {
-    if let Some(data) = uri.strip_prefix("data:") {
-        return decode(data);
+    /// The bytes of a file beside the scene's.
+    fn file(&self, uri: &str) -> Result<Rc<Vec<u8>>, Problem> {
+        let path = beside(uri, self.folder)?;
+        if let Some(bytes) = self.files.borrow().get(&path) {
+            return Ok(Rc::clone(bytes));
+        }
+        let unreadable =
+            |e: std::io::Error| format!("its file {} cannot be read: {e}", quoted(uri));
+        let metadata = std::fs::metadata(&path).map_err(unreadable)?;
+        // A pipe or a device could keep a reader forever, and a pipe already on opening.
+        if !metadata.is_file() {
+            return Err(format!("its uri {} is not a regular file", quoted(uri)));
+        }
+        let total = self.total.get().saturating_add(metadata.len());
+        if total > MAX_BYTES {
+            return Err(format!(
+                "with its file {} the scene's buffers hold more than {} GiB together",
+                quoted(uri),
+                MAX_BYTES >> 30
+            ));
+        }
+        self.total.set(total);
+        let file = std::fs::File::open(&path).map_err(unreadable)?;
+        let mut bytes = Vec::new();
+        let length = usize::try_from(metadata.len()).unwrap_or(usize::MAX);
+        bytes.try_reserve_exact(length).map_err(|e| unreadable(e.into()))?;
+        file.take(metadata.len()).read_to_end(&mut bytes).map_err(unreadable)?;
+        let bytes = Rc::new(bytes);
+        self.files.borrow_mut().insert(path, Rc::clone(&bytes));
+        Ok(bytes)
     }
-    let path = beside(uri, folder)?;
-    let unreadable = |e: std::io::Error| format!("its file {} cannot be read: {e}", quoted(uri));
-    // A pipe or a device could keep a reader forever, and a pipe already on opening.
-    if !std::fs::metadata(&path).map_err(unreadable)?.is_file() {
-        return Err(format!("its uri {} is not a regular file", quoted(uri)));
-    }
-    let file = std::fs::File::open(&path).map_err(unreadable)?;
-    let mut bytes = Vec::new();
-    file.take(length).read_to_end(&mut bytes).map_err(unreadable)?;
-    Ok(bytes)
 }
 
 /// The bytes of a data URI after its `data:`.
@@ -164,11 +188,12 @@ fn decode(data: &str) -> Result<Vec<u8>, Problem> {
         .filter(|(header, _)| header.ends_with(";base64"))
         .map(|(_, encoded)| encoded)
         .ok_or("its data URI must read data:application/octet-stream;base64,…")?;
-    let encoded: Vec<u8> = percent_decode_str(encoded).collect();
+    let encoded: Cow<[u8]> = percent_decode_str(encoded).into();
     BASE64.decode(encoded).map_err(|e| format!("its data URI is not base64: {e}"))
 }
 
-/// The path of a relative URI, which must stay inside the scene's folder.
+/// The path of a relative URI, which must stay inside the scene's folder; without links, where there is
+/// such a file.
 fn beside(uri: &str, folder: &Path) -> Result<PathBuf, Problem> {
     let outside = || {
         format!(
@@ -190,10 +215,9 @@ fn beside(uri: &str, folder: &Path) -> Result<PathBuf, Problem> {
     }
     let path = folder.join(relative);
     // A link could still lead out. What does not exist is left to the reader's own sentence.
-    if let (Ok(real), Ok(real_folder)) = (path.canonicalize(), folder.canonicalize())
-        && !real.starts_with(real_folder)
-    {
-        return Err(outside());
+    match (path.canonicalize(), folder.canonicalize()) {
+        (Ok(real), Ok(real_folder)) if !real.starts_with(&real_folder) => Err(outside()),
+        (Ok(real), Ok(_)) => Ok(real),
+        _ => Ok(path),
     }
-    Ok(path)
 }

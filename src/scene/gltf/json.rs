@@ -7,6 +7,7 @@
 use super::Problem;
 use serde::Deserialize;
 use serde_json::Value;
+use std::cell::Cell;
 
 /// What decides whether the rest can be read: another version's members have other types.
 #[derive(Deserialize)]
@@ -55,10 +56,11 @@ pub(super) struct Node {
     pub name: Option<String>,
     #[serde(default)]
     pub children: Vec<usize>,
-    pub matrix: Option<[f64; 16]>,
-    pub translation: Option<[f64; 3]>,
-    pub rotation: Option<[f64; 4]>,
-    pub scale: Option<[f64; 3]>,
+    // Boxed, because three bytes of a file, `{},`, are a node.
+    pub matrix: Option<Box<[f64; 16]>>,
+    pub translation: Option<Box<[f64; 3]>>,
+    pub rotation: Option<Box<[f64; 4]>>,
+    pub scale: Option<Box<[f64; 3]>>,
     pub mesh: Option<usize>,
     pub camera: Option<usize>,
     #[serde(default)]
@@ -134,6 +136,9 @@ pub(super) struct Sparse {
     pub count: u64,
     pub indices: SparseIndices,
     pub values: SparseValues,
+    /// Whether its indices were looked at, and rise.
+    #[serde(skip)]
+    pub in_order: Cell<bool>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -196,7 +201,24 @@ pub(super) fn parse(text: &[u8]) -> Result<Root, Problem> {
 }
 
 fn from_json<'a, T: Deserialize<'a>>(text: &'a [u8]) -> Result<T, Problem> {
-    serde_json::from_slice(text).map_err(|e| format!("it is not the JSON of a glTF 2.0 file: {e}"))
+    serde_json::from_slice(text).map_err(|e| {
+        format!("it is not the JSON of a glTF 2.0 file: {}", shortened(&e.to_string()))
+    })
+}
+
+/// How many characters a sentence shows of the beginning and of the end of what the JSON parser says.
+const SHOWN: [usize; 2] = [100, 60];
+
+/// What the parser says, without the middle of a string that it quotes whole; where it stands is at the end.
+fn shortened(message: &str) -> String {
+    let length = message.chars().count();
+    let [first, last] = SHOWN;
+    if length <= first + last {
+        return message.into();
+    }
+    let start: String = message.chars().take(first).collect();
+    let end: String = message.chars().skip(length - last).collect();
+    format!("{start}…{end}")
 }
 
 /// Follows an index: `owner` (node "lamp", say) refers to item `index` of the array called `what`.

@@ -20,6 +20,8 @@ mod triangles;
 use super::{Bounds, Instance, Mesh, Scene, quoted};
 use crate::Error;
 use glam::{DMat4, DVec3};
+use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::Path;
 
 /// What is wrong with a file: one sentence, to which the file's name is put before.
@@ -48,14 +50,22 @@ const MAX_COORDINATE: f64 = 1e9;
 ///   the same: [`Scene::light`] is what refuses it.
 /// - The camera is that of the first node with a perspective one; orthographic ones are passed over.
 /// - Buffers come from the file itself, from data URIs, and from files in its folder or below.
+/// - Meshes that differ in name and material alone, and so look the same in a shadow, are one
+///   [`Mesh`](super::Mesh).
 ///
 /// Instances and lights stand in the order of the file's nodes.
+///
+/// The file may be a stranger's. Memory is at most 256 bytes for each byte of the file and the files of
+/// its buffers, and 1 MiB; time grows with them and no faster; the stack is of no account, 128 KiB will
+/// do. So that this holds, all meshes together have no more triangles than there are bytes, of which real
+/// ones take twenty. What instances draw together is a product, which nothing bounds: [`Scene::triangles`]
+/// tells it before anything is drawn.
 ///
 /// # Errors
 /// [`Error::File`] for a file that cannot be read, is not glTF 2.0, requires an extension that is not
 /// supported (any that changes triangles or transforms), contradicts itself, has coordinates that are
-/// not finite or beyond 10⁹ m, has no triangles, or has an area light that is no rectangle, polygon or
-/// sun.
+/// not finite or beyond 10⁹ m, has no triangles, more than one a byte, or more than 2²⁵, or has an area
+/// light that is no rectangle, polygon or sun.
 pub fn from_gltf(path: &Path) -> Result<Scene, Error> {
     let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
     read(path)
@@ -76,11 +86,9 @@ fn read(path: &Path) -> Result<Vec<u8>, Problem> {
 fn parse(bytes: &[u8], folder: &Path) -> Result<Scene, Problem> {
     let (text, chunk) = buffers::split(bytes)?;
     let root = json::parse(text)?;
-    let buffers = buffers::Buffers::new(&root, chunk, folder);
-    let mut reader = triangles::Reader::new(&root, &buffers);
+    let buffers = buffers::Buffers::new(&root, bytes.len(), chunk, folder);
+    let mut meshes = Meshes::new(&root, &buffers);
     let mut scene = Scene::default();
-    // Of each glTF mesh already read, where its triangles are in the scene.
-    let mut known: Vec<Option<Vec<(usize, Bounds)>>> = vec![None; root.meshes.len()];
 
     let all_placed = nodes::placed(&root)?;
     for placed in &all_placed {
@@ -91,18 +99,12 @@ fn parse(bytes: &[u8], folder: &Path) -> Result<Scene, Problem> {
         }
         let Some(index) = node.mesh else { continue };
         let role = extras::role(&node.extras).map_err(|e| format!("{}: {e}", label()))?;
-        let slot = known.get_mut(index).ok_or_else(|| {
-            format!("{} refers to meshes[{index}], and the file has {}", label(), root.meshes.len())
-        })?;
-        let parts = match slot {
-            Some(parts) => parts,
-            None => slot.insert(add_meshes(&mut scene, reader.read(index)?)),
-        };
-        for (mesh, bounds) in parts.iter() {
-            within_reach(&placed.world, bounds).map_err(|e| format!("{}: {e}", label()))?;
+        for mesh in meshes.find(index, label)? {
+            within_reach(&placed.world, &meshes.boxes[mesh])
+                .map_err(|e| format!("{}: {e}", label()))?;
             scene.instances.push(Instance {
                 name: nodes::name(&root, placed.node),
-                mesh: *mesh,
+                mesh,
                 world_from_mesh: placed.world,
                 role,
             });
@@ -112,7 +114,8 @@ fn parse(bytes: &[u8], folder: &Path) -> Result<Scene, Problem> {
         return Err("it has no triangles in its scene, so nothing can cast or show a shadow".into());
     }
     // Lights come last: a sun lies where it shines on all.
-    let all = scene.bounds(|i| i.role.blocks()).or_else(|| scene.bounds(|_| true));
+    let all = meshes.around(&scene.instances, |i| i.role.blocks());
+    let all = all.or_else(|| meshes.around(&scene.instances, |_| true));
     let all = all.unwrap_or(Bounds { min: DVec3::ZERO, max: DVec3::ZERO });
     for placed in &all_placed {
         let node =
@@ -120,24 +123,75 @@ fn parse(bytes: &[u8], folder: &Path) -> Result<Scene, Problem> {
         let light = extras::light(&root, placed.node, &node.extras, &placed.world, &all)?;
         scene.lights.extend(light);
     }
+    scene.meshes = meshes.read;
     Ok(scene)
 }
 
-/// Appends meshes and says where each is and how far it reaches, in mesh space.
-fn add_meshes(scene: &mut Scene, meshes: Vec<Mesh>) -> Vec<(usize, Bounds)> {
-    let mut added = Vec::new();
-    for mesh in meshes {
-        let positions = mesh.positions.iter().map(|p| DVec3::from_array(p.map(f64::from)));
-        let bounds = positions.fold(None, |bounds: Option<Bounds>, p| {
-            let b = bounds.unwrap_or(Bounds { min: p, max: p });
-            Some(Bounds { min: b.min.min(p), max: b.max.max(p) })
-        });
-        if let Some(bounds) = bounds {
-            added.push((scene.meshes.len(), bounds));
-            scene.meshes.push(mesh);
+/// The file's meshes, each read when a node first places it, and those that look the same once.
+struct Meshes<'a> {
+    root: &'a json::Root,
+    reader: triangles::Reader<'a>,
+    /// What will be the scene's.
+    read: Vec<Mesh>,
+    /// The box around each of those, in mesh space.
+    boxes: Vec<Bounds>,
+    /// Where the triangles of each of the file's are among them.
+    of_index: Vec<Option<Range<usize>>>,
+    of_shape: BTreeMap<triangles::Shape, Range<usize>>,
+}
+
+impl<'a> Meshes<'a> {
+    fn new(root: &'a json::Root, buffers: &'a buffers::Buffers<'a>) -> Self {
+        Self {
+            root,
+            reader: triangles::Reader::new(root, buffers),
+            read: Vec::new(),
+            boxes: Vec::new(),
+            of_index: vec![None; root.meshes.len()],
+            of_shape: BTreeMap::new(),
         }
     }
-    added
+
+    /// Where the triangles of `meshes[index]` are; `owner` is the node that places it, for the sentence.
+    fn find(
+        &mut self,
+        index: usize,
+        owner: impl FnOnce() -> String,
+    ) -> Result<Range<usize>, Problem> {
+        json::at(&self.root.meshes, index, "meshes", owner)?;
+        if let Some(known) = &self.of_index[index] {
+            return Ok(known.clone());
+        }
+        let shape = self.reader.shape(index)?;
+        let found = match self.of_shape.get(&shape) {
+            Some(known) => known.clone(),
+            None => {
+                let first = self.read.len();
+                for mesh in self.reader.read(index, &shape)? {
+                    let [min, max] = mesh.bounds().map(|c| DVec3::from_array(c.map(f64::from)));
+                    self.boxes.push(Bounds { min, max });
+                    self.read.push(mesh);
+                }
+                self.of_shape.insert(shape, first..self.read.len());
+                first..self.read.len()
+            }
+        };
+        self.of_index[index] = Some(found.clone());
+        Ok(found)
+    }
+
+    /// A box around the instances that `keep` accepts, in the world: around their meshes' boxes, for a
+    /// file may place a large mesh a million times.
+    fn around(&self, instances: &[Instance], keep: impl Fn(&Instance) -> bool) -> Option<Bounds> {
+        let kept = instances.iter().filter(|i| keep(i));
+        let corners = kept.flat_map(|i| {
+            self.boxes[i.mesh].corners().map(|c| i.world_from_mesh.transform_point3(c))
+        });
+        corners.fold(None, |bounds, p| {
+            let b = bounds.unwrap_or(Bounds { min: p, max: p });
+            Some(Bounds { min: b.min.min(p), max: b.max.max(p) })
+        })
+    }
 }
 
 fn within_reach(world_from_mesh: &DMat4, bounds: &Bounds) -> Result<(), Problem> {

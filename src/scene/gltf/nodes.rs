@@ -33,11 +33,13 @@ pub(super) fn label(root: &Root, node: usize) -> String {
     }
 }
 
-/// The nodes of the default scene with their transforms, in the order of the file.
+/// The nodes of the default scene that something stands at, with their transforms, in the order of the
+/// file.
 pub(super) fn placed(root: &Root) -> Result<Vec<Placed>, Problem> {
-    // Parents wait in a list, not on the call stack, which a deep file could exhaust.
-    let mut waiting: Vec<(usize, DMat4)> =
-        roots(root)?.into_iter().map(|node| (node, DMat4::IDENTITY)).collect();
+    // The transforms of what has children. They wait in a list, not on the call stack, which a deep file
+    // could exhaust.
+    let mut parents = vec![DMat4::IDENTITY];
+    let mut waiting: Vec<(usize, usize)> = roots(root)?.into_iter().map(|node| (node, 0)).collect();
     let mut seen = vec![false; root.nodes.len()];
     let mut placed = Vec::new();
     while let Some((index, parent)) = waiting.pop() {
@@ -50,15 +52,20 @@ pub(super) fn placed(root: &Root) -> Result<Vec<Placed>, Problem> {
             ));
         }
         let local = local(root, index).map_err(|e| format!("{}: {e}", label(root, index)))?;
-        let world = parent * local;
+        let world = parents[parent] * local;
         if !world.is_finite() {
             return Err(format!("{}: its transform is not finite", label(root, index)));
         }
         for child in &node.children {
             at(&root.nodes, *child, "nodes", || label(root, index))?;
-            waiting.push((*child, world));
+            waiting.push((*child, parents.len()));
         }
-        placed.push(Placed { node: index, world });
+        if !node.children.is_empty() {
+            parents.push(world);
+        }
+        if node.mesh.is_some() || node.camera.is_some() || !node.extras.is_null() {
+            placed.push(Placed { node: index, world });
+        }
     }
     placed.sort_by_key(|p| p.node);
     Ok(placed)
@@ -83,7 +90,7 @@ fn roots(root: &Root) -> Result<Vec<usize>, Problem> {
 /// The node's transform to its parent's space.
 fn local(root: &Root, index: usize) -> Result<DMat4, Problem> {
     let node = at(&root.nodes, index, "nodes", || "the scene".into())?;
-    if let Some(matrix) = &node.matrix {
+    if let Some(matrix) = node.matrix.as_deref() {
         let m = DMat4::from_cols_array(matrix);
         let last = m.row(3) - glam::DVec4::W;
         // Written so that NaN is refused too.
@@ -97,9 +104,9 @@ fn local(root: &Root, index: usize) -> Result<DMat4, Problem> {
             m.w_axis.with_w(1.0),
         ));
     }
-    let translation = DVec3::from_array(node.translation.unwrap_or_default());
-    let scale = DVec3::from_array(node.scale.unwrap_or([1.0; 3]));
-    let rotation = DQuat::from_array(node.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]));
+    let translation = node.translation.as_deref().map_or(DVec3::ZERO, |t| DVec3::from_array(*t));
+    let scale = node.scale.as_deref().map_or(DVec3::ONE, |s| DVec3::from_array(*s));
+    let rotation = node.rotation.as_deref().map_or(DQuat::IDENTITY, |r| DQuat::from_array(*r));
     // Written as f32, quaternions are not quite of length 1, and a length is a scale.
     let length = rotation.length();
     if !(length.is_normal() && translation.is_finite() && scale.is_finite()) {

@@ -6,9 +6,9 @@ use super::json::{self, Root, at};
 use super::{Problem, quoted};
 use crate::scene::Mesh;
 use glam::DVec3;
+use std::fmt;
 
 /// The most triangles that a file's meshes may hold together, each mesh counted once: 3 GB at worst.
-/// Primitives may share accessors, so the file's size bounds nothing.
 const MAX_TRIANGLES: usize = 1 << 25;
 
 /// The normal of a triangle without area, which no pixel shows.
@@ -47,11 +47,31 @@ impl Topology {
     }
 }
 
-/// Reads meshes, within one limit for all of them.
+/// What of a mesh its triangles depend on: meshes that differ in names and colors alone are one.
+pub(super) type Shape = Vec<PrimitiveShape>;
+
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct PrimitiveShape {
+    mode: u64,
+    position: Option<usize>,
+    normal: Option<usize>,
+    indices: Option<usize>,
+    double_sided: bool,
+    cut_out: bool,
+}
+
+/// Reads meshes, within limits for all of them.
+///
+/// Primitives may share accessors, so that no part of the file bounds what they make together. Without
+/// sharing, a triangle takes a byte at least: that of its index in a strip. So that is what all are held
+/// to, a triangle for each byte of the file and its buffers; real triangles take some twenty bytes, and
+/// may be shared as often.
 pub(super) struct Reader<'a> {
     root: &'a Root,
     buffers: &'a Buffers<'a>,
-    triangles_left: usize,
+    limit: usize,
+    made: usize,
+    placed: Placed,
 }
 
 impl<'a> Reader<'a> {
@@ -61,55 +81,86 @@ impl<'a> Reader<'a> {
 
     /// A reader that refuses what goes past `triangles` in all.
     pub fn with_limit(root: &'a Root, buffers: &'a Buffers<'a>, triangles: usize) -> Self {
-        Self { root, buffers, triangles_left: triangles }
+        Self { root, buffers, limit: triangles, made: 0, placed: Placed::default() }
     }
 
-    /// The triangles of `meshes[index]`: what is single-sided, then what is double-sided, either of
-    /// which may be missing.
-    pub fn read(&mut self, index: usize) -> Result<Vec<Mesh>, Problem> {
+    /// What `meshes[index]` looks like, whatever it is called.
+    pub fn shape(&self, index: usize) -> Result<Shape, Problem> {
         let mesh = at(&self.root.meshes, index, "meshes", || "a node".into())?;
-        let label = match mesh.name.as_deref() {
-            Some(name) if !name.is_empty() => format!("mesh {}", quoted(name)),
-            _ => format!("mesh {index}"),
-        };
-        let mut sides = [false, true].map(|double_sided| Mesh { double_sided, ..Mesh::default() });
-        for (i, primitive) in mesh.primitives.iter().enumerate() {
-            let label = if mesh.primitives.len() == 1 {
-                label.clone()
-            } else {
-                format!("{label}, primitive {i}")
+        let shape = |(i, primitive): (usize, &json::Primitive)| {
+            let material = match primitive.material {
+                Some(m) => {
+                    let owner = || Label::new(mesh, index, i).to_string();
+                    Some(at(&self.root.materials, m, "materials", owner)?)
+                }
+                None => None,
             };
-            self.primitive(primitive, &label, &mut sides)?;
-        }
-        Ok(sides.into_iter().filter(|mesh| !mesh.indices.is_empty()).collect())
+            Ok(PrimitiveShape {
+                mode: primitive.mode.unwrap_or(4),
+                position: primitive.attributes.position,
+                normal: primitive.attributes.normal,
+                indices: primitive.indices,
+                double_sided: material.is_some_and(|m| m.double_sided),
+                cut_out: material.is_some_and(json::Material::cuts),
+            })
+        };
+        mesh.primitives.iter().enumerate().map(shape).collect()
     }
 
-    fn primitive(
+    /// The triangles of `meshes[index]`, which looks like this: what is single-sided, then what is
+    /// double-sided, either of which may be missing.
+    pub fn read(&mut self, index: usize, shape: &[PrimitiveShape]) -> Result<Vec<Mesh>, Problem> {
+        let mesh = at(&self.root.meshes, index, "meshes", || "a node".into())?;
+        let mut sources = Vec::new();
+        for (i, primitive) in shape.iter().enumerate() {
+            sources.extend(self.open(primitive, Label::new(mesh, index, i))?);
+        }
+        let mut sides = Vec::new();
+        for double_sided in [false, true] {
+            let side = || sources.iter().filter(|s| s.shape.double_sided == double_sided);
+            let mut mesh = Mesh {
+                double_sided,
+                cut_out: side().any(|source| source.shape.cut_out),
+                ..Mesh::default()
+            };
+            mesh.indices.reserve_exact(side().map(|source| 3 * source.triangles).sum());
+            let vertices = side().map(Source::most_vertices).sum();
+            mesh.positions.reserve_exact(vertices);
+            mesh.normals.reserve_exact(vertices);
+            for source in side() {
+                source.append_to(&mut mesh, &mut self.placed)?;
+            }
+            // Where primitives use a part of what they share.
+            if mesh.positions.len() < vertices / 2 {
+                mesh.positions.shrink_to_fit();
+                mesh.normals.shrink_to_fit();
+            }
+            if !mesh.indices.is_empty() {
+                sides.push(mesh);
+            }
+        }
+        Ok(sides)
+    }
+
+    /// Opens a primitive's accessors; `None` where it draws no triangles.
+    fn open(
         &mut self,
-        primitive: &json::Primitive,
-        label: &str,
-        sides: &mut [Mesh; 2],
-    ) -> Result<(), Problem> {
-        let topology = match primitive.mode.unwrap_or(4) {
+        shape: &PrimitiveShape,
+        label: Label<'a>,
+    ) -> Result<Option<Source<'a>>, Problem> {
+        let topology = match shape.mode {
             // Points and lines.
-            0..=3 => return Ok(()),
+            0..=3 => return Ok(None),
             4 => Topology::List,
             5 => Topology::Strip,
             6 => Topology::Fan,
             mode => return Err(format!("{label}: its mode is {mode}; glTF has 0 to 6")),
         };
         // Without positions there is nothing to draw (glTF 2.0 §3.7.2.1).
-        let Some(position) = primitive.attributes.position else { return Ok(()) };
-        let (double_sided, cut_out) = match primitive.material {
-            Some(m) => {
-                let material = at(&self.root.materials, m, "materials", || label.into())?;
-                (material.double_sided, material.cuts())
-            }
-            None => (false, false),
-        };
+        let Some(position) = shape.position else { return Ok(None) };
         let owner = |what: &'static str| move || format!("the {what} of {label}");
         let positions = Vectors::open(self.root, self.buffers, position, &owner("POSITION"))?;
-        let normals = match primitive.attributes.normal {
+        let normals = match shape.normal {
             Some(n) => Some(Vectors::open(self.root, self.buffers, n, &owner("NORMAL"))?),
             None => None,
         };
@@ -120,41 +171,106 @@ impl<'a> Reader<'a> {
                 positions.len()
             ));
         }
-        let indices = match primitive.indices {
+        let indices = match shape.indices {
             Some(i) => Some(Indices::open(self.root, self.buffers, i, &owner("indices"))?),
             None => None,
         };
         let corners = indices.as_ref().map_or(positions.len(), Indices::len);
         let triangles = topology.triangles(corners).map_err(|e| format!("{label}: {e}"))?;
-        self.triangles_left = self.triangles_left.checked_sub(triangles).ok_or_else(|| {
-            format!(
-                "{label}: its triangles exceed the number that a scene may hold, {MAX_TRIANGLES}"
-            )
-        })?;
-        let [single, double] = sides;
-        let mesh = if double_sided { double } else { single };
-        mesh.cut_out |= cut_out;
-        Source { topology, positions, normals, indices, label }.append_to(mesh, triangles)
+        self.made = self.made.saturating_add(triangles);
+        if self.made > self.limit {
+            return Err(format!(
+                "{label}: its triangles exceed the number that a scene may hold, {}",
+                self.limit
+            ));
+        }
+        let bytes = self.buffers.held();
+        if self.made as u64 > bytes {
+            return Err(format!(
+                "{label}: with it the meshes have {} triangles from {bytes} bytes of file and buffers, \
+                 which is more than one a byte; fewer primitives must share their accessors",
+                self.made
+            ));
+        }
+        Ok(Some(Source { shape: *shape, topology, triangles, positions, normals, indices, label }))
+    }
+}
+
+/// A primitive as a sentence names it: `mesh "bunny", primitive 2`, the latter where there are several.
+#[derive(Clone, Copy)]
+struct Label<'a> {
+    mesh: &'a json::Mesh,
+    index: usize,
+    primitive: usize,
+}
+
+impl<'a> Label<'a> {
+    fn new(mesh: &'a json::Mesh, index: usize, primitive: usize) -> Self {
+        Self { mesh, index, primitive }
+    }
+}
+
+impl fmt::Display for Label<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.mesh.name.as_deref() {
+            Some(name) if !name.is_empty() => write!(f, "mesh {}", quoted(name)),
+            _ => write!(f, "mesh {}", self.index),
+        }?;
+        match self.mesh.primitives.len() {
+            1 => Ok(()),
+            _ => write!(f, ", primitive {}", self.primitive),
+        }
+    }
+}
+
+/// Where the vertices of a primitive went in its mesh. One table for all primitives that is never
+/// cleared, so that a primitive takes as long as it has corners, however many vertices it shares with
+/// others.
+struct Placed {
+    /// The number of a vertex that was placed, or 0. Numbers rise from primitive to primitive, so that
+    /// those of earlier ones are told by being too low.
+    numbers: Vec<u32>,
+    next: u32,
+}
+
+impl Default for Placed {
+    fn default() -> Self {
+        Self { numbers: Vec::new(), next: 1 }
     }
 }
 
 /// A primitive's opened accessors.
 struct Source<'a> {
+    shape: PrimitiveShape,
     topology: Topology,
+    triangles: usize,
     positions: Vectors<'a>,
     normals: Option<Vectors<'a>>,
     indices: Option<Indices<'a>>,
-    label: &'a str,
+    label: Label<'a>,
 }
 
 impl Source<'_> {
-    fn append_to(&self, mesh: &mut Mesh, triangles: usize) -> Result<(), Problem> {
-        mesh.indices.reserve(3 * triangles);
-        // Where each vertex went. Primitives often share one accessor of which each uses a part, so
-        // only what is used is copied.
-        let shared = if self.normals.is_some() { self.positions.len() } else { 0 };
-        let mut placed: Vec<Option<u32>> = vec![None; shared];
-        for t in 0..triangles {
+    /// How many vertices its triangles may share. Flat normals differ from triangle to triangle, so
+    /// that nothing is shared then.
+    fn shared(&self) -> usize {
+        if self.normals.is_some() { self.positions.len() } else { 0 }
+    }
+
+    fn most_vertices(&self) -> usize {
+        let corners = 3 * self.triangles;
+        if self.normals.is_some() { corners.min(self.shared()) } else { corners }
+    }
+
+    fn append_to(&self, mesh: &mut Mesh, placed: &mut Placed) -> Result<(), Problem> {
+        // Primitives often share one accessor of which each uses a part, so only what is used is copied.
+        if placed.numbers.len() < self.shared() {
+            placed.numbers.resize(self.shared(), 0);
+        }
+        let shared = placed.numbers.get_mut(..self.shared()).unwrap_or_default();
+        // Both below 3 · MAX_TRIANGLES.
+        let (first, before) = (placed.next, mesh.positions.len() as u32);
+        for t in 0..self.triangles {
             let mut vertices = [0; 3];
             let mut points = [[0.0; 3]; 3];
             for (k, corner) in self.topology.corners(t).into_iter().enumerate() {
@@ -162,20 +278,18 @@ impl Source<'_> {
             }
             let flat = face_normal(points);
             for (vertex, point) in vertices.into_iter().zip(points) {
-                // Flat normals differ from triangle to triangle, so nothing is shared then.
-                let slot = placed.get_mut(vertex as usize);
-                if let Some(Some(index)) = slot {
-                    mesh.indices.push(*index);
+                let known = shared.get_mut(vertex as usize);
+                if let Some(number) = known.as_deref().filter(|number| **number >= first) {
+                    mesh.indices.push(before + (number - first));
                     continue;
                 }
-                // Below 3 · MAX_TRIANGLES.
-                let index = mesh.positions.len() as u32;
-                if let Some(slot) = slot {
-                    *slot = Some(index);
+                if let Some(number) = known {
+                    *number = placed.next;
                 }
+                mesh.indices.push(before + (placed.next - first));
+                placed.next += 1;
                 mesh.positions.push(point);
                 mesh.normals.push(self.normal(vertex, flat));
-                mesh.indices.push(index);
             }
         }
         Ok(())

@@ -6,6 +6,7 @@ mod fuzz;
 mod lights;
 mod models;
 mod refusals;
+mod sizes;
 
 use super::{from_gltf, parse};
 use crate::scene::Scene;
