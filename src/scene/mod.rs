@@ -15,7 +15,7 @@ pub mod generate;
 #[cfg(feature = "gltf")]
 mod gltf;
 #[cfg(feature = "gltf")]
-pub use gltf::from_gltf;
+pub use gltf::{from_gltf, from_gltf_bytes};
 
 /// What a mesh does with light: blocks it, shows shadows, or both.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

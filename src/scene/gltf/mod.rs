@@ -67,10 +67,23 @@ const MAX_COORDINATE: f64 = 1e9;
 /// not finite or beyond 10⁹ m, has no triangles, more than one a byte, or more than 2²⁵, or has an area
 /// light that is no rectangle, polygon or sun.
 pub fn from_gltf(path: &Path) -> Result<Scene, Error> {
+    let bytes = read(path).map_err(|problem| about(path, problem))?;
+    from_gltf_bytes(&bytes, path)
+}
+
+/// As [`from_gltf`], of a file that is in the memory already, out of an archive perhaps. `path` is what
+/// sentences call it, and its folder where buffers of their own files are looked for; nothing has to be
+/// there.
+///
+/// # Errors
+/// As [`from_gltf`].
+pub fn from_gltf_bytes(bytes: &[u8], path: &Path) -> Result<Scene, Error> {
     let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    read(path)
-        .and_then(|bytes| parse(&bytes, folder))
-        .map_err(|problem| Error::File { path: path.display().to_string(), problem })
+    parse(bytes, folder).map_err(|problem| about(path, problem))
+}
+
+fn about(path: &Path, problem: Problem) -> Error {
+    Error::File { path: path.display().to_string(), problem }
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, Problem> {
