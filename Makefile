@@ -43,7 +43,7 @@ endif
 # ---------------------------------------------------------------------------------------------
 
 # Tests that use no device; they run once. Every other file in tests/ runs once a driver.
-NO_DEVICE := docs freshness line_truth naga_translation planning reflection refusals row_limits rows
+NO_DEVICE := docs freshness line_truth naga_translation planning reflection refusals row_limits rows untrusted
 DEVICE := $(filter-out $(NO_DEVICE),$(basename $(notdir $(wildcard tests/*.rs))))
 # Always the whole workspace: cargo builds the dependencies anew where only one package is asked for.
 test_once := $(CARGO) test --workspace --lib $(NO_DEVICE:%=--test %)

@@ -2,7 +2,6 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test stops at the first surprise")]
 
 mod features;
-mod fuzz;
 mod lights;
 mod models;
 mod refusals;

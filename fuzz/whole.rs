@@ -1,0 +1,84 @@
+//! What a file that may be anything is opened as: a scene that is whole, or one sentence.
+
+use antumbra::glam::DVec3;
+use antumbra::scene::{AreaLight, Camera, Scene, from_gltf_bytes};
+use std::path::Path;
+
+/// Where no buffer can be.
+const NOWHERE: &str = "/no/such/folder/file";
+
+/// The longest sentence, in bytes: names and what the JSON parser quotes are cut short.
+const LONGEST_SENTENCE: usize = 1000;
+
+/// Opens a file that needs no other.
+///
+/// # Panics
+/// Where the loader breaks what it promises.
+pub fn open(file: &[u8]) -> Result<Scene, String> {
+    match from_gltf_bytes(file, Path::new(NOWHERE)) {
+        Ok(scene) => {
+            check(&scene);
+            let held: usize = scene.meshes.iter().map(|mesh| mesh.indices.len() / 3).sum();
+            assert!(held <= file.len(), "{held} triangles from {} bytes", file.len());
+            Ok(scene)
+        }
+        Err(error) => {
+            let sentence = error.to_string();
+            check_sentence(&sentence);
+            Err(sentence)
+        }
+    }
+}
+
+/// What an error says.
+///
+/// # Panics
+/// Where it is not one sentence on one line.
+pub fn check_sentence(sentence: &str) {
+    assert!((1..=LONGEST_SENTENCE).contains(&sentence.len()), "{sentence:?}");
+    assert!(!sentence.chars().any(char::is_control), "{sentence:?}");
+}
+
+/// What every scene that loads promises to those who use it.
+///
+/// # Panics
+/// Where it does not keep that.
+pub fn check(scene: &Scene) {
+    assert!(scene.triangles() > 0);
+    for mesh in &scene.meshes {
+        assert_eq!(mesh.positions.len(), mesh.normals.len());
+        assert_eq!(mesh.indices.len() % 3, 0);
+        assert!(mesh.indices.iter().all(|i| (*i as usize) < mesh.positions.len()));
+        assert!(mesh.positions.as_flattened().iter().all(|c| c.is_finite()));
+        for n in &mesh.normals {
+            let length = DVec3::from_array(n.map(f64::from)).length();
+            assert!((length - 1.0).abs() < 1e-6, "a normal of length {length}");
+        }
+    }
+    for instance in &scene.instances {
+        assert!(instance.mesh < scene.meshes.len());
+        assert!(instance.world_from_mesh.is_finite());
+    }
+    scene.lights.iter().for_each(check_light);
+    for camera in scene.camera.into_iter().chain([Camera::framing(scene, 1.5)]) {
+        let x = camera.world_from_view;
+        assert!(x.is_finite() && (x.determinant() - 1.0).abs() < 1e-9);
+        assert!(camera.near > 0.0 && camera.yfov > 0.0);
+    }
+}
+
+fn check_light(light: &AreaLight) {
+    assert!(light.light.world_from_light().is_finite());
+    let half = light.light.half_extents();
+    assert!(half[0] > 0.0 && half[1] >= 0.0, "{half:?}");
+    assert!(light.color.iter().chain([&light.intensity]).all(|c| c.is_finite() && *c >= 0.0));
+    let Some(corners) = light.outline() else { return };
+    assert!((3..=16).contains(&corners.len()));
+    // As far outside as f32 puts what is on the edge.
+    let inside = |p: &[f64; 2]| (0..2).all(|i| p[i].abs() <= half[i] * (1.0 + 1e-6));
+    assert!(corners.iter().all(inside), "{corners:?} in {half:?}");
+    let after = |i: usize| corners[(i + 1) % corners.len()];
+    let cross = |(i, p): (usize, &[f64; 2])| p[0] * after(i)[1] - p[1] * after(i)[0];
+    let doubled: f64 = corners.iter().enumerate().map(cross).sum();
+    assert!(doubled > 0.0, "{corners:?} run clockwise");
+}
