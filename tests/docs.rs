@@ -1,4 +1,4 @@
-//! What docs/embedding.md says in tables is what the code does.
+//! What docs/embedding.md says in tables is what the code does, and what deny.toml allows is what is used.
 
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
@@ -142,4 +142,53 @@ fn the_hosts_glue_is_counted() {
         println!("{path}: {lines}");
         assert_eq!(row(&page, host)[1], lines.to_string(), "{path}");
     }
+}
+
+/// Without cargo deny, what it says of licences, for the packages that this platform builds.
+#[test]
+fn the_licences_are_those_that_deny_toml_allows() {
+    let deny = std::fs::read_to_string(root().join("deny.toml")).unwrap();
+    let (_, list) = deny.split_once("\nallow = [").unwrap();
+    let allowed: Vec<&str> =
+        list.split(']').next().unwrap().split('"').skip(1).step_by(2).collect();
+    assert!(allowed.contains(&"MIT"));
+    let metadata = metadata();
+    let mut used: Vec<&str> = Vec::new();
+    let packages = metadata["packages"].as_array().unwrap();
+    for package in packages.iter().filter(|package| package["source"].is_string()) {
+        let licence = package["license"].as_str().unwrap_or("none").replace('/', " OR ");
+        // In parentheses, if anything, are the alternatives of one part.
+        for part in licence.split(" AND ") {
+            let mut either = part.trim_matches(['(', ')']).split(" OR ").map(str::trim);
+            let known = either.find_map(|one| allowed.iter().find(|known| **known == one));
+            let known = known.unwrap_or_else(|| panic!("{} is under {licence}", package["name"]));
+            used.push(known);
+        }
+    }
+    assert!(packages.len() > 50, "{} packages", packages.len());
+    for licence in allowed {
+        assert!(used.contains(&licence), "{licence} is allowed, and nothing is under it");
+    }
+}
+
+/// What cargo knows of all packages of this platform, which are here, or it could not have built this.
+fn metadata() -> serde_json::Value {
+    let host = std::process::Command::new("rustc").arg("-vV").output().unwrap().stdout;
+    let host = String::from_utf8(host).unwrap();
+    let host = host.lines().find_map(|line| line.strip_prefix("host: ")).unwrap();
+    let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
+    let output = std::process::Command::new(cargo)
+        .args([
+            "metadata",
+            "--format-version=1",
+            "--offline",
+            "--locked",
+            "--filter-platform",
+            host,
+        ])
+        .current_dir(root())
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
 }
