@@ -297,8 +297,10 @@ fn models_of_other_makers() {
             .map(|entry| entry.unwrap().metadata().unwrap().len() as usize)
             .sum();
         let opened = check(within_memory(beside, || from_gltf(path)).0);
-        let outcome = opened.as_ref().err().map_or("loads", |sentence| sentence.as_str());
-        println!("{}: {outcome}", path.display());
+        match &opened {
+            Ok(()) => println!("{}: it loads", path.display()),
+            Err(sentence) => println!("{sentence}"),
+        }
         whole_ones.add(opened);
         let file = std::fs::read(path).unwrap();
         let mut random = Random::new(file.len() as u64);
@@ -306,7 +308,7 @@ fn models_of_other_makers() {
         // Of those with buffers in files of their own.
         let json =
             serde_json::from_slice(&file).map(|v: serde_json::Value| Json::new(v.to_string()));
-        for _ in 0..(OPENED / file.len()).clamp(10, 500) {
+        for _ in 0..(OPENED / file.len().max(1)).clamp(10, 500) {
             let broken = match (&seed, &json) {
                 (Some(seed), _) => seed.broken(&mut random),
                 (None, Ok(json)) if random.below(4) > 0 => json.changed(1, &mut random),
@@ -322,10 +324,6 @@ fn models_of_other_makers() {
         }
     }
     for (what, outcome) in [("as they are", whole_ones), ("broken", broken_ones)] {
-        let kinds = outcome.sentences.len();
-        println!(
-            "{what}: {} of {} load, {kinds} kinds of sentences",
-            outcome.loaded, outcome.files
-        );
+        println!("{what}: {} of {} load", outcome.loaded, outcome.files);
     }
 }

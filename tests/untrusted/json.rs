@@ -58,7 +58,7 @@ impl Json {
             2..=5 => {
                 let scalars =
                     || self.values.iter().filter(|v| is_number(&self.text[v.range.start]));
-                let nth = random.below(scalars().count());
+                let nth = random.below(scalars().count().max(1));
                 let range = scalars().nth(nth).map_or(0..0, |v| v.range.clone());
                 (range, number(random).into_bytes())
             }

@@ -24,7 +24,7 @@ fn five_times(triangles: usize) -> (File, Value) {
 
 #[test]
 fn triangles_beyond_the_limit_are_refused_before_they_are_made() {
-    let most = 1 << 20;
+    let most = 1 << 16;
     let (file, primitives) = five_times(most);
     let root = root(&file, &primitives, json!({}));
     // As of a file so long that its length is no limit.
