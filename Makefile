@@ -4,9 +4,11 @@
 #              out/bench/ and on the terminal (make bench QUICK=1 in under five minutes, the report
 #              alone)
 #
+# make sanitize   the library's unit tests under AddressSanitizer, which nightly Rust has
+#
 # ANTUMBRA_DRIVER=<part of a device name> picks the device for all of them.
 
-.PHONY: demo test test_on_llvmpipe test_on_swiftshader bench clean
+.PHONY: demo test test_on_llvmpipe test_on_swiftshader bench sanitize clean
 
 CARGO ?= cargo
 SHELL := /bin/bash
@@ -82,6 +84,10 @@ test_on_llvmpipe:
 
 test_on_swiftshader:
 	ANTUMBRA_DRIVER=SwiftShader $(SWIFTSHADER) $(test_on_driver)
+
+# Not a part of the tests: it builds everything anew, and takes longer than they do.
+sanitize:
+	@tests/sanitize.sh
 
 clean:
 	$(CARGO) clean
