@@ -15,6 +15,7 @@ pub mod choices;
 pub mod curtis;
 pub mod findings;
 pub mod groups;
+pub mod hard_cases;
 pub mod hills;
 #[path = "../../ray_march/levels.rs"]
 mod levels;

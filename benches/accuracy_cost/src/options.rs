@@ -34,6 +34,10 @@ pub struct Options {
     /// Measure nothing: how the table that `auto` chooses by does in what `--choices` has measured in --out
     #[arg(long, conflicts_with = "report", group = "of_choices")]
     pub exam: bool,
+    /// The table of hard cases on this device, and nothing else; what other devices did stays beside it in --out. With
+    /// `--write-docs` it is copied into docs/hard_cases.md
+    #[arg(long, conflicts_with_all = ["quick", "scenes", "report", "of_choices"])]
+    pub hard_cases: bool,
     /// Measure nothing: make the report anew of what was measured, by whatever commit
     #[arg(long)]
     pub report: bool,

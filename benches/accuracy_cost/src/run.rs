@@ -3,6 +3,7 @@
 use crate::Problem;
 use crate::choices;
 use crate::groups::{self, FULL, Group, QUICK};
+use crate::hard_cases::store;
 use crate::measure::Bench;
 use crate::options::Options;
 use crate::progress::{Estimate, Progress, duration};
@@ -23,9 +24,12 @@ const QUICK_BUDGET_S: f64 = 270.0;
 /// # Errors
 /// A sentence for what stops the run: no device, a folder that cannot be read or written.
 pub fn run(options: &Options) -> Result<bool, Problem> {
+    if options.hard_cases {
+        return hard_cases(options);
+    }
     if options.write_docs {
         let page = Options::root().join("docs/accuracy.md");
-        report::docs::copy(&options.out.join("headline.md"), &page)?;
+        report::docs::copy(&report::docs::HEADLINE, &options.out.join("headline.md"), &page)?;
         println!("{}", page.display());
         return Ok(true);
     }
@@ -42,7 +46,13 @@ pub fn run(options: &Options) -> Result<bool, Problem> {
         let (header, rows) = Store::read(&measured)?;
         let cache = kept(&options.out, &header)?;
         return finish(
-            &Report { header: &header, rows: &rows, left_out: &[], cache: &cache },
+            &Report {
+                header: &header,
+                rows: &rows,
+                left_out: &[],
+                cache: &cache,
+                hard_cases: &store::read(&options.out)?,
+            },
             options,
         );
     }
@@ -78,7 +88,28 @@ pub fn run(options: &Options) -> Result<bool, Problem> {
     let keys: Vec<String> = groups.iter().map(Group::key).collect();
     let rows = store.rows(keys.iter().map(String::as_str));
     println!("{} rows in {}", rows.len(), duration(started.elapsed().as_secs_f64()));
-    finish(&Report { header: &header, rows: &rows, left_out: &left_out, cache: &cache }, options)
+    // The quick run has no time for them, and shows those of a longer one.
+    let mut held = true;
+    if !scale.quick && !options.choices && options.only.is_none() {
+        held = store::measure(&device, &options.out)?;
+    }
+    let hard_cases = &store::read(&options.out)?;
+    let report =
+        Report { header: &header, rows: &rows, left_out: &left_out, cache: &cache, hard_cases };
+    Ok(finish(&report, options)? && held)
+}
+
+/// Measures or copies the table of hard cases; whether nothing is broken.
+fn hard_cases(options: &Options) -> Result<bool, Problem> {
+    if options.write_docs {
+        let page = Options::root().join("docs/hard_cases.md");
+        report::docs::copy(&report::docs::HARD_CASES, &options.out.join("hard_cases.md"), &page)?;
+        println!("{}", page.display());
+        return Ok(true);
+    }
+    std::fs::create_dir_all(&options.out).map_err(|e| format!("{}: {e}", options.out.display()))?;
+    let device = HeadlessDevice::new(&HeadlessOptions::default()).map_err(|e| e.to_string())?;
+    store::measure(&device, &options.out)
 }
 
 /// Writes the report and tells where it is and what failed; whether nothing did.

@@ -2,6 +2,7 @@
 
 use super::{Report, charts, curtis, strip, tables};
 use crate::groups::MATRIX;
+use crate::hard_cases;
 use crate::plot::escape;
 
 const STYLE: &str = "
@@ -73,7 +74,16 @@ pub fn page(report: &Report) -> String {
     out += &curtis::levels(report);
     out += "<h2>Eisemann 2008</h2>\n<details><summary>The table</summary>\n";
     out += &tables::eisemann(report);
-    out += "</details>\n<h2>What is missing</h2>\n";
+    out += "</details>\n<h2>Hard cases</h2>\n";
+    if report.hard_cases.is_empty() {
+        out += "<p>Not measured yet; <code>--hard-cases</code> does, as does a full run.</p>\n";
+    }
+    for (driver, rows) in report.hard_cases {
+        out += "<details><summary>Each with its bound and why</summary>\n";
+        out += &hard_cases::table::html(rows, driver);
+        out += "</details>\n";
+    }
+    out += "<h2>What is missing</h2>\n";
     out += &tables::gaps(report);
     out += &method();
     out += "<h2>Every row</h2>\n<details><summary>Error against time in numbers; \

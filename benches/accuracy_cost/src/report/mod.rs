@@ -10,6 +10,7 @@ mod strip;
 mod tables;
 
 use crate::Problem;
+use crate::hard_cases::store::Tables;
 use crate::store::{Header, Outcome, Row};
 use std::path::Path;
 
@@ -26,6 +27,8 @@ pub struct Report<'a> {
     pub left_out: &'a [String],
     /// Where the pictures are.
     pub cache: &'a Path,
+    /// The tables of hard cases, by the devices that they were measured on.
+    pub hard_cases: &'a Tables,
 }
 
 impl Report<'_> {
@@ -112,7 +115,14 @@ pub(crate) mod tests {
             ..Header::default()
         };
         let left_out = ["light size: bunny".to_string()];
-        of(&Report { header: &header, rows, left_out: &left_out, cache: Path::new("/nowhere") })
+        let cache = Path::new("/nowhere");
+        of(&Report {
+            header: &header,
+            rows,
+            left_out: &left_out,
+            cache,
+            hard_cases: &Tables::new(),
+        })
     }
 
     #[test]

@@ -1,0 +1,200 @@
+//! Runs the table: each case with each technique, beside what it must be.
+
+use super::cases::HardCase;
+use super::judge::{Row, judge};
+use super::pixels::{self, Maps, Range, Reach};
+use super::techniques::{self, Expected, Held};
+use crate::Problem;
+use crate::scenes::scaled;
+use antumbra::gpu::headless::{HeadlessDevice, Stage, View};
+use antumbra::scene::{Instance, Role, Scene};
+use antumbra::{FramePlan, Settings};
+use std::collections::BTreeMap;
+
+/// The image's side in pixels.
+pub const SIDE: u32 = 32;
+
+/// How large a point is beside the light that it stands for.
+const POINT: f64 = 1e-6;
+
+/// Under how large a light what a guess makes of the penumbra must have ended, over the light itself.
+const GUESSED: f64 = 1.5;
+
+/// Runs all cases with all techniques, one node for as many as it serves; rows are in the order of the cases, and
+/// of the techniques within them. Each image goes to `look`, with its truth.
+///
+/// # Errors
+/// What a device or the truth refuses, with the case.
+pub fn run(
+    device: &HeadlessDevice,
+    cases: &[HardCase],
+    mut look: impl FnMut(&HardCase, &Row, &[f32], &[f64]),
+) -> Result<Vec<Row>, Problem> {
+    let mut prepared: Vec<Prepared> = cases
+        .iter()
+        .map(|case| Prepared::new(case).map_err(|e| of(case, e)))
+        .collect::<Result<_, _>>()?;
+    // Cases and techniques by the settings that they share.
+    let mut by_settings: BTreeMap<(u32, String), Vec<(usize, usize)>> = BTreeMap::new();
+    for (at, case) in cases.iter().enumerate() {
+        for (technique, held) in techniques::ALL.iter().enumerate() {
+            let rows = by_settings.entry((case.map, case.words_of(held))).or_default();
+            rows.push((at, technique));
+        }
+    }
+    let mut rows: BTreeMap<(usize, usize), Row> = BTreeMap::new();
+    let mut stage: Option<Stage> = None;
+    for ((map, words), places) in &by_settings {
+        let mut fresh = true;
+        for &(at, technique) in places {
+            let (case, held) = (&cases[at], &techniques::ALL[technique]);
+            let prepared = &mut prepared[at];
+            let shown = prepared.show(device, stage.take()).map_err(|e| of(case, e))?;
+            let shown = stage.insert(shown);
+            if std::mem::take(&mut fresh) {
+                shown.configure(settings(words, *map)?).map_err(|e| of(case, e.to_string()))?;
+            }
+            let (row, image) = prepared.row(shown, case, held).map_err(|e| of(case, e))?;
+            let truth: Vec<f64> = prepared.truth().map_err(|e| of(case, e))?;
+            look(case, &row, &image, &truth);
+            rows.insert((at, technique), row);
+        }
+    }
+    Ok(rows.into_values().collect())
+}
+
+fn of(case: &HardCase, problem: impl std::fmt::Display) -> Problem {
+    format!("{}: {problem}", case.title())
+}
+
+#[expect(clippy::needless_pass_by_value, reason = "as map_err gives it")]
+fn told(error: antumbra::Error) -> Problem {
+    error.to_string()
+}
+
+/// Settings from the words of a command line.
+///
+/// # Errors
+/// A sentence for one that is not known.
+pub fn settings(words: &str, map: u32) -> Result<Settings, Problem> {
+    let mut settings = Settings::default();
+    for word in words.split_whitespace() {
+        let (key, value) = word.split_once('=').ok_or_else(|| format!("{word} is no KEY=VALUE"))?;
+        if key == "technique" {
+            settings.technique = value.parse().map_err(told)?;
+        } else {
+            settings.set(key, value).map_err(told)?;
+        }
+    }
+    settings.set("map", &map.to_string()).map_err(told)?;
+    Ok(settings)
+}
+
+/// What ranges are asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Asked {
+    expected: Expected,
+    windowed: bool,
+    reach: Reach,
+}
+
+/// A case's scene, and what its pixels see.
+struct Prepared<'a> {
+    case: &'a HardCase,
+    scene: Scene,
+    view: View,
+    pixels: Vec<Option<pixels::Seen>>,
+    /// Through the window that a host gives, and fitted.
+    maps: [Maps; 2],
+    /// What is known already, by what it was asked for.
+    ranges: Vec<(Asked, Vec<Range>)>,
+}
+
+impl<'a> Prepared<'a> {
+    fn new(case: &'a HardCase) -> Result<Self, Problem> {
+        let extent = [SIDE; 2];
+        Ok(Self {
+            case,
+            scene: case.set.scene(case.place).map_err(told)?,
+            view: case.set.view(case.place, extent),
+            pixels: pixels::seen(&case.set, extent),
+            maps: [Maps::of(case, true)?, Maps::of(case, false)?],
+            ranges: Vec::new(),
+        })
+    }
+
+    /// A stage that shows it.
+    fn show(&self, device: &HeadlessDevice, stage: Option<Stage>) -> Result<Stage, Problem> {
+        let keep = |i: &Instance| i.role != Role::Occluder;
+        let Some(mut stage) = stage else {
+            let settings = Settings::default();
+            return Stage::new(device, &self.scene, &self.view, [SIDE; 2], settings, keep)
+                .map_err(told);
+        };
+        stage.show(&self.scene, &self.view, keep).map_err(told)?;
+        Ok(stage)
+    }
+
+    fn row(
+        &mut self,
+        stage: &mut Stage,
+        case: &HardCase,
+        held: &'static Held,
+    ) -> Result<(Row, Vec<f32>), Problem> {
+        let light = self.scene.light(None).map_err(told)?.light;
+        let plan = stage.plan(&light, case.window).map_err(told)?;
+        stage.run(&plan).map_err(told)?;
+        let image = stage.visibility().map_err(told)?;
+        // Where penumbrae are narrower than a pixel, a hard shadow is all that the node makes.
+        let by = if runs(&plan, "baseline.hard") { techniques::hard() } else { held };
+        let noise = case.noise_of(held);
+        let row = judge(case, held, by, noise, self.ranges_of(by)?, &image);
+        Ok((row, image))
+    }
+
+    /// The truth of each pixel.
+    fn truth(&mut self) -> Result<Vec<f64>, Problem> {
+        Ok(self.ranges_of(&techniques::ALL[0])?.iter().map(|range| range.truth).collect())
+    }
+
+    fn ranges_of(&mut self, held: &Held) -> Result<&[Range], Problem> {
+        let reach = Reach { texels: held.texels, receiver_texels: held.receiver_texels };
+        let asked = Asked { expected: held.expected, windowed: held.windowed, reach };
+        let at = match self.ranges.iter().position(|(known, _)| *known == asked) {
+            Some(at) => at,
+            None => {
+                self.ranges.push((asked, self.make_ranges(asked)?));
+                self.ranges.len() - 1
+            }
+        };
+        Ok(&self.ranges[at].1)
+    }
+
+    fn make_ranges(
+        &self,
+        Asked { expected, windowed, reach }: Asked,
+    ) -> Result<Vec<Range>, Problem> {
+        let maps = &self.maps[usize::from(!windowed)];
+        let set = if windowed { self.case.truth_set() } else { self.case.set.clone() };
+        let of = |scale: f64| {
+            let light = scaled(&self.case.set.light, scale)?;
+            pixels::ranges(&set, maps, &light, &self.pixels, reach)
+        };
+        match expected {
+            Expected::Light => of(1.0),
+            Expected::Centre => of(POINT),
+            Expected::Plateaus => {
+                let (near, wide) = (of(1.0)?, of(GUESSED)?);
+                let guess = |(near, wide): (&Range, &Range)| match (wide.least, wide.most) {
+                    (1.0, _) | (_, 0.0) => *near,
+                    _ => Range { truth: near.truth, least: 0.0, most: 1.0 },
+                };
+                Ok(near.iter().zip(&wide).map(guess).collect())
+            }
+        }
+    }
+}
+
+fn runs(plan: &FramePlan, pass: &str) -> bool {
+    plan.plan.steps.iter().any(|step| plan.plan.graph.passes()[step.pass].name == pass)
+}

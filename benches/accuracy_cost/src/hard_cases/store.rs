@@ -1,0 +1,46 @@
+//! What devices did, kept beside the report.
+
+use super::judge::Row;
+use super::table;
+use super::{cases, run};
+use crate::Problem;
+use antumbra::gpu::headless::HeadlessDevice;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// The table of each device, by its name.
+pub type Tables = BTreeMap<String, Vec<Row>>;
+
+const FILE: &str = "hard_cases.json";
+
+/// The tables that a folder has; none where it has no file of them.
+///
+/// # Errors
+/// A sentence for a file that is none of these.
+pub fn read(out: &Path) -> Result<Tables, Problem> {
+    let path = out.join(FILE);
+    let text = match std::fs::read_to_string(&path) {
+        Ok(text) => text,
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(Tables::new()),
+        Err(e) => return Err(format!("{}: {e}", path.display())),
+    };
+    serde_json::from_str(&text).map_err(|e| format!("{}: {e}; remove it", path.display()))
+}
+
+/// Runs the table on a device, and keeps it with those of others; whether nothing is broken.
+///
+/// # Errors
+/// A sentence for what a device refuses or a file that cannot be written.
+pub fn measure(device: &HeadlessDevice, out: &Path) -> Result<bool, Problem> {
+    let rows = run::run(device, &cases::all(), |_, _, _, _| {})?;
+    println!("{}: {}", device.name(), table::counts(&rows));
+    let good = rows.iter().all(Row::is_good);
+    let mut tables = read(out)?;
+    tables.insert(device.name().into(), rows);
+    let json = serde_json::to_string_pretty(&tables).map_err(|e| e.to_string())?;
+    for (name, text) in [(FILE, json), ("hard_cases.md", table::markdown(&tables))] {
+        let path = out.join(name);
+        std::fs::write(&path, text).map_err(|e| format!("{}: {e}", path.display()))?;
+    }
+    Ok(good)
+}
