@@ -4,7 +4,7 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
 use antumbra::gpu::headless::{HeadlessDevice, Stage, View};
-use antumbra::scene::{Role, Scene, generate};
+use antumbra::scene::{Instance, Role, Scene, generate};
 use antumbra_tests::device;
 use antumbra_tests::measure::{Setup, settings};
 use glam::{DMat4, DVec3};
@@ -47,79 +47,71 @@ fn bits(image: &[f32]) -> Vec<u32> {
     image.iter().map(|v| v.to_bits()).collect()
 }
 
+/// One node a way, which sees one scene after the other: the same bits twice and from another node, within bounds and up
+/// to both, nothing where nothing blocks, and nothing on what receives nothing.
 #[test]
-fn the_same_frame_twice_gives_the_same_bits() {
+fn every_way_keeps_the_laws() {
     let device = device();
     let scene = spheres();
     let setup = Setup::ground(&scene, 2.5, 96);
     for words in WAYS {
         let mut stage = setup.stage(&device, words);
-        let first = bits(&setup.visibility(&mut stage));
+        let image = setup.visibility(&mut stage);
+        let first = bits(&image);
         assert_eq!(first, bits(&setup.visibility(&mut stage)), "{words}: the same node");
         let mut other = setup.stage(&device, words);
         assert_eq!(first, bits(&setup.visibility(&mut other)), "{words}: another node");
+        drop(other);
+        within_bounds_and_up_to_both(words, &image);
+        lit_where_nothing_blocks(words, &mut stage);
+        spares_what_receives_nothing(words, &mut stage, &scene);
+        // And back again.
+        let keep = |i: &Instance| i.role != Role::Occluder;
+        stage.show(&scene, &setup.view, keep).unwrap();
+        assert_eq!(first, bits(&setup.visibility(&mut stage)), "{words}: after other scenes");
     }
 }
 
-#[test]
-fn the_visible_fraction_is_one() {
-    let device = device();
-    // Occluders behind the light, none at all, or a receiver beside every shadow.
+fn within_bounds_and_up_to_both(words: &str, image: &[f32]) {
+    assert!(image.iter().all(|v| (0.0..=1.0).contains(v)), "{words}");
+    let (least, most) = image.iter().fold((1.0_f32, 0.0_f32), |(a, b), v| (a.min(*v), b.max(*v)));
+    assert_eq!(most, 1.0, "{words}: no lit pixel");
+    assert!(least < 0.3, "{words}: no shadow, at least {least}");
+}
+
+fn lit_where_nothing_blocks(words: &str, stage: &mut Stage) {
+    // Occluders behind the light, and none at all.
     let light = || generate::square_light(0.5).unwrap();
     let mut above = generate::card(light());
     above.instances[1].world_from_mesh = DMat4::from_translation(DVec3::new(0.0, 9.0, 0.0));
     let none = generate::stage(light());
-    for (name, scene) in [("behind the light", above), ("no occluder", none)] {
-        let setup = Setup::ground(&scene, 3.0, 33);
-        for words in WAYS {
-            let mut stage = setup.stage(&device, words);
-            let plan = stage.plan(&setup.light(), None).unwrap();
-            let ran: Vec<_> =
-                plan.plan.steps.iter().map(|s| plan.plan.graph.passes()[s.pass].name).collect();
-            assert_eq!(ran, ["visibility.lit"], "{name}, {words}: nothing is drawn");
-            let image = setup.visibility(&mut stage);
-            assert!(image.iter().all(|v| *v == 1.0), "{name}, {words}");
-        }
-    }
-}
-
-#[test]
-fn the_visible_fraction_stays_within_its_bounds_and_reaches_both() {
-    let device = device();
-    let scene = spheres();
-    let setup = Setup::ground(&scene, 2.5, 128);
-    for words in WAYS {
-        let mut stage = setup.stage(&device, words);
-        let image = setup.visibility(&mut stage);
-        assert!(image.iter().all(|v| (0.0..=1.0).contains(v)), "{words}");
-        let (least, most) =
-            image.iter().fold((1.0_f32, 0.0_f32), |(a, b), v| (a.min(*v), b.max(*v)));
-        assert_eq!(most, 1.0, "{words}: no lit pixel");
-        assert!(least < 0.3, "{words}: no shadow, at least {least}");
+    for (name, scene) in [("behind the light", &above), ("no occluder", &none)] {
+        let setup = Setup::ground(scene, 3.0, 96);
+        stage.show(scene, &setup.view, |i| i.role != Role::Occluder).unwrap();
+        let plan = stage.plan(&setup.light(), None).unwrap();
+        let ran: Vec<_> =
+            plan.plan.steps.iter().map(|s| plan.plan.graph.passes()[s.pass].name).collect();
+        assert_eq!(ran, ["visibility.lit"], "{name}, {words}: nothing is drawn");
+        assert!(setup.visibility(stage).iter().all(|v| *v == 1.0), "{name}, {words}");
     }
 }
 
 /// Pixels of a mesh that is only an occluder receive nothing, and neither does the background.
-#[test]
-fn occluders_and_background_are_not_shadowed() {
-    let device = device();
-    let scene = spheres();
-    let camera = antumbra::scene::Camera::framing(&scene, 1.0);
-    let extent = [160, 160];
+fn spares_what_receives_nothing(words: &str, stage: &mut Stage, scene: &Scene) {
+    let camera = antumbra::scene::Camera::framing(scene, 1.0);
+    let extent = [96, 96];
     let view = View::perspective(&camera, extent);
-    let setup = Setup { scene: &scene, view, extent, window: None, occluders_seen: true };
-    for words in WAYS {
-        let mut stage = setup.stage(&device, words);
-        let image = setup.visibility(&mut stage);
-        let roles = stage.gbuffer().roles().unwrap();
-        let spared = image.iter().zip(&roles).filter(|(_, r)| **r == 0);
-        let (mut count, mut wrong) = (0, 0);
-        for (v, _) in spared {
-            count += 1;
-            wrong += usize::from(*v != 1.0);
-        }
-        assert!(count > 100 && wrong == 0, "{words}: {wrong} of {count}");
+    let setup = Setup { scene, view, extent, window: None, occluders_seen: true };
+    stage.show(scene, &view, |_| true).unwrap();
+    let image = setup.visibility(stage);
+    let roles = stage.gbuffer().roles().unwrap();
+    let spared = image.iter().zip(&roles).filter(|(_, r)| **r == 0);
+    let (mut count, mut wrong) = (0, 0);
+    for (v, _) in spared {
+        count += 1;
+        wrong += usize::from(*v != 1.0);
     }
+    assert!(count > 100 && wrong == 0, "{words}: {wrong} of {count}");
 }
 
 /// A scene moved 20 km away looks as it does at the origin: everything on the GPU is relative to the

@@ -3,7 +3,7 @@
 use crate::Problem;
 use crate::choices;
 use crate::groups::{self, FULL, Group, QUICK};
-use crate::hard_cases::store;
+use crate::hard_cases::{store, table};
 use crate::measure::Bench;
 use crate::options::Options;
 use crate::progress::{Estimate, Progress, duration};
@@ -103,7 +103,13 @@ pub fn run(options: &Options) -> Result<bool, Problem> {
 fn hard_cases(options: &Options) -> Result<bool, Problem> {
     if options.write_docs {
         let page = Options::root().join("docs/hard_cases.md");
-        report::docs::copy(&report::docs::HARD_CASES, &options.out.join("hard_cases.md"), &page)?;
+        let tables = store::read(&options.out)?;
+        if tables.is_empty() {
+            return Err(
+                "there is no table of hard cases in --out yet; run --hard-cases first".into()
+            );
+        }
+        report::docs::put(&report::docs::HARD_CASES, &table::markdown(&tables), &page)?;
         println!("{}", page.display());
         return Ok(true);
     }

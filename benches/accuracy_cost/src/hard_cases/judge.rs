@@ -191,7 +191,9 @@ mod tests {
         assert_eq!(put(middle + 13, 0.99), Verdict::Broken);
         assert_eq!(put(middle - 12, 0.3), Verdict::Held);
         let all = judged(rays, |image| {
-            image.iter_mut().skip(middle).step_by(SIDE as usize).for_each(|v| *v = 0.9);
+            for row in image.chunks_exact_mut(SIDE as usize) {
+                row[middle - 12..=middle].iter_mut().for_each(|v| *v += 0.3);
+            }
         });
         assert!(all.outside <= 0.0 && all.verdict == Verdict::Broken, "{all:?}");
     }

@@ -15,6 +15,7 @@ fn cases(rows: &[Row]) -> impl Iterator<Item = &[Row]> {
 fn told(x: f64) -> String {
     match x.abs() {
         0.0 => "0".into(),
+        1.0 => format!("{x:.0}"),
         size if size < 1e-3 => format!("{x:.0e}"),
         size if size < 0.1 => format!("{x:.3}"),
         _ => format!("{x:.2}"),

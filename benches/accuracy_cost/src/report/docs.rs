@@ -53,15 +53,23 @@ pub fn with_table(place: &Place, page: &str, table: &str) -> Result<String, Prob
 /// # Errors
 /// A sentence with the name of the file that cannot be read or written, or whose marks are wrong.
 pub fn copy(place: &Place, table: &Path, path: &Path) -> Result<(), Problem> {
-    let told = |e: &dyn std::fmt::Display| format!("{}: {e}", path.display());
     let table = std::fs::read_to_string(table)
         .map_err(|e| format!("{}: {e}; run the bench first", table.display()))?;
+    put(place, &table, path)
+}
+
+/// Puts a table into its place in a page.
+///
+/// # Errors
+/// As [`copy`].
+pub fn put(place: &Place, table: &str, path: &Path) -> Result<(), Problem> {
+    let told = |e: &dyn std::fmt::Display| format!("{}: {e}", path.display());
     let page = match std::fs::read_to_string(path) {
         Ok(page) => page,
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => String::new(),
         Err(e) => return Err(told(&e)),
     };
-    let page = with_table(place, &page, &table).map_err(|e| told(&e))?;
+    let page = with_table(place, &page, table).map_err(|e| told(&e))?;
     std::fs::write(path, page).map_err(|e| told(&e))
 }
 
