@@ -220,8 +220,8 @@ fn descriptions() {
             |d| d.other_settings = vec![d.settings; 8],
             &["8 other settings", "7"],
         ),
-        d("no map", |d| d.settings.map = 0, &["setting map", "16 to 4096"]),
-        d("an absurd map", |d| d.settings.map = 1 << 20, &["setting map", "16 to 4096"]),
+        d("no map", |d| d.settings.map = 0, &["setting map", "1 to 4096"]),
+        d("an absurd map", |d| d.settings.map = 1 << 20, &["setting map", "1 to 4096"]),
         d("a bad knob", |d| d.settings.soft_shadow_map.tolerance = f32::NAN, &["tolerance", "NaN"]),
         d(
             "a bad knob of the others",
