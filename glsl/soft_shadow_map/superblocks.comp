@@ -50,6 +50,14 @@ void main()
         return;
     }
     float mean = sum / count;
+    // To the last rounding, as in blocks.comp.
+    float rest = 0.0;
+    for (int i = 0; i < FAN * FAN; ++i) {
+        int at = first + (i / FAN) * push.row * FAN + i % FAN;
+        Node node = unpack_node(blocks[2 * at], blocks[2 * at + 1]);
+        rest += node.count > 0.0 ? node.count * (node.mean - mean) : 0.0;
+    }
+    mean += rest / count;
     float s2 = 0.0;
     float s3 = 0.0;
     for (int i = 0; i < FAN * FAN; ++i) {
