@@ -55,8 +55,12 @@ vec4 texel_occlusion(vec2 lo, float w_o, Receivers r, vec2 scale)
     vec4 m_y = scale.y * k;
     vec4 a_x = (lo.x - r.t_x) * m_x + 0.5;
     vec4 a_y = (lo.y - r.t_y) * m_y + 0.5;
-    vec4 x = clamp(a_x + m_x, 0.0, 1.0) - clamp(a_x, 0.0, 1.0);
-    vec4 y = clamp(a_y + m_y, 0.0, 1.0) - clamp(a_y, 0.0, 1.0);
+    // The other ends as the next texel has them: rounded with a_x + m_x, equal texels would all be wrong by the
+    // same part of 2^-24, and their sum by that part of a row's texels.
+    vec4 b_x = (lo.x + 1.0 - r.t_x) * m_x + 0.5;
+    vec4 b_y = (lo.y + 1.0 - r.t_y) * m_y + 0.5;
+    vec4 x = clamp(b_x, 0.0, 1.0) - clamp(a_x, 0.0, 1.0);
+    vec4 y = clamp(b_y, 0.0, 1.0) - clamp(a_y, 0.0, 1.0);
     return mix(vec4(0.0), x * y, is_above(lo, w_o, r));
 }
 
@@ -134,6 +138,10 @@ vec4 gather(Map map, int side, Receivers r)
 {
     Tile tile = tile_of(r);
     vec4 sum = vec4(0.0);
+    // By superblock, by row and at last: thousands of equal numbers added to one round the same way each time
+    // (docs/rounding.md).
+    vec4 sum_of_row = vec4(0.0);
+    vec4 sum_of_superblock = vec4(0.0);
     if (tile.w.x >= map.w_max) {
         return sum;
     }
@@ -183,13 +191,21 @@ vec4 gather(Map map, int side, Receivers r)
             plane = kind == OUTSIDE ? -1 : plane_side(node, lo, extent, r);
             kind = plane < 0 ? OUTSIDE : (kind == INSIDE && (plane == 0 || pairs)) ? MIXED : kind;
             if (kind == INSIDE) {
-                sum += cell * series(vec4(node.count, 0.0, node.s2, node.s3), node.mean, r.w);
+                sum_of_superblock += cell * series(vec4(node.count, 0.0, node.s2, node.s3), node.mean, r.w);
             }
             children = !whole ? children & (children - 1u) : kind == MIXED ? node.mask.x : 0u;
             open = kind == MIXED && !whole;
             block = (from_side * map.row * FAN + blocks_at.y) * map.row * FAN + blocks_at.x;
             if (children == 0u) {
-                at = at.x < to.x ? at + ivec2(1, 0) : ivec2(from.x, at.y + 1);
+                // Its last block, where it is still to be opened, counts with the next one.
+                sum_of_row += sum_of_superblock;
+                sum_of_superblock = vec4(0.0);
+                at.x += 1;
+                if (at.x > to.x) {
+                    at = ivec2(from.x, at.y + 1);
+                    sum += sum_of_row;
+                    sum_of_row = vec4(0.0);
+                }
             }
         }
         if (!open) {
@@ -208,7 +224,7 @@ vec4 gather(Map map, int side, Receivers r)
             ivec2 core_lo = ivec2(clamp(ceil(tile.t_max - inner - lo), 0.0, float(BLOCK)));
             ivec2 core_hi = ivec2(clamp(floor(tile.t_min + inner - lo), 0.0, float(BLOCK)));
             if (core_lo.x < core_hi.x && core_lo.y < core_hi.y) {
-                sum += cell * series(sums_within(block, core_lo, core_hi), node.mean, r.w);
+                sum_of_superblock += cell * series(sums_within(block, core_lo, core_hi), node.mean, r.w);
                 todo &= ~rectangle_mask(core_lo, core_hi);
             }
         }
@@ -237,9 +253,9 @@ vec4 gather(Map map, int side, Receivers r)
             part += next_texel(todo, block, lo, r, map.scale);
             part += next_texel(todo, block, lo, r, map.scale);
         }
-        sum += part;
+        sum_of_superblock += part;
     }
-    return sum;
+    return sum + (sum_of_row + sum_of_superblock);
 }
 
 #endif
