@@ -32,7 +32,7 @@
 //! a node's n r². Each 1/(1 + δ)² is at least 1/(1 + q)², so that is at most g(q) = f(q) (1 + q)² of
 //! what the node hides. All nodes together are wrong by at most g(q) of the occlusion, which is
 //! g(q)/(1 − g(q)) of the visible fraction at most. [`spread_of`] inverts g. The float sums add
-//! about 1e-6 to that, whatever the tolerance.
+//! 2e-6 at most to that, whatever the tolerance (measured; `docs/rounding.md` derives a bound).
 //!
 //! **At the pixels.** The same gather, evaluated at the G-buffer's pixels, needs no receiver map and
 //! no split into occluders and receivers, which the authors name as their largest limitation
@@ -62,7 +62,7 @@
 //! **Blending in 32 bits.** Thousands of equal patches added to one float round the same way each time:
 //! 2e-5 of the light at N = 256, growing with N². So contributions are rounded to multiples of 2⁻²⁴
 //! first, up or down by a plane-filling sequence of thresholds; sums of those are exact, and the error
-//! is under 5e-6 at N = 512. In 16 bits nothing helps (appendix A), which `blend-fp16` shows.
+//! is under 7e-6 up to N = 4096. In 16 bits nothing helps (appendix A), which `blend-fp16` shows.
 //!
 //! Where we read the paper: "one pass with bottom patches" (Fig. 11b) is not described there. Here
 //! each front texel's patch is put at the distance of the furthest back face behind it, which costs
@@ -74,9 +74,11 @@
 //!
 //! Mesa's CPU driver (llvmpipe, 22.3) cuts a shader invocation off after 65,535 turns of all its loops
 //! together, and says nothing: light leaks in where the rest of the sum is missing. The gather takes
-//! eight texels a turn for that reason, which is enough up to N = 2048. With N = 4096 it is enough for
-//! pixels that lie as close as an image's do under one side; coarser pixels or both sides may lose
-//! some umbra there. Other drivers have no such limit.
+//! eight texels a turn for that reason, which is enough up to N = 2048 for pixels that lie as close as an
+//! image's do. With N = 4096 it is enough for those under one side; both sides may lose some umbra there.
+//! A coarse receiver map, whose texels share no nodes, may lose most of it under a light whose window is half
+//! of the occluder map: of three texels a side from N = 1024 on, of eight from N = 2048. Other drivers have no
+//! such limit.
 
 mod passes;
 mod pixels;
