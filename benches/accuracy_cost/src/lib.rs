@@ -13,6 +13,7 @@
 
 pub mod choices;
 pub mod curtis;
+pub mod envelope;
 pub mod findings;
 pub mod groups;
 pub mod hard_cases;

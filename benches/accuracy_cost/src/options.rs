@@ -38,11 +38,15 @@ pub struct Options {
     /// `--write-docs` it is copied into docs/hard_cases.md
     #[arg(long, conflicts_with_all = ["quick", "scenes", "report", "of_choices"])]
     pub hard_cases: bool,
+    /// Measure over what lights, distances and resolutions each technique errs as in between, and nothing
+    /// else: envelope.md, .csv and .json
+    #[arg(long, conflicts_with_all = ["quick", "scenes", "only", "of_choices", "write_choices", "report"])]
+    pub envelope: bool,
     /// Measure nothing: make the report anew of what was measured, by whatever commit
     #[arg(long)]
     pub report: bool,
     /// Measure nothing: copy the headline table of --out, with the command that made it, into
-    /// docs/accuracy.md
+    /// docs/accuracy.md, or with `--envelope` the tables of that into docs/envelope.md
     #[arg(long, conflicts_with = "report")]
     pub write_docs: bool,
     /// What cargo itself passes

@@ -2,11 +2,13 @@
 
 use crate::Problem;
 use crate::choices;
+use crate::envelope;
 use crate::groups::{self, FULL, Group, QUICK};
-use crate::hard_cases::{store, table};
+use crate::hard_cases::store;
 use crate::measure::Bench;
 use crate::options::Options;
 use crate::progress::{Estimate, Progress, duration};
+use crate::report::docs::{ENVELOPE, HARD_CASES, HEADLINE};
 use crate::report::{self, Report};
 use crate::scenes::{self, SceneSpec, Source};
 use crate::store::{Header, Outcome, Row, Store};
@@ -24,14 +26,21 @@ const QUICK_BUDGET_S: f64 = 270.0;
 /// # Errors
 /// A sentence for what stops the run: no device, a folder that cannot be read or written.
 pub fn run(options: &Options) -> Result<bool, Problem> {
+    if options.write_docs {
+        let page = match (options.hard_cases, options.envelope) {
+            (true, _) => &HARD_CASES,
+            (_, true) => &ENVELOPE,
+            _ => &HEADLINE,
+        };
+        let path = report::docs::copy(page, &options.out, &Options::root())?;
+        println!("{}", path.display());
+        return Ok(true);
+    }
     if options.hard_cases {
         return hard_cases(options);
     }
-    if options.write_docs {
-        let page = Options::root().join("docs/accuracy.md");
-        report::docs::copy(&report::docs::HEADLINE, &options.out.join("headline.md"), &page)?;
-        println!("{}", page.display());
-        return Ok(true);
+    if options.envelope {
+        return envelope::run(options);
     }
     if options.exam {
         choices::exam(options)?;
@@ -99,20 +108,8 @@ pub fn run(options: &Options) -> Result<bool, Problem> {
     Ok(finish(&report, options)? && held)
 }
 
-/// Measures or copies the table of hard cases; whether nothing is broken.
+/// Measures the table of hard cases; whether nothing is broken.
 fn hard_cases(options: &Options) -> Result<bool, Problem> {
-    if options.write_docs {
-        let page = Options::root().join("docs/hard_cases.md");
-        let tables = store::read(&options.out)?;
-        if tables.is_empty() {
-            return Err(
-                "there is no table of hard cases in --out yet; run --hard-cases first".into()
-            );
-        }
-        report::docs::put(&report::docs::HARD_CASES, &table::markdown(&tables), &page)?;
-        println!("{}", page.display());
-        return Ok(true);
-    }
     std::fs::create_dir_all(&options.out).map_err(|e| format!("{}: {e}", options.out.display()))?;
     let device = HeadlessDevice::new(&HeadlessOptions::default()).map_err(|e| e.to_string())?;
     store::measure(&device, &options.out)
@@ -202,7 +199,7 @@ fn told(spec: &SceneSpec) -> String {
 }
 
 /// git's commit, and a hash of this program where it is not that commit's.
-fn commit() -> String {
+pub(crate) fn commit() -> String {
     let git = |arguments: &[&str]| {
         let output =
             Command::new("git").current_dir(Options::root()).args(arguments).output().ok()?;

@@ -38,7 +38,9 @@ pub fn measure(device: &HeadlessDevice, out: &Path) -> Result<bool, Problem> {
     let mut tables = read(out)?;
     tables.insert(device.name().into(), rows);
     let json = serde_json::to_string_pretty(&tables).map_err(|e| e.to_string())?;
-    let path = out.join(FILE);
-    std::fs::write(&path, json).map_err(|e| format!("{}: {e}", path.display()))?;
+    for (name, text) in [(FILE, json), ("hard_cases.md", table::markdown(&tables))] {
+        let path = out.join(name);
+        std::fs::write(&path, text).map_err(|e| format!("{}: {e}", path.display()))?;
+    }
     Ok(good)
 }

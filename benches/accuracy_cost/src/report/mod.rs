@@ -66,6 +66,14 @@ pub fn write(report: &Report, out: &Path) -> Result<(), Problem> {
         ("headline.md", markdown(report)),
         ("index.html", html::page(report)),
     ];
+    write_files(out, files)
+}
+
+/// Writes files into a folder, each whole or not at all.
+///
+/// # Errors
+/// A sentence with the file that cannot be written.
+pub fn write_files<const N: usize>(out: &Path, files: [(&str, String); N]) -> Result<(), Problem> {
     for (name, text) in files {
         let path = out.join(name);
         let part = out.join(format!(".{name}.part"));

@@ -1,0 +1,346 @@
+//! The envelope: over what lights, distances and resolutions a technique errs about as it does in between.
+//!
+//! ```text
+//!   error │ ╲                      ╱
+//!   1.5 × ┤┄┄┄╲┄┄┄┄┄┄┄┄┄┄┄┄┄┄┄┄┄┄╱┄┄┄
+//!    1 ×  ┤     ╲___________●____╱           ● the centre, which every sweep goes through
+//!         └──────┊───────────────┊────────
+//!                └── envelope ───┘
+//! ```
+//! One variable at a time leaves the centre, [`CENTRE`]; the truth is exact, so that there is no noise but
+//! that of where pixels are. The techniques compute what they can compute: what a node's planner would
+//! leave out for costing next to nothing ([`antumbra::Description::max_error`]) is not left out.
+
+mod page;
+mod place;
+mod range;
+
+use crate::options::Options;
+use crate::progress::duration;
+use crate::run::commit;
+use crate::techniques::{Method, method};
+use crate::truth::{mask, receivers};
+use crate::{Problem, report};
+use antumbra::gpu::headless::{HeadlessDevice, HeadlessOptions, Stage};
+use antumbra::scene::{Instance, Role};
+use antumbra::truth::ErrorSummary;
+use place::{CENTRE, FLAT, Place, Ready, SOLID};
+pub use range::{Envelope, FACTOR, FLOOR, Step};
+use serde::Serialize;
+use std::time::Instant;
+
+/// The scenes.
+const SCENES: [&str; 2] = [FLAT, SOLID];
+
+/// The node's four, then what users would pick instead. All as they are by default, but for the maps' side.
+const TECHNIQUES: [&str; 8] = [
+    "soft-shadow-map",
+    "ray-march",
+    "occlusion-textures",
+    "linear-light",
+    "hard",
+    "pcss",
+    "back-projection",
+    "many-lights",
+];
+
+/// One variable of a [`Place`].
+struct Axis {
+    /// What it is called, in its table's heading.
+    name: &'static str,
+    /// What its numbers are, after a colon.
+    unit: &'static str,
+    /// Where the sweep looks, rising; the centre is among them.
+    steps: &'static [f64],
+    /// Reads the variable.
+    get: fn(&Place) -> f64,
+    /// Sets it, and nothing else.
+    set: fn(&mut Place, f64),
+}
+
+const AXES: [Axis; 5] = [
+    Axis {
+        name: "Light size",
+        unit: "the light's side over the object's",
+        steps: &[
+            0.001, 0.002, 0.004, 0.01, 0.02, 0.04, 0.1, 0.2, 0.4, 1.0, 2.0, 4.0, 10.0, 20.0, 40.0,
+            100.0,
+        ],
+        get: |place| place.light,
+        set: |place, to| place.light = to,
+    },
+    Axis {
+        name: "Distance from the receiver",
+        unit: "where the object is on its way from the ground, 0, to the light, 1",
+        steps: &[
+            0.001, 0.003, 0.01, 0.03, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 0.97, 0.99, 0.997, 0.999,
+        ],
+        get: |place| place.height,
+        set: |place, to| place.height = to,
+    },
+    Axis {
+        name: "Distance of the light",
+        unit: "from the ground to the light over the object's size, the object halfway",
+        steps: &[1.01, 1.1, 1.5, 2.0, 4.0, 10.0, 30.0, 100.0, 1e3, 1e4, 1e5],
+        get: |place| place.gap,
+        set: |place, to| place.gap = to,
+    },
+    Axis {
+        name: "Maps",
+        unit: "the side of the technique's maps in texels",
+        steps: &[16.0, 32.0, 64.0, 128.0, 256.0, 512.0, 1024.0, 2048.0],
+        get: |place| place.map.into(),
+        set: |place, to| place.map = to as u32,
+    },
+    Axis {
+        name: "Image",
+        unit: "pixels across all that is shadowed",
+        steps: &[12.0, 24.0, 48.0, 96.0, 192.0],
+        get: |place| place.pixels.into(),
+        set: |place, to| place.pixels = to as u32,
+    },
+];
+
+impl Axis {
+    /// The centre's index among the steps.
+    fn centre(&self) -> Option<usize> {
+        let at = (self.get)(&CENTRE);
+        self.steps.iter().position(|step| *step == at)
+    }
+}
+
+/// What one technique did at one place.
+#[derive(Clone, Debug, Serialize)]
+struct Row {
+    scene: &'static str,
+    axis: &'static str,
+    at: f64,
+    technique: &'static str,
+    /// The mean |error| over the pixels in shadow or penumbra, 0 without any; none where it was not measured.
+    mean_abs_error: Option<f64>,
+    /// Pixels that the mean is of.
+    pixels: usize,
+    /// Pixels in penumbra.
+    penumbra_pixels: usize,
+    /// The greatest share of the light that is hidden from a pixel, by the truth.
+    darkest: f64,
+    /// A pixel's side in metres.
+    pixel_m: f64,
+    /// Whether it was measured, and why not.
+    status: Status,
+}
+
+/// How it went.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+enum Status {
+    /// It was measured.
+    Measured,
+    /// The settings are none that the node takes, and it says why.
+    Refused(String),
+    /// Something that should have worked did not.
+    Failed(String),
+}
+
+impl From<Problem> for Status {
+    fn from(problem: Problem) -> Self {
+        Self::Failed(problem)
+    }
+}
+
+/// Measures every sweep, and writes envelope.md, .csv and .json; whether nothing failed.
+///
+/// # Errors
+/// A sentence for what stops the run: no device, a folder that cannot be written.
+pub fn run(options: &Options) -> Result<bool, Problem> {
+    let device = HeadlessDevice::new(&HeadlessOptions::default()).map_err(|e| e.to_string())?;
+    std::fs::create_dir_all(&options.out)
+        .map_err(|e| format!("--out {}: {e}", options.out.display()))?;
+    let started = Instant::now();
+    let mut rows = Vec::new();
+    for scene in SCENES {
+        let mut bench = Bench { device: &device, scene, kept: TECHNIQUES.map(|_| None) };
+        let centre = bench.measure("", f64::NAN, &CENTRE)?;
+        for axis in &AXES {
+            for &at in axis.steps {
+                let mut place = CENTRE;
+                (axis.set)(&mut place, at);
+                if place == CENTRE {
+                    let here = |row: &Row| Row { axis: axis.name, at, ..row.clone() };
+                    rows.extend(centre.iter().map(here));
+                } else {
+                    rows.extend(bench.measure(axis.name, at, &place)?);
+                }
+            }
+            let took = duration(started.elapsed().as_secs_f64());
+            println!("{scene}: {} ({took} so far)", axis.name.to_lowercase());
+        }
+    }
+    let made = page::Made { commit: commit(), driver: device.name().into(), rows };
+    report::write_files(
+        &options.out,
+        [
+            ("envelope.md", made.markdown()),
+            ("envelope.csv", made.csv()),
+            ("envelope.json", made.json()?),
+        ],
+    )?;
+    println!("Look at {}", options.out.join("envelope.md").display());
+    let mut good = true;
+    for Row { scene, axis, at, technique, status, .. } in &made.rows {
+        if let Status::Failed(why) = status {
+            println!("failed: {scene}, {axis} {at}, {technique}: {why}");
+            good = false;
+        }
+    }
+    Ok(good)
+}
+
+/// One scene, and its techniques' stages at the centre's resolutions, so that nothing is compiled twice.
+struct Bench<'a> {
+    device: &'a HeadlessDevice,
+    scene: &'static str,
+    kept: [Option<Stage>; TECHNIQUES.len()],
+}
+
+impl Bench<'_> {
+    /// Every technique at one place.
+    fn measure(&mut self, axis: &'static str, at: f64, place: &Place) -> Result<Vec<Row>, Problem> {
+        let ready = place.ready(self.scene)?;
+        let mut truth: Option<(Vec<f32>, Vec<bool>)> = None;
+        let mut rows = Vec::new();
+        for (index, technique) in TECHNIQUES.into_iter().enumerate() {
+            let done = self.compare(index, place, &ready, &mut truth);
+            let visible = truth.iter().flat_map(|(visible, _)| visible);
+            let found = done.as_ref().ok();
+            rows.push(Row {
+                scene: self.scene,
+                axis,
+                at,
+                technique,
+                mean_abs_error: found.map(|s| s.mean_abs_error),
+                pixels: found.map_or(0, |s| s.pixels),
+                penumbra_pixels: found.map_or(0, |s| s.penumbra_pixels),
+                darkest: visible.map(|v| 1.0 - f64::from(*v)).fold(0.0, f64::max),
+                pixel_m: 2.0 * ready.half / f64::from(place.pixels),
+                status: done.err().unwrap_or(Status::Measured),
+            });
+        }
+        Ok(rows)
+    }
+
+    /// One technique's error; the first one's pixels say where the truth is asked for.
+    fn compare(
+        &mut self,
+        index: usize,
+        place: &Place,
+        ready: &Ready,
+        truth: &mut Option<(Vec<f32>, Vec<bool>)>,
+    ) -> Result<ErrorSummary, Status> {
+        let mut stage = self.stage(index, place, ready)?;
+        let (truth, mask) = match truth {
+            Some(known) => known,
+            None => {
+                let pixels = receivers(stage.gbuffer())?;
+                truth.insert((ready.truth(&pixels)?, mask(&pixels)))
+            }
+        };
+        let image = image(&mut stage, ready)?;
+        if is_kept(place) {
+            self.kept[index] = Some(stage);
+        }
+        let summary = ErrorSummary::between(truth, &image, Some(mask));
+        summary.map_err(|e| Status::Failed(e.to_string()))
+    }
+
+    /// The technique's stage, showing this place.
+    fn stage(&mut self, index: usize, place: &Place, ready: &Ready) -> Result<Stage, Status> {
+        let told = |e: antumbra::Error| e.to_string();
+        if is_kept(place)
+            && let Some(mut stage) = self.kept[index].take()
+        {
+            stage.show(&ready.scene, &ready.view, seen).map_err(told)?;
+            return Ok(stage);
+        }
+        let name = TECHNIQUES[index];
+        let found = method(name, &format!("map={}", place.map)).map_err(Status::Refused)?;
+        let Some(Method::Node(settings)) = found else {
+            return Err(Status::Failed(format!("{name} is none of the node's techniques")));
+        };
+        let extent = [place.pixels; 2];
+        let Ready { scene, view, .. } = ready;
+        let mut stage =
+            Stage::new(self.device, scene, view, extent, *settings.clone(), seen).map_err(told)?;
+        stage.configure_with(*settings, |d| d.max_error = None).map_err(told)?;
+        Ok(stage)
+    }
+}
+
+/// Whether a place has the resolutions that stages are kept of.
+fn is_kept(place: &Place) -> bool {
+    place.map == CENTRE.map && place.pixels == CENTRE.pixels
+}
+
+/// Pixels look at the ground alone.
+fn seen(instance: &Instance) -> bool {
+    instance.role == Role::Receiver
+}
+
+/// The visible fraction of every pixel, by the node.
+fn image(stage: &mut Stage, ready: &Ready) -> Result<Vec<f32>, Problem> {
+    let told = |e: antumbra::Error| e.to_string();
+    let light = ready.scene.light(None).map_err(told)?.light;
+    let plan = stage.plan(&light, None).map_err(told)?;
+    stage.run(&plan).map_err(told)?;
+    stage.visibility().map_err(told)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use antumbra::truth::Receiver;
+    use glam::DVec3;
+
+    #[test]
+    fn every_sweep_rises_through_the_centre_and_sets_its_own_variable_alone() {
+        for axis in &AXES {
+            assert!(axis.steps.is_sorted_by(|a, b| a < b), "{}", axis.name);
+            let centre = axis.centre().unwrap_or_else(|| panic!("{}", axis.name));
+            let mut place = CENTRE;
+            (axis.set)(&mut place, axis.steps[0]);
+            assert_ne!(place, CENTRE, "{}", axis.name);
+            (axis.set)(&mut place, axis.steps[centre]);
+            assert_eq!(place, CENTRE, "{}", axis.name);
+        }
+    }
+
+    #[test]
+    fn a_view_holds_the_shadow_and_not_much_more() {
+        for scene in SCENES {
+            for (light, height) in [(0.4, 0.5), (10.0, 0.5), (0.4, 0.97)] {
+                let place = Place { light, height, ..CENTRE };
+                let ready = place.ready(scene).unwrap();
+                let dark = |half: f64| {
+                    let on = |i: u32| half * (f64::from(i) / 16.0 - 1.0);
+                    let at = |i: u32| Receiver {
+                        position: DVec3::new(on(i % 33), 0.0, on(i / 33)),
+                        normal: DVec3::Y,
+                    };
+                    let all: Vec<_> = (0..33 * 33).map(at).collect();
+                    let inside = |r: &Receiver| {
+                        let clip = ready.view.clip_from_world.project_point3(r.position);
+                        clip.truncate().abs().max_element() <= 1.0
+                    };
+                    let truth = ready.truth(&all).unwrap();
+                    let of = all.iter().zip(truth).filter(|(_, v)| *v < 0.999);
+                    let (within, beyond): (Vec<_>, Vec<_>) = of.partition(|(r, _)| inside(r));
+                    (within.len(), beyond.len())
+                };
+                let (within, beyond) = dark(1.5 * ready.half);
+                assert_eq!(beyond, 0, "{scene} {place:?}");
+                // Of the grid, a view's square is 4/9.
+                assert!(within > 33 * 33 / 20, "{scene} {place:?}: {within}");
+            }
+        }
+    }
+}
