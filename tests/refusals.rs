@@ -225,8 +225,8 @@ fn descriptions() {
         d("a bad knob", |d| d.settings.soft_shadow_map.tolerance = f32::NAN, &["tolerance", "NaN"]),
         d(
             "a bad knob of the others",
-            |d| d.other_settings.push(Settings { map: 7, ..d.settings }),
-            &["setting map", "7"],
+            |d| d.other_settings.push(Settings { map: 4097, ..d.settings }),
+            &["setting map", "4097"],
         ),
         d(
             "more rays than a list of pixels holds",
