@@ -50,8 +50,8 @@ DEVICE := $(filter-out $(NO_DEVICE),$(basename $(notdir $(wildcard tests/*.rs)))
 # Always the whole workspace: cargo builds the dependencies anew where only one package is asked for.
 test_once := $(CARGO) test --workspace --lib $(NO_DEVICE:%=--test %)
 # The embed example's own tests are what the node says to an engine that gets something wrong;
-# wrong_light is the benchmark's, that its report sees what is wrong.
-test_on_device := $(CARGO) test --workspace $(DEVICE:%=--test %) --test wrong_light --example embed
+# wrong_light and hard_cases are the benchmark's: that its report sees what is wrong, and its table of hard cases.
+test_on_device := $(CARGO) test --workspace $(DEVICE:%=--test %) --test wrong_light --test hard_cases --example embed
 # Cargo must not look for the job server of the make above.
 test_on_driver := env -u MAKEFLAGS $(test_on_device)
 

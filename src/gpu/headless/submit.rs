@@ -18,7 +18,7 @@ impl Submitted {
     ///
     /// # Errors
     /// [`Error::Vulkan`] or [`Error::DeviceLost`] if the driver says so.
-    pub fn wait(self) -> Result<Duration, Error> {
+    pub fn wait(mut self) -> Result<Duration, Error> {
         self.objects.wait()?;
         Ok(self.at.elapsed())
     }
@@ -139,14 +139,16 @@ impl OneShot {
         Ok(new)
     }
 
-    /// Waits for the fence, where it was submitted.
-    fn wait(&self) -> Result<(), Error> {
+    /// Waits for the fence, where it was submitted and has not been waited for.
+    fn wait(&mut self) -> Result<(), Error> {
         if !self.submitted {
             return Ok(());
         }
         // SAFETY: the fence was submitted.
         unsafe { self.device.device().wait_for_fences(&[self.fence], true, u64::MAX) }
-            .map_err(Error::vulkan("waiting for a command buffer"))
+            .map_err(Error::vulkan("waiting for a command buffer"))?;
+        self.submitted = false;
+        Ok(())
     }
 }
 

@@ -2,7 +2,7 @@
 
 use antumbra::RectangleLight;
 use antumbra::gpu::headless::View;
-use antumbra::scene::{AreaLight, Mesh, Role, Scene, generate};
+use antumbra::scene::{Mesh, Role, Scene, generate};
 use glam::{DMat4, DVec3};
 
 /// The shape of something that blocks light.
@@ -193,14 +193,7 @@ impl Set {
             let (mesh, at) = place.put(block.shape.mesh(), block.at);
             scene.add(&format!("block {index}"), mesh, at, block.role);
         }
-        let light = placed(&self.light, place)?;
-        scene.lights.push(AreaLight {
-            name: "light".into(),
-            light,
-            outline: Vec::new(),
-            color: [1.0; 3],
-            intensity: 1.0,
-        });
+        scene.lights = generate::stage(placed(&self.light, place)?).lights;
         Ok(scene)
     }
 

@@ -130,6 +130,16 @@ impl HardCase {
     }
 }
 
+/// Where a scene or its maps are too large for four lines of eight samples.
+const TWO_LINES: Noise = Noise {
+    technique: "linear-light",
+    words: "technique=linear-light lines=2 samples=2",
+    worst: 2.0 / 4.0,
+    mean: 1.0 / 8.0 + 0.01,
+    why: "half a texel's diagonal, the texel that a skin ends at and that of a bilinear filter; two lines, so that each \
+          of two edges is off by up to 1/4, in the mean 1/16; 0.01 along the lines",
+};
+
 /// Why maps from the light's centre lose what is near the light.
 const ASIDE: &str =
     "a map looks no further aside than 84°, and what is this near to the light ends beyond";

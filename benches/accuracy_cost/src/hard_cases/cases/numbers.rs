@@ -1,6 +1,6 @@
 //! Hard by the numbers that they are told in.
 
-use super::{CARD, HardCase, LIGHT, Limit, Noise, base, card, light, sheet};
+use super::{CARD, HardCase, LIGHT, Limit, TWO_LINES, base, card, light, sheet};
 use crate::hard_cases::set::{Place, Set};
 use glam::{DMat4, DVec3};
 
@@ -53,20 +53,11 @@ fn distances() -> Vec<HardCase> {
     ]
 }
 
-/// Four lines of eight samples would take more memory than they may have.
-const FEWER_MAPS: [Noise; 1] = [Noise {
-    technique: "linear-light",
-    words: "technique=linear-light lines=2 samples=2",
-    worst: 2.0 / 4.0,
-    mean: 1.0 / 8.0 + 0.01,
-    why: "half a texel's diagonal, and the texel of a bilinear filter; two lines, so that each of two edges is off by \
-          up to 1/4, in the mean 1/16; 0.01 along the lines",
-}];
-
 fn maps() -> Vec<HardCase> {
     let sided = |map: u32| HardCase { map, ..of(format!("maps of {map} × {map}")) };
     let mut all: Vec<_> = [1, 2, 3, 5, 7, 16, 17, 31, 64, 127, 251, 509].map(sided).into();
-    all.push(HardCase { noise: FEWER_MAPS.into(), ..sided(1021) });
+    // Four lines of eight samples would take more memory than they may have.
+    all.push(HardCase { noise: vec![TWO_LINES], ..sided(1021) });
     all
 }
 
