@@ -19,7 +19,6 @@ float own_slope(bool blocks)
     return blocks ? OWN_SLOPE : 0.0;
 }
 
-
 // Rounding of (u, v, w), of the sum that tells above from below, and of the G-buffer's position.
 const float ROUNDING = 1.0 / 2097152.0;
 

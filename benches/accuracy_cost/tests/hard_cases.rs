@@ -16,7 +16,7 @@ fn rows(cases: &[HardCase]) -> Vec<Row> {
     let device = HeadlessDevice::new(&HeadlessOptions { validation, ..Default::default() })
         .unwrap_or_else(|e| panic!("{e}"));
     let log = device.message_log();
-    let rows = run::run(&device, cases, |_, _, _, _| {}).unwrap_or_else(|e| panic!("{e}"));
+    let rows = run::run(&device, cases).unwrap_or_else(|e| panic!("{e}"));
     drop(device);
     assert!(log.messages().is_empty(), "{:?}", log.messages());
     rows

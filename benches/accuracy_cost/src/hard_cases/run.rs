@@ -21,15 +21,11 @@ const POINT: f64 = 1e-6;
 const GUESSED: f64 = 1.5;
 
 /// Runs all cases with all techniques, one node for as many as it serves; rows are in the order of the cases, and
-/// of the techniques within them. Each image goes to `look`, with its truth.
+/// of the techniques within them.
 ///
 /// # Errors
 /// What a device or the truth refuses, with the case.
-pub fn run(
-    device: &HeadlessDevice,
-    cases: &[HardCase],
-    mut look: impl FnMut(&HardCase, &Row, &[f32], &[f64]),
-) -> Result<Vec<Row>, Problem> {
+pub fn run(device: &HeadlessDevice, cases: &[HardCase]) -> Result<Vec<Row>, Problem> {
     let mut prepared: Vec<Prepared> = cases
         .iter()
         .map(|case| Prepared::new(case).map_err(|e| of(case, e)))
@@ -54,9 +50,7 @@ pub fn run(
             if std::mem::take(&mut fresh) {
                 shown.configure(settings(words, *map)?).map_err(|e| of(case, e.to_string()))?;
             }
-            let (row, image) = prepared.row(shown, case, held).map_err(|e| of(case, e))?;
-            let truth: Vec<f64> = prepared.truth().map_err(|e| of(case, e))?;
-            look(case, &row, &image, &truth);
+            let row = prepared.row(shown, case, held).map_err(|e| of(case, e))?;
             rows.insert((at, technique), row);
         }
     }
@@ -140,21 +134,15 @@ impl<'a> Prepared<'a> {
         stage: &mut Stage,
         case: &HardCase,
         held: &'static Held,
-    ) -> Result<(Row, Vec<f32>), Problem> {
+    ) -> Result<Row, Problem> {
         let light = self.scene.light(None).map_err(told)?.light;
         let plan = stage.plan(&light, case.window).map_err(told)?;
         stage.run(&plan).map_err(told)?;
         let image = stage.visibility().map_err(told)?;
         // Where penumbrae are narrower than a pixel, a hard shadow is all that the node makes.
-        let by = if runs(&plan, "baseline.hard") { techniques::hard() } else { held };
+        let by = if runs(&plan, "baseline.hard") { &techniques::HARD } else { held };
         let noise = case.noise_of(held);
-        let row = judge(case, held, by, noise, self.ranges_of(by)?, &image);
-        Ok((row, image))
-    }
-
-    /// The truth of each pixel.
-    fn truth(&mut self) -> Result<Vec<f64>, Problem> {
-        Ok(self.ranges_of(&techniques::ALL[0])?.iter().map(|range| range.truth).collect())
+        Ok(judge(case, held, by, noise, self.ranges_of(by)?, &image))
     }
 
     fn ranges_of(&mut self, held: &Held) -> Result<&[Range], Problem> {

@@ -32,7 +32,7 @@ pub fn read(out: &Path) -> Result<Tables, Problem> {
 /// # Errors
 /// A sentence for what a device refuses or a file that cannot be written.
 pub fn measure(device: &HeadlessDevice, out: &Path) -> Result<bool, Problem> {
-    let rows = run::run(device, &cases::all(), |_, _, _, _| {})?;
+    let rows = run::run(device, &cases::all())?;
     println!("{}: {}", device.name(), table::counts(&rows));
     let good = rows.iter().all(Row::is_good);
     let mut tables = read(out)?;

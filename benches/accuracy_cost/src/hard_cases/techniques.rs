@@ -49,6 +49,22 @@ const DRAWN: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// to 1.13 of the light (Atty 2006 eq. 3); in the mean a tall box is wrong by 5 %.
 const PATCHES: [f64; 2] = [0.13, 0.05];
 
+/// Hard shadows, which the node also falls back to where a penumbra is no wider than a pixel.
+pub const HARD: Held = Held {
+    name: "hard",
+    words: "technique=hard",
+    expected: Expected::Centre,
+    windowed: true,
+    texels: DRAWN + 1.5,
+    receiver_texels: 0.0,
+    sums: 1e-6,
+    noise: 0.0,
+    mean_noise: 0.0,
+    spread: 0,
+    solids: [0.0; 2],
+    why: "against a point: half a texel's diagonal, and the 3 × 3 texels of its filter",
+};
+
 /// All of them.
 pub const ALL: &[Held] = &[
     Held {
@@ -145,20 +161,7 @@ pub const ALL: &[Held] = &[
         solids: [0.0; 2],
         why: "half a texel's diagonal; 64 points, of which each of two edges meets 15 cells: 30/64, in the mean 0.02",
     },
-    Held {
-        name: "hard",
-        words: "technique=hard",
-        expected: Expected::Centre,
-        windowed: true,
-        texels: DRAWN + 1.5,
-        receiver_texels: 0.0,
-        sums: 1e-6,
-        noise: 0.0,
-        mean_noise: 0.0,
-        spread: 0,
-        solids: [0.0; 2],
-        why: "against a point: half a texel's diagonal, and the 3 × 3 texels of its filter",
-    },
+    HARD,
     Held {
         name: "pcss",
         words: "technique=pcss",
@@ -188,11 +191,6 @@ pub const ALL: &[Held] = &[
         why: "half a texel's diagonal, and the neighbour that a texel reaches to over a gap; sums 2e-5",
     },
 ];
-
-/// The technique that the node falls back to where a penumbra is no wider than a pixel.
-pub fn hard() -> &'static Held {
-    &ALL[6]
-}
 
 impl Held {
     /// What blocks that are not flat and parallel to the light may add, and in the mean.

@@ -28,7 +28,7 @@ fn scales() -> Vec<HardCase> {
 
 /// Why ray marching needs twice the way.
 const FROM_BEHIND: &str =
-    "seen from as far behind the light: 2e3 m are known to 2e-3 m (4 roundings of 2^-23)";
+    "seen from as far behind the light: 2e3 m are known to 2e-3 m (two roundings of 2^-21)";
 
 fn distances() -> Vec<HardCase> {
     let far = |name: &str, offset| HardCase { place: Place { offset, ..Place::HERE }, ..of(name) };
