@@ -79,3 +79,13 @@ impl Error {
         }
     }
 }
+
+/// How many characters of a name a sentence shows.
+pub(crate) const NAME_SHOWN: usize = 60;
+
+/// A name from a file or a command line as a sentence shows it: in quotes, on one line, not endless.
+pub(crate) fn quoted(name: &str) -> String {
+    let shown: String = name.chars().take(NAME_SHOWN).collect();
+    let rest = if shown.len() < name.len() { "…" } else { "" };
+    format!("{shown:?}{rest}")
+}

@@ -18,7 +18,7 @@
 //!        ▼
 //!   the host: visibility × unshadowed irradiance
 //! ```
-//! [`baseline`] has what users would pick instead, from the same inputs to the same result: a hard
+//! [`techniques`] has beside it what users would pick instead, from the same inputs to the same result: a hard
 //! shadow map, PCSS, back-projection, many lights.
 //!
 //! Values go down and never back up. Each of these modules declares its passes as rows of data in a
@@ -55,48 +55,44 @@
 //! |---|---|
 //! | host the node | [`embedding`], then [`node`], [`frame`], [`gpu::Host`], [`gpu::Allocator`], [`light`] |
 //! | turn its knobs | [`settings`] |
-//! | ask for an error or a time instead | [`planner`] |
+//! | ask for an error or a time instead | [`auto`], [`effects`] |
 //! | follow a technique | its module: the idea, the paper's sections, where it departs, its limits |
 //! | see what a frame does | [`graph`], [`graph::Plan::table`], [`graph::Plan::graphviz`] |
 //! | load or make scenes | [`scene`] |
 //! | measure error | `truth` (feature `truth`) |
 //! | run without a window | `gpu::headless` (feature `headless`) |
 
-pub mod baseline;
-pub mod depth_layers;
+pub mod auto;
+pub mod effects;
 #[doc = include_str!("../docs/embedding.md")]
 pub mod embedding {}
 pub mod error;
 pub mod frame;
 pub mod gpu;
 pub mod graph;
+pub mod lent;
 pub mod light;
-pub mod linear_light;
-pub mod nbuffer;
 pub mod node;
-pub mod occlusion_textures;
-pub mod planner;
-pub mod ray_march;
 pub mod scene;
 pub mod settings;
 pub mod shaders;
-pub mod soft_shadow_map;
+pub mod stages;
+pub mod techniques;
 #[cfg(feature = "truth")]
 pub mod truth;
-pub mod visibility;
 
 pub use ash;
 pub use error::Error;
-pub use frame::{
-    BorderBarriers, Description, Frame, FramePlan, FramePlans, Geometry, HostImage, LightTexture,
-    MeshBuffers, MeshInstance, OccluderMaps, Visibility,
-};
+pub use frame::{Description, Frame, FramePlan, FramePlans, LightTexture};
 pub use glam;
 pub use gpu::{Allocator, Host, HostDraw, Requirements, RetireQueue, Retired};
 pub use graph::{Layer, Scope};
+pub use lent::{
+    BorderBarriers, Geometry, HostImage, MeshBounds, MeshBuffers, MeshInstance, OccluderMaps, Role,
+    Visibility,
+};
 pub use light::RectangleLight;
 pub use node::{LayerPass, ShadowNode, VisibilityImage};
-pub use scene::Role;
 pub use settings::{Settings, Technique};
 
 /// The README's example is compiled with the doctests.

@@ -4,13 +4,14 @@ mod shown;
 
 pub use shown::{Inspected, LayerPass, VisibilityImage};
 
+use crate::Error;
+use crate::auto::{self, Auto, Choice};
 use crate::frame::{
     self, Description, Frame, FramePlan, FramePlans, Left, Limits, Memory, Stamp, Whose, Workspace,
 };
 use crate::gpu::{Allocator, Host, HostDraw, NodeObjects, Requirements, Retired};
 use crate::graph::{Draw, Graph, Layer, Owner, Pass, Shape, Target, Work};
-use crate::planner::{self, Auto, Choice};
-use crate::{Error, depth_layers};
+use crate::stages::depth_layers;
 use ash::vk;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -267,7 +268,7 @@ impl ShadowNode {
         let mut retired = None;
         let known = |c: &Choice| self.description.all_settings().any(|s| *s == c.settings);
         if !choices.iter().all(known) {
-            let (settings, other_settings) = planner::distinct(&choices);
+            let (settings, other_settings) = auto::distinct(&choices);
             let description = Description { settings, other_settings, ..self.description.clone() };
             retired = Some(self.reconfigure(allocator, description)?);
         }

@@ -3,10 +3,11 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used)]
 
-use antumbra::baseline::twin::{
-    MapPlane, clearance, disc_to_square, filled_occlusion, level_of, level_side, level_start,
-    pixel_turn,
+use antumbra::techniques::back_projection::twin::{
+    filled_occlusion, level_of, level_side, level_start,
 };
+use antumbra::techniques::common::twin::{MapPlane, clearance};
+use antumbra::techniques::pcss::twin::{disc_to_square, pixel_turn};
 use antumbra_tests::compare::Tolerance;
 use antumbra_tests::{Function, device};
 use num_traits::Float;

@@ -6,8 +6,8 @@
 use antumbra::ash::vk;
 use antumbra::gpu::headless::{HeadlessDevice, View};
 use antumbra::graph::Shape;
-use antumbra::linear_light::twin::{crossing_of, is_edge, part_of_segment, transition};
 use antumbra::scene::{Scene, generate};
+use antumbra::techniques::linear_light::twin::{crossing_of, is_edge, part_of_segment, transition};
 use antumbra::{Description, Settings, Technique};
 use antumbra_tests::compare::Tolerance;
 use antumbra_tests::measure::{

@@ -4,8 +4,8 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
 use antumbra::gpu::headless::{Stage, View};
-use antumbra::linear_light::twin::{between, bits, run_at};
 use antumbra::scene::{Role, Scene, generate};
+use antumbra::techniques::linear_light::twin::{between, bits, run_at};
 use antumbra::{Frame, RectangleLight};
 use antumbra_tests::measure::{Setup, metre_line, model, percent};
 use antumbra_tests::{Function, device};

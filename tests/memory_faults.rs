@@ -7,7 +7,7 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
 use antumbra::graph::{Graph, Owner};
-use antumbra::soft_shadow_map::Accumulate;
+use antumbra::techniques::soft_shadow_map::Accumulate;
 use antumbra::{Description, Error, LightTexture, Requirements, Settings, ShadowNode, frame};
 use antumbra_tests::TestDevice;
 use antumbra_tests::bench::{Bench, Described, EXTENT, Memory, OTHER_EXTENT, host};

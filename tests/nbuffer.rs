@@ -4,8 +4,8 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
 use antumbra::gpu::headless::{ComputeProgram, HeadlessDevice, HostBuffer};
-use antumbra::nbuffer::twin::Values;
-use antumbra::nbuffer::{Kind, Levels};
+use antumbra::stages::nbuffer::twin::Values;
+use antumbra::stages::nbuffer::{Kind, Levels};
 use antumbra_tests::compile::try_compile;
 use antumbra_tests::{Function, device};
 use ash::vk;

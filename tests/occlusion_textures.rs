@@ -5,13 +5,13 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
 use antumbra::ash::vk;
-use antumbra::depth_layers::MapView;
 use antumbra::gpu::headless::{HeadlessDevice, View};
-use antumbra::occlusion_textures::{Combine, twin};
-use antumbra::ray_march::{self, Projection};
 use antumbra::scene::{Mesh, Role, Scene, generate};
+use antumbra::stages::depth_layers::MapView;
+use antumbra::techniques::common::twin::fraction_above;
+use antumbra::techniques::occlusion_textures::{Combine, twin};
+use antumbra::techniques::ray_march::{self, Projection};
 use antumbra::truth::Receiver;
-use antumbra::visibility::twin::fraction_above;
 use antumbra::{Description, RectangleLight, frame};
 use antumbra_tests::device;
 use antumbra_tests::measure::{Setup, model, percent, settings, summary};

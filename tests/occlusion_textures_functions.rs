@@ -3,8 +3,8 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used)]
 
-use antumbra::occlusion_textures::Combine;
-use antumbra::occlusion_textures::twin::{
+use antumbra::techniques::occlusion_textures::Combine;
+use antumbra::techniques::occlusion_textures::twin::{
     bin_of, hidden_with, hidden_with_correlated, kernel_of, packed, slice_weight, solid_of,
     tile_kernel_of, tile_means, tile_sums,
 };

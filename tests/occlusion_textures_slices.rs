@@ -5,8 +5,8 @@
 
 use antumbra::RectangleLight;
 use antumbra::gpu::headless::HeadlessDevice;
-use antumbra::occlusion_textures::twin::BINS;
 use antumbra::scene::{Role, Scene, generate};
+use antumbra::techniques::occlusion_textures::twin::BINS;
 use antumbra_tests::device;
 use antumbra_tests::measure::{Setup, model};
 use glam::{DMat4, DVec3};

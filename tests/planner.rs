@@ -7,8 +7,8 @@
 mod cases;
 
 use antumbra::RectangleLight;
+use antumbra::effects::Outcome;
 use antumbra::gpu::headless::Stage;
-use antumbra::planner::Outcome;
 use antumbra_tests::device;
 use antumbra_tests::measure::{Setup, percent, settings};
 use cases::cases;

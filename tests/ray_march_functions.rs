@@ -4,7 +4,7 @@
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use antumbra::graph::STORAGE_BYTES;
-use antumbra::ray_march::twin::{
+use antumbra::techniques::ray_march::twin::{
     beveled, bounds_of, cell_of, filter_weight, filter_width, md5, one_interval, pcg, sobol,
     step_down, two_intervals,
 };

@@ -4,9 +4,9 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
 use antumbra::gpu::headless::{ComputeProgram, HeadlessDevice, HostBuffer};
-use antumbra::nbuffer::twin::Values;
-use antumbra::nbuffer::{Kind, Levels};
-use antumbra::ray_march::twin::{Column, Place, bounds_of, meets};
+use antumbra::stages::nbuffer::twin::Values;
+use antumbra::stages::nbuffer::{Kind, Levels};
+use antumbra::techniques::ray_march::twin::{Column, Place, bounds_of, meets};
 use antumbra_tests::compile::try_compile;
 use antumbra_tests::device;
 use ash::vk;

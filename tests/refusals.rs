@@ -11,10 +11,10 @@ mod frames;
 #[path = "refusals/images.rs"]
 mod images;
 
-use antumbra::depth_layers::{Eye, MapView};
 use antumbra::frame::{self, Limits};
 use antumbra::graph::Scope;
 use antumbra::scene::{Role, generate};
+use antumbra::stages::depth_layers::{Eye, MapView};
 use antumbra::{
     Description, Error, Frame, Geometry, HostImage, LightTexture, MeshBuffers, MeshInstance,
     OccluderMaps, RectangleLight, Settings, Technique, Visibility,

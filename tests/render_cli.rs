@@ -176,7 +176,7 @@ fn auto_chooses_by_a_budget_and_says_what_it_expects() {
         assert!(auto["ms"].as_f64().unwrap() > 0.0 && auto["measured_ms"].as_f64().unwrap() > 0.0);
         last = last.min(auto["error"].as_f64().unwrap());
         let effects = report["effects"].as_array().unwrap();
-        assert_eq!(effects.len(), antumbra::planner::COUNT);
+        assert_eq!(effects.len(), antumbra::effects::COUNT);
         for effect in effects {
             assert!(!effect["why"].as_str().unwrap().is_empty(), "{effect}");
             assert!((0.0..=1.0).contains(&effect["bound"].as_f64().unwrap()), "{effect}");

@@ -3,9 +3,9 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
-use antumbra::depth_layers::DepthPush;
 use antumbra::graph::{Draw, Graph, INVOCATIONS, PUSH_BYTES, Pass, Work};
 use antumbra::shaders::Module;
+use antumbra::stages::depth_layers::DepthPush;
 use antumbra::{Description, LightTexture, frame};
 use antumbra_tests::measure::settings;
 use antumbra_tests::reflect::{Interface, reflect};

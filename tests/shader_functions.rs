@@ -3,12 +3,12 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used)]
 
-use antumbra::soft_shadow_map::twin::{
-    Kind, Node, Tile, classify, magnification, merged_sides, overlap, patch_occlusion,
-    rectangle_mask, series,
-};
-use antumbra::visibility::twin::{
+use antumbra::techniques::common::twin::{
     dehomogenize, fraction_above, plane_normal, towards_viewer, unproject,
+};
+use antumbra::techniques::common::twin::{magnification, overlap, patch_occlusion};
+use antumbra::techniques::soft_shadow_map::twin::{
+    Kind, Node, Tile, classify, merged_sides, rectangle_mask, series,
 };
 use antumbra_tests::compare::Tolerance;
 use antumbra_tests::{Function, device};

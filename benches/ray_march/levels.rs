@@ -1,7 +1,7 @@
 //! What a kind of levels costs, for whoever tells of it.
 
-use antumbra::nbuffer::twin::Values;
-use antumbra::nbuffer::{Kind, Levels};
+use antumbra::stages::nbuffer::twin::Values;
+use antumbra::stages::nbuffer::{Kind, Levels};
 
 /// Rows that make the levels.
 pub const BUILD: [&str; 1] = ["level"];

@@ -12,8 +12,8 @@ mod levels;
 mod technique;
 
 use antumbra::gpu::headless::{FrameTimes, HeadlessDevice};
-use antumbra::nbuffer::{Kind, Levels};
 use antumbra::scene::Scene;
+use antumbra::stages::nbuffer::{Kind, Levels};
 use antumbra::{Settings, Technique};
 use levels::{BUILD, bytes, tightness};
 use std::time::Instant;

@@ -5,7 +5,7 @@ use crate::device::Gpu;
 use crate::gbuffer::Push;
 use crate::resources::Buffer;
 use crate::world::Object;
-use antumbra::depth_layers::MeshBounds;
+use antumbra::lent::MeshBounds;
 use ash::vk;
 use glam::{DMat3, DMat4};
 

@@ -1,8 +1,8 @@
 //! What passes cost on a device: measured at its first use, and kept by its name.
 
 use antumbra::Error;
+use antumbra::auto::{Costs, Table};
 use antumbra::gpu::headless::{HeadlessDevice, measure_costs};
-use antumbra::planner::{Costs, Table};
 use std::path::PathBuf;
 
 /// Kept from an earlier run, or measured now. What cannot be kept is measured again next time.

@@ -8,8 +8,8 @@ mod output;
 mod report;
 mod shade;
 
+use antumbra::auto::Auto;
 use antumbra::gpu::headless::{FrameTimes, HeadlessDevice, HeadlessOptions, Stage, View};
-use antumbra::planner::Auto;
 use antumbra::scene::{Camera, Scene, from_gltf};
 use antumbra::{Settings, Technique};
 use image::ExtendedColorType;

@@ -1,6 +1,6 @@
 //! The command line.
 
-use antumbra::planner::Budget;
+use antumbra::auto::Budget;
 use antumbra::scene::Role;
 use antumbra::settings::KNOBS;
 use antumbra::{Error, Settings, Technique};

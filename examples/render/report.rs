@@ -1,8 +1,9 @@
 //! What ran, what did not, why, and what it cost.
 
 use crate::options::Options;
+use antumbra::auto::Choice;
+use antumbra::effects::Outcome;
 use antumbra::gpu::headless::{FrameTimes, HeadlessDevice};
-use antumbra::planner::{Choice, Outcome};
 use antumbra::scene::Scene;
 use antumbra::settings::KNOBS;
 use antumbra::{FramePlan, Settings};

@@ -1,7 +1,7 @@
 //! Compose: visibility × unshadowed irradiance, for the eye.
 
-use antumbra::baseline::many_lights::places_within;
 use antumbra::scene::AreaLight;
+use antumbra::techniques::many_lights::places_within;
 use glam::{DVec2, DVec3};
 
 /// Points a side of the grid on the light that irradiance is summed over; as many together on a polygon.

@@ -1,7 +1,8 @@
 //! What a frame does at the node's border, resolved to the host's own handles.
 
-use super::{Geometry, MeshDraw};
+use super::MeshDraw;
 use crate::graph::Scope;
+use crate::lent::Geometry;
 use ash::vk;
 
 /// How the node uses an image of the border.

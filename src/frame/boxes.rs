@@ -1,7 +1,7 @@
 //! The meshes of a frame as all of its lights look at them, placed in the world once.
 
-use super::{Geometry, MeshInstance};
 use crate::RectangleLight;
+use crate::lent::{Geometry, MeshInstance};
 use ash::vk;
 use glam::{DVec3, DVec4};
 

@@ -3,9 +3,9 @@
 use super::boxes::Boxes;
 use super::{Description, Frame};
 use crate::Error;
-use crate::depth_layers::LightBox;
 use crate::light::outline;
 use crate::settings::{Settings, Technique};
+use crate::stages::depth_layers::LightBox;
 
 /// Lengths in metres whose squares, and those over each other, single precision holds with room to spare.
 const LENGTHS: std::ops::RangeInclusive<f64> = 1e-15..=1e15;

@@ -1,7 +1,8 @@
 //! What a frame draws: meshes, and the matrices that bring them into each view.
 
-use super::{Description, Geometry, MeshBuffers, MeshInstance};
+use super::Description;
 use crate::Error;
+use crate::lent::{Geometry, MeshBuffers, MeshInstance};
 use glam::DMat4;
 
 /// How a mesh's triangles are wound as the light sees them.

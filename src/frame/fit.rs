@@ -3,14 +3,17 @@
 use super::boxes::{Boxes, Surroundings};
 use super::hull::Hull;
 use super::rows::{PLACEHOLDER, wanted};
-use super::{Description, Frame, MeshInstance};
-use crate::baseline::many_lights::{self, LightPoint};
-use crate::depth_layers::{self, HostMapView, LightBox, MapView, MeshBounds};
+use super::{Description, Frame};
+use crate::effects::{Seen, Situation};
 use crate::graph::{Need, Why};
-use crate::planner::{Seen, Situation};
-use crate::ray_march::{self, Projection};
+use crate::lent::MeshBounds;
+use crate::lent::MeshInstance;
 use crate::settings::{Settings, Technique};
-use crate::{Error, RectangleLight, linear_light};
+use crate::stages::depth_layers::{self, HostMapView, LightBox, MapView};
+use crate::techniques::linear_light;
+use crate::techniques::many_lights::{self, LightPoint};
+use crate::techniques::ray_march::{self, Projection};
+use crate::{Error, RectangleLight};
 use glam::DMat4;
 
 /// Meshes that matter to a light, by their places in the frame's list, and their boxes as it sees them.

@@ -1,6 +1,6 @@
 //! What of a light's surroundings can lie between it and what receives.
 
-use crate::depth_layers::LightBox;
+use crate::stages::depth_layers::LightBox;
 use glam::DVec3;
 
 /// What boxes may be off by, as a share of the distances.

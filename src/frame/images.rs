@@ -2,10 +2,12 @@
 
 use super::check::bad;
 use super::rows::wanted;
-use super::{Description, Frame, HostImage, Visibility};
+use super::{Description, Frame};
+use crate::Error;
 use crate::graph::{Scope, is_depth_format};
+use crate::lent::{HostImage, Visibility};
 use crate::settings::Settings;
-use crate::{Error, visibility};
+use crate::stages::visibility;
 use ash::vk::{self, ImageLayout as Layout, ImageUsageFlags as Usage};
 
 /// What one of the host's images must be.

@@ -8,8 +8,8 @@
 //! Which rows those are follows from the graph: what a row reads or writes ties it to the camera, or does not.
 //! And where every pixel is lit, and was so before, no number is needed to leave the image as it is.
 
-use super::Visibility;
 use crate::graph::{Graph, Owner, ResourceId, Why};
+use crate::lent::Visibility;
 use ash::vk;
 
 /// The row that makes every pixel lit.

@@ -6,7 +6,7 @@ use super::fit::Fit;
 use super::rows::{Needs, PLACEHOLDER, Views};
 use super::{Description, Frame};
 use crate::Error;
-use crate::planner::{Camera, Situation, Verdicts};
+use crate::effects::{Camera, Situation, Verdicts};
 use crate::settings::{Settings, Technique};
 
 /// What is needed of a frame whose meshes are fitted, and the views of the rows that run.

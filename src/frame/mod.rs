@@ -5,7 +5,6 @@ mod boxes;
 mod check;
 mod draws;
 mod fit;
-mod host;
 mod hull;
 mod images;
 mod keep;
@@ -21,9 +20,6 @@ mod tests;
 pub use accesses::{BufferAccess, HostAccess, ImageBarrier, NodeUse};
 pub(crate) use boxes::Surroundings;
 pub use draws::{Faces, MeshDraw};
-pub use host::{
-    BorderBarriers, Geometry, HostImage, MeshBuffers, MeshInstance, OccluderMaps, Visibility,
-};
 pub(crate) use left::{Left, Whose};
 pub(crate) use look::Looker;
 #[cfg(test)]
@@ -37,8 +33,9 @@ pub(crate) use rows::nominal;
 pub use rows::{Limits, full_graph};
 
 use crate::graph::{self, Scope};
-use crate::ray_march;
+use crate::lent::{BorderBarriers, HostImage, MeshInstance, OccluderMaps, Visibility};
 use crate::settings::{Settings, Technique};
+use crate::techniques::ray_march;
 use crate::{Error, RectangleLight};
 use ash::vk;
 use glam::DMat4;
@@ -55,7 +52,7 @@ pub struct Description {
     /// The technique and its knobs.
     pub settings: Settings,
     /// What leaving an effect out may add to the mean error at most, 0 to 1, as a mean of visible fractions over the
-    /// pixels that shadow touches: see [`crate::planner::RULES`]. 1/256 by default, a step of an 8-bit image; 0 leaves
+    /// pixels that shadow touches: see [`crate::effects::RULES`]. 1/256 by default, a step of an 8-bit image; 0 leaves
     /// out what cannot matter and nothing else; none leaves out nothing, for studying what it costs.
     pub max_error: Option<f64>,
     /// Further settings that a frame may choose ([`Frame::settings_index`]), up to 7: another technique

@@ -4,9 +4,9 @@ use super::accesses::{self, BufferAccess, HostAccess, ImageBarrier, NodeUse};
 use super::draws::{DrawList, MeshDraw};
 use super::keep::Keeping;
 use super::left::Whose;
-use super::{Geometry, HostImage};
+use crate::effects::Verdicts;
 use crate::graph::{self, MeshList, ResourceId};
-use crate::planner::Verdicts;
+use crate::lent::{Geometry, HostImage};
 use crate::settings::Settings;
 use ash::vk;
 

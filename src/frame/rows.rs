@@ -1,13 +1,17 @@
 //! Every row that a description calls for, with one frame's numbers in them.
 
 use super::Description;
-use crate::baseline::{self, hard::Filter, many_lights::LightPoint};
-use crate::depth_layers::{self, Eye, HostMapView, MapView};
+use crate::RectangleLight;
+use crate::effects::{Effect, Verdicts};
 use crate::graph::{Graph, Need, Owner, ResourceId, Why};
-use crate::planner::{Effect, Verdicts};
 use crate::settings::{Settings, Technique};
-use crate::visibility::{self, GBuffer};
-use crate::{RectangleLight, linear_light, occlusion_textures, ray_march, soft_shadow_map};
+use crate::stages::depth_layers::{self, Eye, HostMapView, MapView};
+use crate::stages::visibility::{self, GBuffer};
+use crate::techniques::common as baseline;
+use crate::techniques::hard::{self, Filter};
+use crate::techniques::many_lights::{self, LightPoint};
+use crate::techniques::{back_projection, pcss};
+use crate::techniques::{linear_light, occlusion_textures, ray_march, soft_shadow_map};
 use glam::DMat4;
 use smallvec::{SmallVec, smallvec};
 
@@ -349,25 +353,25 @@ pub(super) fn build(
         }
         Technique::Hard => {
             let front = layers(graph).front;
-            baseline::hard::declare(graph, front, visibility, Filter::Three, &baseline);
+            hard::declare(graph, front, visibility, Filter::Three, &baseline);
         }
         Technique::Pcss => {
             let front = *nearest.insert(layers(graph).front);
             let settings = &settings.baseline;
-            baseline::pcss::declare(graph, front, visibility, settings, &baseline);
+            pcss::declare(graph, front, visibility, settings, &baseline);
         }
         Technique::BackProjection => {
             let front = *nearest.insert(layers(graph).front);
-            baseline::back_projection::declare(graph, front, visibility, &baseline);
+            back_projection::declare(graph, front, visibility, &baseline);
         }
         Technique::ManyLights => {
-            baseline::many_lights::declare(graph, visibility, views.points, &baseline);
+            many_lights::declare(graph, visibility, views.points, &baseline);
         }
     }
     if hardens(description) {
         let front = nearest.unwrap_or_else(|| depth_layers::hard(graph, settings.map, hard));
         let inputs = baseline::Inputs { need: hard, ..baseline };
-        baseline::hard::declare(graph, front, visibility, Filter::One, &inputs);
+        hard::declare(graph, front, visibility, Filter::One, &inputs);
     }
     let lit = match (&needs.technique, &needs.hard) {
         (Need::No(why), Need::No(_)) => Need::Yes(*why),

@@ -1,7 +1,9 @@
 use super::*;
-use crate::depth_layers::{Eye, MapView, MeshBounds};
 use crate::graph::MeshList;
+use crate::lent::MeshBounds;
+use crate::lent::*;
 use crate::scene::{Role, generate};
+use crate::stages::depth_layers::{Eye, MapView};
 use ash::vk::Handle;
 use glam::DVec3;
 

@@ -1,11 +1,12 @@
 //! What the host lends, and whether it is enough.
 
 use super::layouts::SharedLayouts;
+use crate::Error;
 use crate::frame::Description;
 use crate::graph::{INVOCATIONS, PUSH_BYTES};
 use crate::settings::Technique;
-use crate::soft_shadow_map::Accumulate;
-use crate::{Error, depth_layers, visibility};
+use crate::stages::{depth_layers, visibility};
+use crate::techniques::soft_shadow_map::Accumulate;
 use ash::{ext, vk};
 use std::ffi::CStr;
 use std::sync::Arc;

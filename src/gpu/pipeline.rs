@@ -4,10 +4,10 @@ use super::host::Host;
 use super::layouts::{LayoutsInfo, RowLayouts};
 use super::objects::{Object, Objects, name};
 use crate::Error;
-use crate::depth_layers::DepthPush;
 use crate::frame::Faces;
 use crate::graph::{Draw, Graph, Pass, Shape, Target, Work};
 use crate::shaders::Module;
+use crate::stages::depth_layers::DepthPush;
 use ash::vk;
 
 /// What a row needs to be recorded.

@@ -8,10 +8,11 @@ use super::objects::{Object, Objects, layers, whole};
 use super::pipeline::{RowPipeline, variant};
 use super::result::ResultImage;
 use super::timing::Timing;
-use crate::frame::{Faces, FramePlan, Geometry, MeshBuffers, MeshDraw};
+use crate::frame::{Faces, FramePlan, MeshDraw};
 use crate::graph::{
     self, COLOR_ATTACHMENTS, Draw, Layer, Pass, ResourceBarrier, ResourceId, Target, Use, Work,
 };
+use crate::lent::{Geometry, MeshBuffers};
 use ash::vk;
 use std::ffi::CString;
 

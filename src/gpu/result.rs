@@ -6,7 +6,7 @@ use super::objects::{Object, Owned, layers, name};
 use crate::Error;
 use crate::frame::Description;
 use crate::graph::{Owner, Resource, Shape};
-use crate::visibility;
+use crate::stages::visibility;
 use ash::vk;
 
 /// The image, a view of all of it, and views of its layers.

@@ -1,6 +1,6 @@
 //! What a node shows of its insides.
 
-use crate::depth_layers;
+use crate::stages::depth_layers;
 use ash::vk;
 
 /// What a host's own pipeline must fit to draw into a depth layer.

@@ -4,11 +4,12 @@
 //! (feature `gltf`, `from_gltf`) or from the generators in [`generate`]; a host with its own
 //! scene needs none of this.
 
-use crate::depth_layers::MeshBounds;
+pub use crate::lent::Role;
+
+use crate::error::quoted;
+use crate::lent::MeshBounds;
 use crate::{Error, RectangleLight};
 use glam::{DMat3, DMat4, DVec3};
-use std::fmt;
-use std::str::FromStr;
 
 mod framing;
 pub mod generate;
@@ -16,69 +17,6 @@ pub mod generate;
 mod gltf;
 #[cfg(feature = "gltf")]
 pub use gltf::{from_gltf, from_gltf_bytes};
-
-/// What a mesh does with light: blocks it, shows shadows, or both.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Role {
-    /// Blocks light; its own pixels are never shadowed (visible fraction 1).
-    Occluder,
-    /// Shows shadows and blocks nothing.
-    Receiver,
-    /// Blocks light and shows shadows, its own included.
-    #[default]
-    Both,
-}
-
-impl Role {
-    /// Whether a mesh of this role blocks light.
-    pub fn blocks(self) -> bool {
-        self != Self::Receiver
-    }
-
-    /// What the G-buffer's mask holds at the pixels of a mesh of this role, as an 8-bit unorm.
-    pub fn mask(self) -> u8 {
-        match self {
-            Self::Both => 255,
-            Self::Receiver => 128,
-            Self::Occluder => 0,
-        }
-    }
-
-    /// Whether a mesh of this role shows shadows.
-    pub fn receives(self) -> bool {
-        self != Self::Occluder
-    }
-}
-
-impl fmt::Display for Role {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Occluder => "occluder",
-            Self::Receiver => "receiver",
-            Self::Both => "both",
-        })
-    }
-}
-
-impl FromStr for Role {
-    type Err = Error;
-
-    /// Reads `occluder`, `receiver` or `both`, as in a file's `shadow_role`.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for any other word.
-    fn from_str(word: &str) -> Result<Self, Error> {
-        match word {
-            "occluder" => Ok(Self::Occluder),
-            "receiver" => Ok(Self::Receiver),
-            "both" => Ok(Self::Both),
-            _ => Err(Error::Scene(format!(
-                "the role {} is not known; write occluder, receiver or both",
-                quoted(word)
-            ))),
-        }
-    }
-}
 
 /// Triangles in mesh space, metres once its instance's transform is applied.
 #[derive(Clone, Debug, Default)]
@@ -302,16 +240,6 @@ impl Scene {
 
 /// How many names a sentence lists before it says how many more there are.
 const NAMES_LISTED: usize = 6;
-
-/// How many characters of a name a sentence shows.
-const NAME_SHOWN: usize = 60;
-
-/// A name from a file or a command line as a sentence shows it: in quotes, on one line, not endless.
-pub(crate) fn quoted(name: &str) -> String {
-    let shown: String = name.chars().take(NAME_SHOWN).collect();
-    let rest = if shown.len() < name.len() { "…" } else { "" };
-    format!("{shown:?}{rest}")
-}
 
 /// The first of some names, each once, and how many more there are.
 fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {

@@ -1,6 +1,7 @@
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
 use super::*;
+use crate::error::NAME_SHOWN;
 
 fn two_nodes() -> Scene {
     let mut scene = generate::card(generate::square_light(1.0).unwrap());

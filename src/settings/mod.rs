@@ -5,12 +5,16 @@ mod knobs;
 pub use knobs::{KNOBS, Knob};
 
 use crate::Error;
-use crate::baseline::Settings as Baseline;
-use crate::linear_light::{Across, Settings as LinearLight, Transition};
-use crate::nbuffer;
-use crate::occlusion_textures::{Combine, Placement, Prefilter, Settings as OcclusionTextures};
-use crate::ray_march::{Hash, Layers, Projection, Sampling, Search, Settings as RayMarch};
-use crate::soft_shadow_map::{Accumulate, Receivers, Settings as SoftShadowMap, Sides};
+use crate::stages::nbuffer;
+use crate::techniques::common::Settings as Baseline;
+use crate::techniques::linear_light::{Across, Settings as LinearLight, Transition};
+use crate::techniques::occlusion_textures::{
+    Combine, Placement, Prefilter, Settings as OcclusionTextures,
+};
+use crate::techniques::ray_march::{
+    Hash, Layers, Projection, Sampling, Search, Settings as RayMarch,
+};
+use crate::techniques::soft_shadow_map::{Accumulate, Receivers, Settings as SoftShadowMap, Sides};
 use std::fmt::Display;
 use std::str::FromStr;
 

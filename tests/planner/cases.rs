@@ -1,7 +1,7 @@
 //! Scenes made to need something, or not to; `tests/planner.rs` and `benches/planner` share them.
 
 use antumbra::RectangleLight;
-use antumbra::planner::Effect;
+use antumbra::effects::Effect;
 use antumbra::scene::{Mesh, Role, Scene, generate};
 use glam::{DMat4, DVec3};
 

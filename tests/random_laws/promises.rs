@@ -1,7 +1,7 @@
 //! What each technique promises of a law, and why.
 
-use antumbra::occlusion_textures::{Combine, Placement};
-use antumbra::soft_shadow_map::Accumulate;
+use antumbra::techniques::occlusion_textures::{Combine, Placement};
+use antumbra::techniques::soft_shadow_map::Accumulate;
 use antumbra::{Settings, Technique};
 
 /// What is continuous changes by less when its inputs are rounded otherwise. A position 5 m away is rounded to

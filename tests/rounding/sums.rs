@@ -1,6 +1,6 @@
 //! Sums as they are rounded, on the processor: in the order and with the steps that the device has.
 
-use antumbra::soft_shadow_map::twin::patch_occlusion;
+use antumbra::techniques::common::twin::patch_occlusion;
 
 /// Steps a unit that blended contributions are rounded to, as `patch.frag` has them.
 const STEPS: f32 = 16_777_216.0;

@@ -2,9 +2,9 @@
 
 use crate::random::{Case, Lamp, Object, SIDE, Shape, meshes};
 use antumbra::gpu::headless::{GBufferPainter, HeadlessDevice, SceneBuffers, Stage, View};
-use antumbra::linear_light::Across;
 use antumbra::scene::{Role, Scene};
 use antumbra::settings::{KNOBS, Knob};
+use antumbra::techniques::linear_light::Across;
 use antumbra::{MeshInstance, Settings, Technique};
 use glam::DMat4;
 

@@ -4,10 +4,9 @@ use crate::Problem;
 use crate::groups::{self, Group};
 use crate::options::Options;
 use crate::store::{Row, Store};
+use antumbra::auto::{Auto, Budget, CANDIDATES, COLUMNS, Costs, Likeness, Measured, PROBE};
+use antumbra::effects::Situation;
 use antumbra::gpu::headless::{HeadlessDevice, HeadlessOptions, Stage, probe};
-use antumbra::planner::{
-    Auto, Budget, CANDIDATES, COLUMNS, Costs, Likeness, Measured, PROBE, Situation,
-};
 use antumbra::scene::Instance;
 use antumbra::{Settings, Technique};
 use std::path::Path;
@@ -67,7 +66,7 @@ pub fn write(options: &Options) -> Result<(), Problem> {
             ));
         }
     }
-    let path = Options::root().join("src/planner/table.csv");
+    let path = Options::root().join("src/auto/table.csv");
     write_to(&path, &text)?;
     println!("{}", path.display());
     Ok(())

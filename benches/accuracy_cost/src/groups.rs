@@ -4,8 +4,8 @@ use crate::Problem;
 use crate::scenes::{self, SceneSpec, Source};
 use crate::sweeps;
 use crate::techniques::{CURVES, value_of};
+use antumbra::auto::{CANDIDATES, Candidate};
 use antumbra::gpu::headless::View;
-use antumbra::planner::{CANDIDATES, Candidate};
 use antumbra::scene::{Camera, Instance, Role, Scene, generate};
 use glam::{DMat4, DVec3};
 

@@ -5,7 +5,7 @@ use crate::curtis;
 use crate::groups::{Against, Entry, Group, Scale, Stage};
 use crate::scenes::SceneSpec;
 use crate::scenes::Source;
-use antumbra::nbuffer::Kind;
+use antumbra::stages::nbuffer::Kind;
 use glam::DVec3;
 
 /// Error and time against N: Atty 2006 Figs. 17 and 22.

@@ -1,6 +1,7 @@
 //! Lights that a technique cannot work with.
 
 use super::*;
+use crate::lent::*;
 
 /// Those that work in both of a light's half-extents say so of a line; the others plan a whole frame.
 #[test]

@@ -1,7 +1,7 @@
 //! What passes cost on a device, by a small frame of it: under half a second.
 
 use super::{HeadlessDevice, Stage, View};
-use crate::planner::{Costs, Measured, Table};
+use crate::auto::{Costs, Measured, Table};
 use crate::scene::{Camera, generate};
 use crate::{Error, Settings};
 

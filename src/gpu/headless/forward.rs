@@ -13,7 +13,8 @@ use super::{FrameTimes, GBufferPainter, HeadlessDevice, HostBuffer, OwnedImage, 
 use crate::gpu::objects::Object;
 use crate::graph::{Access, Work};
 use crate::scene::{Instance, Scene};
-use crate::{Error, FramePlan, shaders, visibility};
+use crate::stages::visibility;
+use crate::{Error, FramePlan, shaders};
 use ash::vk;
 use std::time::Duration;
 

@@ -11,12 +11,13 @@
 
 use super::raster::{Attachment, Raster, RasterInfo};
 use super::{HeadlessDevice, HostBuffer, OwnedImage, SceneBuffers};
-use crate::depth_layers::{self, DepthPush, MapView};
 use crate::frame::ImageBarrier;
 use crate::graph::Scope;
 use crate::scene::{Role, Scene};
-use crate::soft_shadow_map::{BLEND_STEPS, push::PatchDraw, receiver_grid};
-use crate::{Error, Geometry, MeshInstance, RectangleLight, shaders, visibility};
+use crate::stages::depth_layers::{self, DepthPush, MapView};
+use crate::stages::visibility;
+use crate::techniques::soft_shadow_map::{BLEND_STEPS, push::PatchDraw, receiver_grid};
+use crate::{Error, Geometry, MeshInstance, RectangleLight, shaders};
 use ash::vk;
 use std::time::{Duration, Instant};
 

@@ -1,7 +1,7 @@
 //! A scene's meshes in buffers.
 
 use super::{HeadlessDevice, HostBuffer};
-use crate::depth_layers::MeshBounds;
+use crate::lent::MeshBounds;
 use crate::scene::Scene;
 use crate::{Error, Geometry, MeshBuffers, MeshInstance};
 use ash::vk;

@@ -5,13 +5,14 @@ use super::{
     GBuffer, GBufferPainter, HeadlessDevice, HostBuffer, ImageSource, Invocations, SceneBuffers,
     View, read_image,
 };
+use crate::auto::{Auto, Choice};
 use crate::gpu::objects::Object;
 use crate::graph::{Scope, Shape};
-use crate::planner::{Auto, Choice};
 use crate::scene::{AreaLight, Instance, Scene};
+use crate::stages::visibility;
 use crate::{
     Description, Error, Frame, FramePlan, FramePlans, Host, MeshInstance, RectangleLight, Settings,
-    ShadowNode, Visibility, visibility,
+    ShadowNode, Visibility,
 };
 use std::sync::PoisonError;
 use std::time::{Duration, Instant};

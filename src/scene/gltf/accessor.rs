@@ -238,7 +238,7 @@ impl<'a> Vectors<'a> {
                 "{} is in accessors[{index}], which holds {} of componentType {}; it must hold \
                  VEC3 of 5126 (32-bit floats)",
                 owner(),
-                super::quoted(&accessor.kind),
+                crate::error::quoted(&accessor.kind),
                 accessor.component_type
             ));
         }
@@ -275,7 +275,7 @@ impl<'a> Indices<'a> {
                 "{} are in accessors[{index}], which holds {} of componentType {}; it must hold \
                  SCALAR of 5121, 5123 or 5125 (unsigned integers)",
                 owner(),
-                super::quoted(&accessor.kind),
+                crate::error::quoted(&accessor.kind),
                 accessor.component_type
             )
         })?;

@@ -1,7 +1,8 @@
 //! Bytes: the .glb container, data URIs, and files beside the scene's own.
 
+use super::Problem;
 use super::json::{Root, at};
-use super::{Problem, quoted};
+use crate::error::quoted;
 use base64::Engine as _;
 use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};

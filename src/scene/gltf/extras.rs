@@ -3,7 +3,8 @@
 //! glTF 2.0 has no area light; extras are what Blender writes a node's custom properties to.
 
 use super::json::Root;
-use super::{MAX_COORDINATE, Problem, nodes, quoted};
+use super::{MAX_COORDINATE, Problem, nodes};
+use crate::error::quoted;
 use crate::scene::{AreaLight, Bounds, Role};
 use crate::{Error, RectangleLight};
 use glam::{DMat4, DVec3};

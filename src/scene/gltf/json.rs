@@ -187,14 +187,14 @@ pub(super) fn parse(text: &[u8]) -> Result<Root, Problem> {
     let head: Head = from_json(text)?;
     let version = &head.asset.version;
     if version != "2" && !version.starts_with("2.") {
-        let version = super::quoted(version);
+        let version = crate::error::quoted(version);
         return Err(format!("its asset.version is {version}; only glTF 2.0 is read"));
     }
     let unknown = |name: &&String| !HARMLESS.iter().any(|known| name.starts_with(known));
     if let Some(name) = head.extensions_required.iter().find(unknown) {
         return Err(format!(
             "it requires the extension {}, which is not supported; export it without",
-            super::quoted(name)
+            crate::error::quoted(name)
         ));
     }
     from_json(text)

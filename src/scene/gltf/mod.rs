@@ -17,7 +17,7 @@ mod json;
 mod nodes;
 mod triangles;
 
-use super::{Bounds, Instance, Mesh, Scene, quoted};
+use super::{Bounds, Instance, Mesh, Scene};
 use crate::Error;
 use glam::{DMat4, DVec3};
 use std::collections::BTreeMap;

@@ -1,7 +1,8 @@
 //! The node hierarchy: where everything stands, and the camera.
 
 use super::json::{Root, at};
-use super::{MAX_COORDINATE, Problem, quoted};
+use super::{MAX_COORDINATE, Problem};
+use crate::error::quoted;
 use crate::scene::Camera;
 use glam::{DMat3, DMat4, DQuat, DVec3};
 use std::f64::consts::PI;

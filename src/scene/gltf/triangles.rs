@@ -1,9 +1,10 @@
 //! Primitives made into plain indexed triangles.
 
+use super::Problem;
 use super::accessor::{Indices, Vectors};
 use super::buffers::Buffers;
 use super::json::{self, Root, at};
-use super::{Problem, quoted};
+use crate::error::quoted;
 use crate::scene::Mesh;
 use glam::DVec3;
 use std::fmt;

@@ -4,7 +4,8 @@ use super::cases::HardCase;
 use super::set::{Block, Floor, Place, Set};
 use crate::Problem;
 use antumbra::RectangleLight;
-use antumbra::depth_layers::{MapView, MeshBounds, fit_occluders, fit_receivers};
+use antumbra::lent::MeshBounds;
+use antumbra::stages::depth_layers::{MapView, fit_occluders, fit_receivers};
 use antumbra::truth::{Exact, PolygonLight, Receiver};
 use glam::{DMat4, DVec2, DVec3};
 use rayon::prelude::*;
@@ -98,8 +99,9 @@ impl Maps {
         let blocking = boxes(antumbra::Role::blocks);
         // A floor under everything is not in the maps.
         let receiving = boxes(antumbra::Role::receives);
-        let aside =
-            |mesh: &(MeshBounds, DMat4)| antumbra::depth_layers::is_aside(light, mesh, &receiving);
+        let aside = |mesh: &(MeshBounds, DMat4)| {
+            antumbra::stages::depth_layers::is_aside(light, mesh, &receiving)
+        };
         let blocking: Vec<_> = blocking.into_iter().filter(|mesh| !aside(mesh)).collect();
         let occluders = fit_occluders(light, &blocking, case.window.filter(|_| windowed), case.map);
         let receivers = occluders

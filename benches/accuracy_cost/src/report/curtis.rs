@@ -9,7 +9,7 @@ use crate::plot::escape;
 use crate::store::{Outcome, Row};
 use crate::sweeps;
 use crate::techniques::{FORWARD, value_of};
-use antumbra::nbuffer::{Kind, Levels};
+use antumbra::stages::nbuffer::{Kind, Levels};
 
 /// A table of the paper.
 struct Table {

@@ -1,0 +1,232 @@
+//! What boxes tell of a light, its occluders and its receivers: in microseconds, before anything is drawn.
+
+use crate::lent::{Geometry, MeshInstance};
+use crate::stages::depth_layers::{self, Eye, LightBox, MapView};
+use glam::{DMat4, DVec4};
+
+/// More occluders than this are not compared in pairs: they count as overlapping.
+const MOST_COMPARED: usize = 16;
+
+/// A light, what blocks it and what receives, by their boxes.
+///
+/// Distances are along the light's normal from its plane, in metres. They are bounds: the true ones lie within.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Situation {
+    /// The light's width and height, metres; a line has no height.
+    pub light: [f64; 2],
+    /// Meshes that may block light on its way to a receiver.
+    pub occluders: usize,
+    /// Of so many that block.
+    pub given: usize,
+    /// Meshes that receive.
+    pub receivers: usize,
+    /// Meshes that block and receive.
+    pub both: usize,
+    /// Meshes that the host draws.
+    pub host_drawn: usize,
+    /// Meshes that the node draws whole, though a texture cuts holes into them.
+    pub cut_out: usize,
+    /// Triangles of the occluders; those of what the host draws are not known.
+    pub triangles: u64,
+    /// Least and largest distance of occluders; no less than a ten-thousandth of the largest.
+    pub occluder_distances: [f64; 2],
+    /// Least and largest distance of receivers, where an occluder may shadow them.
+    pub receiver_distances: [f64; 2],
+    /// Every occluder is flat: a sheet.
+    pub sheets: bool,
+    /// Some occluder is open: seen from both sides, and no sheet.
+    pub open: bool,
+    /// Some occluder may lie before another, as the map's eye sees them.
+    pub overlap: bool,
+    /// Atty 2006 eq. 3 for the whole thickness of an occluder, over the light's side: the most of the light that its
+    /// back hides and its front does not, or the other way round; 0 to 1, the largest of all occluders.
+    pub thickness: f64,
+    /// Width of the widest penumbra across the light's rays, metres.
+    pub penumbra: f64,
+    /// The same in pixels, by the smallest pixel there; infinite where the camera is inside what may be shadowed.
+    pub penumbra_pixels: f64,
+    /// The most edges that a metre across a shadow may have, by the occluders' triangles: as many as they have if
+    /// together they cover their box's face once. Infinite where they are not known.
+    pub edges: f64,
+    /// The same over a pixel, by the largest pixel there: 0 to 1.
+    pub edges_a_pixel: f64,
+    /// A map's texel where shadows fall furthest, in pixels, by the smallest pixel there; infinite where the camera is
+    /// inside. Every technique errs by something like it at edges.
+    pub texel_pixels: f64,
+    /// The smaller side of what the map shows at the occluders' mean distance, metres.
+    pub size: f64,
+}
+
+/// What a situation is made from, beyond what the camera sees.
+pub(crate) struct Seen<'a> {
+    pub light: [f64; 2],
+    /// How many meshes block, whether or not they matter.
+    pub given: usize,
+    pub receivers: &'a [LightBox],
+    /// The part of the receivers that may be shadowed, from the light's centre.
+    pub shadowed: &'a MapView,
+    /// How the technique's map looks at the occluders.
+    pub map: &'a MapView,
+}
+
+/// A camera, as pixels have it.
+pub(crate) struct Camera {
+    pub light_from_world: DMat4,
+    pub world_from_ndc: DMat4,
+    pub extent: [u32; 2],
+}
+
+impl Situation {
+    /// Looks at a frame's boxes. The occluders are those that the node draws; where the host lends maps there are none,
+    /// and the situation says of them what the maps' view does, at its worst. What pixels are to it is still unknown.
+    pub(crate) fn of<'a>(
+        seen: &Seen,
+        occluders: impl Iterator<Item = (&'a MeshInstance, &'a LightBox)>,
+    ) -> Self {
+        let (shadowed, map) = (seen.shadowed, seen.map);
+        let nearest_receiver = seen.receivers.iter().map(|b| b.min.z).fold(f64::INFINITY, f64::min);
+        let behind = match map.eye {
+            Eye::Behind(behind) => behind,
+            Eye::Infinity => 0.0,
+        };
+        let near = (map.near - behind).max(1e-4 * shadowed.far);
+        let mut s = Self {
+            light: seen.light,
+            occluders: 0,
+            given: seen.given,
+            receivers: seen.receivers.len(),
+            both: 0,
+            host_drawn: 0,
+            cut_out: 0,
+            triangles: 0,
+            occluder_distances: [near, (map.far - behind).max(near)],
+            receiver_distances: [nearest_receiver.max(near), shadowed.far.max(near)],
+            sheets: true,
+            open: false,
+            overlap: false,
+            thickness: 0.0,
+            penumbra: 0.0,
+            penumbra_pixels: f64::INFINITY,
+            edges: 0.0,
+            edges_a_pixel: 1.0,
+            texel_pixels: f64::INFINITY,
+            size: 0.0,
+        };
+        let texel = [0, 1].map(|i| (map.max[i] - map.min[i]) / f64::from(map.side));
+        let mut windows = [None; MOST_COMPARED];
+        for (mesh, placed) in occluders {
+            s.add(mesh, placed);
+            // More are not compared.
+            if let Some(window) = windows.get_mut(s.occluders) {
+                *window = depth_layers::window_of(map.eye, placed, map.near);
+                let before = &windows[..s.occluders];
+                s.overlap |= before.iter().any(|b| meet(&windows[s.occluders], b, texel));
+            } else {
+                s.overlap = true;
+            }
+            s.occluders += 1;
+        }
+        if s.occluders == 0 {
+            s = Self { sheets: false, overlap: true, thickness: 1.0, edges: f64::INFINITY, ..s };
+        }
+        s.penumbra = s.light[0].max(s.light[1]) * (s.receiver_distances[1] / near - 1.0).max(0.0);
+        let middle = 0.5 * (s.occluder_distances[0] + s.occluder_distances[1]);
+        let side = (0..2).map(|i| map.max[i] - map.min[i]).fold(f64::INFINITY, f64::min);
+        s.size = side * if map.eye == Eye::Infinity { 1.0 } else { middle + behind };
+        s
+    }
+
+    /// The same with what a camera's pixels are to it.
+    pub(crate) fn seen_by(mut self, camera: &Camera, shadowed: &MapView, map: &MapView) -> Self {
+        let [smallest, largest] = pixel_sizes(camera, shadowed);
+        let inside = smallest <= 0.0;
+        self.penumbra_pixels = if inside { f64::INFINITY } else { self.penumbra / smallest };
+        self.edges_a_pixel = (self.edges * largest).min(1.0);
+        let side = (0..2).map(|i| map.max[i] - map.min[i]).fold(f64::INFINITY, f64::min);
+        let reach = match map.eye {
+            Eye::Infinity => 1.0,
+            Eye::Behind(behind) => self.receiver_distances[1] + behind,
+        };
+        self.texel_pixels = side * reach / f64::from(map.side) / smallest;
+        self
+    }
+
+    fn add(&mut self, mesh: &MeshInstance, placed: &LightBox) {
+        let triangles = match mesh.geometry {
+            Geometry::Buffers(buffers) => {
+                self.cut_out += usize::from(mesh.cut_out);
+                u64::from(buffers.count / 3)
+            }
+            Geometry::HostDrawn(_) => {
+                self.host_drawn += 1;
+                self.edges = f64::INFINITY;
+                0
+            }
+        };
+        self.triangles += triangles;
+        self.both += usize::from(mesh.role.receives());
+        let mut sides = [0, 1, 2].map(|axis| placed.edge(axis).length());
+        sides.sort_by(f64::total_cmp);
+        let face = (sides[2] * sides[1]).sqrt().max(f64::MIN_POSITIVE);
+        self.edges = self.edges.max(4.0 * (triangles as f64).sqrt() / face);
+        if placed.thin_axis.is_some() {
+            return;
+        }
+        self.sheets = false;
+        self.open |= mesh.double_sided;
+        let front = placed.min.z.max(self.occluder_distances[0]);
+        let back = placed.max.z;
+        let receiver = self.receiver_distances[0];
+        let thickness = if receiver <= back {
+            1.0
+        } else {
+            0.5 * receiver * (back - front) / (front * (receiver - back))
+        };
+        self.thickness = self.thickness.max(thickness.clamp(0.0, 1.0));
+    }
+}
+
+/// Least and largest u and v; none where nothing is seen.
+type Window = Option<([f64; 2], [f64; 2])>;
+
+/// Whether two windows share a texel of this size.
+fn meet(a: &Window, b: &Window, texel: [f64; 2]) -> bool {
+    let (Some(a), Some(b)) = (a, b) else { return false };
+    (0..2).all(|i| a.1[i] + texel[i] >= b.0[i] && b.1[i] + texel[i] >= a.0[i])
+}
+
+/// The smallest and the largest pixel where shadows may fall, metres across the view.
+///
+/// A pixel at a point is 2w/(W |g|) wide, with w the point's clip coordinate and g the part of x's gradient across the
+/// view; w is linear, so that its extremes over the frustum of what may be shadowed are at its corners.
+fn pixel_sizes(camera: &Camera, shadowed: &MapView) -> [f64; 2] {
+    let clip_from_world = camera.world_from_ndc.inverse();
+    let clip_from_light = clip_from_world * camera.light_from_world.inverse();
+    let row = |i: usize| clip_from_light.row(i);
+    let center = camera.world_from_ndc * DVec4::new(0.0, 0.0, 0.5, 1.0);
+    // Which sign w has in front of the camera.
+    let sign = (clip_from_world * (center / center.w)).w.signum();
+    let across = |r: DVec4| {
+        let view = row(3).truncate();
+        let along = view.normalize_or_zero();
+        let r = r.truncate();
+        (r - along * r.dot(along)).length()
+    };
+    let per_w = (0..2)
+        .map(|i| 2.0 / (f64::from(camera.extent[i]) * across(row(i)).max(f64::MIN_POSITIVE)))
+        .fold([f64::INFINITY, 0.0], |[least, most]: [f64; 2], x| [least.min(x), most.max(x)]);
+    let v = shadowed;
+    let mut w = [f64::INFINITY, 0.0f64];
+    for i in 0..8 {
+        let d = if i & 4 == 0 { v.near } else { v.far };
+        let u = if i & 1 == 0 { v.min[0] } else { v.max[0] };
+        let t = if i & 2 == 0 { v.min[1] } else { v.max[1] };
+        let at = sign * row(3).dot(DVec4::new(u * d, t * d, d, 1.0));
+        w = [w[0].min(at), w[1].max(at)];
+    }
+    // Behind the camera, or not to be told.
+    if !(w[0] > 0.0 && w[0] <= w[1] && w[1].is_finite()) {
+        return [0.0, f64::INFINITY];
+    }
+    [w[0] * per_w[0], w[1] * per_w[1]]
+}

@@ -1,0 +1,234 @@
+//! What the host lends for a frame: images, meshes, ready-made occluder maps.
+
+use crate::Error;
+use crate::error::quoted;
+use crate::graph::Scope;
+use ash::vk;
+use glam::DMat4;
+use std::fmt;
+use std::str::FromStr;
+
+/// An axis-aligned box in mesh space: least and largest corner, metres before the transform.
+pub type MeshBounds = [[f32; 3]; 2];
+
+/// What a mesh does with light: blocks it, shows shadows, or both.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Role {
+    /// Blocks light; its own pixels are never shadowed (visible fraction 1).
+    Occluder,
+    /// Shows shadows and blocks nothing.
+    Receiver,
+    /// Blocks light and shows shadows, its own included.
+    #[default]
+    Both,
+}
+
+impl Role {
+    /// Whether a mesh of this role blocks light.
+    pub fn blocks(self) -> bool {
+        self != Self::Receiver
+    }
+
+    /// What the G-buffer's mask holds at the pixels of a mesh of this role, as an 8-bit unorm.
+    pub fn mask(self) -> u8 {
+        match self {
+            Self::Both => 255,
+            Self::Receiver => 128,
+            Self::Occluder => 0,
+        }
+    }
+
+    /// Whether a mesh of this role shows shadows.
+    pub fn receives(self) -> bool {
+        self != Self::Occluder
+    }
+}
+
+impl fmt::Display for Role {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Occluder => "occluder",
+            Self::Receiver => "receiver",
+            Self::Both => "both",
+        })
+    }
+}
+
+impl FromStr for Role {
+    type Err = Error;
+
+    /// Reads `occluder`, `receiver` or `both`, as in a file's `shadow_role`.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for any other word.
+    fn from_str(word: &str) -> Result<Self, Error> {
+        match word {
+            "occluder" => Ok(Self::Occluder),
+            "receiver" => Ok(Self::Receiver),
+            "both" => Ok(Self::Both),
+            _ => Err(Error::Scene(format!(
+                "the role {} is not known; write occluder, receiver or both",
+                quoted(word)
+            ))),
+        }
+    }
+}
+
+/// One of the host's images, how it was left and how it is wanted back.
+///
+/// Format, extent and usage are what the image was created with; [`ShadowNode::plan`] holds them
+/// against what the node needs, because Vulkan does not tell them of a handle.
+///
+/// [`ShadowNode::plan`]: crate::ShadowNode::plan
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HostImage {
+    /// The image: one sample, and the view's mip level and array layer its only ones.
+    pub image: vk::Image,
+    /// A 2D view of it, of the depth aspect for depth.
+    pub view: vk::ImageView,
+    /// The format of image and view.
+    pub format: vk::Format,
+    /// Width and height in texels.
+    pub extent: [u32; 2],
+    /// What the image was created for.
+    pub usage: vk::ImageUsageFlags,
+    /// Stage, access and layout of the host's last use before the node. A host that places the
+    /// barriers itself says here in which layout the node will find an image that it reads.
+    pub before: Scope,
+    /// Stage, access and layout of the host's first use after it; `UNDEFINED` leaves the layout.
+    pub after: Scope,
+}
+
+impl HostImage {
+    /// An image and its view, with what they were created with and how the host uses them.
+    pub fn new(
+        (image, view): (vk::Image, vk::ImageView),
+        format: vk::Format,
+        extent: [u32; 2],
+        usage: vk::ImageUsageFlags,
+        before: Scope,
+        after: Scope,
+    ) -> Self {
+        Self { image, view, format, extent, usage, before, after }
+    }
+
+    /// The same image as a frame hands it back: what the next light's frame, behind it in the same
+    /// command buffer, says of it. [`Self::after`] must name a layout.
+    #[must_use]
+    pub fn handed_back(self) -> Self {
+        Self { before: self.after, ..self }
+    }
+}
+
+/// Whose image the result is written to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Visibility {
+    /// The node's own, [`ShadowNode::visibility`](crate::ShadowNode::visibility): with several lights,
+    /// the layer of the frame's light. A frame that would write what is there already leaves it, unless
+    /// `before` writes it or forgets its layout.
+    Own {
+        /// The host's last use of it.
+        before: Scope,
+        /// The host's first use of what this frame writes.
+        after: Scope,
+    },
+    /// The host's: R32_SFLOAT (R32G32B32A32_SFLOAT with color), as large as the G-buffer, with STORAGE
+    /// usage. Every pixel of it is
+    /// written, so what it held need not be kept.
+    Lent(HostImage),
+}
+
+/// A mesh's triangles in buffers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MeshBuffers {
+    /// Positions: three 32-bit floats each, in a buffer with `VERTEX_BUFFER` usage.
+    pub positions: vk::Buffer,
+    /// Where the first position is, in bytes.
+    pub positions_offset: u64,
+    /// Bytes from one position to the next; one of
+    /// [`Description::position_strides`](crate::Description::position_strides).
+    pub positions_stride: u32,
+    /// Indices: buffer, offset in bytes, type; none for a list of triangles without.
+    pub indices: Option<(vk::Buffer, u64, vk::IndexType)>,
+    /// How many indices, or vertices where there are none.
+    pub count: u32,
+}
+
+impl MeshBuffers {
+    /// `count` 32-bit indices from a buffer's start into positions from a buffer's start, which lie
+    /// `stride` bytes apart.
+    pub fn indexed(positions: vk::Buffer, stride: u32, indices: vk::Buffer, count: u32) -> Self {
+        Self {
+            positions,
+            positions_offset: 0,
+            positions_stride: stride,
+            indices: Some((indices, 0, vk::IndexType::UINT32)),
+            count,
+        }
+    }
+}
+
+/// How a mesh's triangles come into the depth layers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Geometry {
+    /// The node draws them.
+    Buffers(MeshBuffers),
+    /// The host draws them with a pipeline of its own (skinned, displaced, generated), when
+    /// [`ShadowNode::record_with`](crate::ShadowNode::record_with) asks for this number.
+    HostDrawn(u64),
+}
+
+/// A mesh as the host keeps it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeshInstance {
+    /// Its triangles.
+    pub geometry: Geometry,
+    /// Mesh space to world space.
+    pub world_from_mesh: DMat4,
+    /// A box around the positions, in mesh space; what reaches beyond it may cast no shadow, and show none.
+    pub bounds: MeshBounds,
+    /// Occluder, receiver or both.
+    pub role: Role,
+    /// Both sides of each triangle are front faces.
+    pub double_sided: bool,
+    /// A texture's alpha cuts holes into it. The node knows no textures and draws it whole, which
+    /// [`FramePlan::explain`](crate::FramePlan::explain) then says; with [`Geometry::HostDrawn`] the host cuts it.
+    pub cut_out: bool,
+}
+
+impl MeshInstance {
+    /// A mesh whose triangles have one front.
+    pub fn new(geometry: Geometry, world_from_mesh: DMat4, bounds: MeshBounds, role: Role) -> Self {
+        Self { geometry, world_from_mesh, bounds, role, double_sided: false, cut_out: false }
+    }
+}
+
+/// Depth images of the occluders that the host drew itself, from the light.
+///
+/// Their camera is a perspective that stands at the light's centre, looks along its emission and has
+/// its x and y along the light's half-axes, either way round. Depth may be standard or reversed, the
+/// far plane finite or infinite: window and distances are worked out from the matrix. The images are
+/// square, [`map`](crate::Settings::map) texels a side, of the format that
+/// [`Description::occluder_maps`](crate::Description::occluder_maps) says, cleared to the far plane.
+///
+/// Leave out what lies behind everything, such as a ground: as an occluder it only costs accuracy.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OccluderMaps {
+    /// The nearest faces, of either orientation.
+    pub front: HostImage,
+    /// The furthest back faces: front faces culled, the furthest kept, cleared to the near plane.
+    /// Needed unless `sides` is `one`.
+    pub back: Option<HostImage>,
+    /// World space to the clip space of both.
+    pub clip_from_world: DMat4,
+}
+
+/// Who places the barriers at the node's border.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BorderBarriers {
+    /// The node, from what the host says of its images.
+    #[default]
+    Node,
+    /// The host, from [`FramePlan::accesses`](crate::FramePlan::accesses).
+    Host,
+}

@@ -1,0 +1,87 @@
+//! Boxes as a light sees them.
+
+use crate::RectangleLight;
+use crate::lent::MeshBounds;
+use glam::{DMat4, DVec3};
+
+/// Flat is an extent of no more than this share of a box's largest.
+const FLAT: f64 = 1e-6;
+
+/// A mesh's box in light space, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LightBox {
+    /// Its corners: bit i of a corner's number tells the end of the mesh's axis i.
+    pub corners: [DVec3; 8],
+    /// Their least coordinates.
+    pub min: DVec3,
+    /// Their largest.
+    pub max: DVec3,
+    /// The largest sum that a corner's distance is the rounded result of.
+    pub summed: f64,
+    /// The axis along which it has no extent: what it holds is a flat sheet; none where it is thick.
+    pub thin_axis: Option<usize>,
+}
+
+impl LightBox {
+    /// Of bounds and what brings them to light space.
+    pub fn new(bounds: &MeshBounds, light_from_mesh: &DMat4) -> Self {
+        let [low, high] = bounds.map(|p| DVec3::from_array(p.map(f64::from)));
+        let size = high - low;
+        let column = |i: usize| light_from_mesh.col(i).truncate();
+        let edges = [column(0) * size.x, column(1) * size.y, column(2) * size.z];
+        let first = light_from_mesh.transform_point3(low);
+        let below = edges.iter().fold(DVec3::ZERO, |sum, e| sum + e.min(DVec3::ZERO));
+        let above = edges.iter().fold(DVec3::ZERO, |sum, e| sum + e.max(DVec3::ZERO));
+        let with =
+            |from: [DVec3; 2], edge: DVec3| [from[0], from[1], from[0] + edge, from[1] + edge];
+        let low_face = with([first, first + edges[0]], edges[1]);
+        let high_face = low_face.map(|p| p + edges[2]);
+        let [a, b, c, d] = low_face;
+        let [e, f, g, h] = high_face;
+        let furthest = low.abs().max(high.abs());
+        let flat = FLAT * size.max_element();
+        Self {
+            corners: [a, b, c, d, e, f, g, h],
+            min: first + below,
+            max: first + above,
+            summed: light_from_mesh.row(2).abs().dot(furthest.extend(1.0)),
+            thin_axis: size.to_array().iter().position(|&extent| extent <= flat),
+        }
+    }
+
+    /// Those of some meshes.
+    pub fn of_all(light: &RectangleLight, meshes: &[(MeshBounds, DMat4)]) -> Vec<Self> {
+        let light_from_world = light.light_from_world();
+        meshes.iter().map(|(bounds, m)| Self::new(bounds, &(light_from_world * *m))).collect()
+    }
+
+    /// Its edge along one of the mesh's axes.
+    pub fn edge(&self, axis: usize) -> DVec3 {
+        self.corners[1 << axis] - self.corners[0]
+    }
+
+    /// Whether it is flat and has a light of these half-extents and every receiver on one side of its plane.
+    pub fn is_aside<R: Iterator<Item = Self>>(
+        &self,
+        [a, b]: [f64; 2],
+        receivers: impl FnOnce() -> R,
+    ) -> bool {
+        let Some(thin) = self.thin_axis else { return false };
+        let (one, other) = (self.edge((thin + 1) % 3), self.edge((thin + 2) % 3));
+        let normal = one.cross(other).normalize_or_zero();
+        if normal == DVec3::ZERO {
+            return false;
+        }
+        let slack = FLAT * (self.max - self.min).length();
+        let (mut above, mut below) = (true, true);
+        let mut add = |p: DVec3| {
+            let height = normal.dot(p - self.corners[0]);
+            above &= height >= -slack;
+            below &= height <= slack;
+            above || below
+        };
+        let lamp = [(a, b), (a, -b), (-a, b), (-a, -b)];
+        lamp.into_iter().all(|(x, y)| add(DVec3::new(x, y, 0.0)))
+            && receivers().flat_map(|r| r.corners).all(add)
+    }
+}

@@ -1,0 +1,269 @@
+//! Depth layers: what the light sees.
+//!
+//! ```text
+//!        light's centre
+//!            / | \            front      occluders' nearest faces
+//!           /  |  \           back       occluders' furthest back faces
+//!          /  ___  \          receivers  receivers' nearest faces
+//!         /  /   \  \
+//!        /   \___/   \        stored: near · w, with w = 1/d and d the distance along
+//!       /_____________\       the light's normal; 0 where there is nothing
+//! ```
+//! The pinhole is the light's centre and the map is parallel to the light (Atty 2006 section 3.2).
+//! The projection is reversed with an infinite far plane, so w comes back by one multiplication and
+//! keeps its relative precision at every distance.
+//!
+//! Where we depart: the front layer takes faces of either orientation, because the nearest face of a
+//! closed solid is a front face anyway, and an open sheet must cast its shadow whichever way it is
+//! turned. The map's window is fitted to the occluders in u and v apart, so it need not have the
+//! light's aspect.
+//!
+//! A host that has depth images of the occluders already lends those instead of meshes; a pass a
+//! layer then brings them into the form above, whatever their depth convention and window.
+
+mod boxes;
+mod host_maps;
+mod view;
+
+pub(crate) use boxes::LightBox;
+pub(crate) use host_maps::HostMapView;
+pub use view::{Eye, MapView, fit_from, fit_occluders, fit_receivers, is_aside};
+pub(crate) use view::{fit_boxes, fit_boxes_from, fit_receiver_boxes, tangents_of, window_of};
+
+use crate::graph::{
+    Access, Draw, Graph, Layer, Need, Owner, Pass, Push, ResourceId, Target, Use, Work,
+};
+use crate::shaders;
+use ash::vk;
+use smallvec::smallvec;
+
+/// The layers' format; the stored value is near · w.
+pub const FORMAT: vk::Format = vk::Format::D32_SFLOAT;
+
+/// The format of layers that are taken from the host's images: compute shaders write no depth.
+const TAKEN_FORMAT: vk::Format = vk::Format::R32_SFLOAT;
+
+/// The matrix that a mesh draw pushes, column by column.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct DepthPush {
+    /// Mesh space to the map's clip space.
+    pub clip_from_mesh: [f32; 16],
+}
+
+/// `take.comp`
+#[repr(C)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct TakePush {
+    /// 1 where u or v run against the map's x or y.
+    pub flip: [i32; 2],
+    /// Side of map and layer in texels.
+    pub side: i32,
+    /// near · w = scale · stored + offset.
+    pub scale: f32,
+    /// See [`Self::scale`].
+    pub offset: f32,
+    /// What is stored where the map was cleared.
+    pub empty: f32,
+    /// A layer's value there.
+    pub nothing: f32,
+    /// The largest value of a surface.
+    pub most: f32,
+}
+
+/// Which layers a technique reads, and at which size.
+#[derive(Clone, Copy, Debug)]
+pub struct Wanted {
+    /// The occluder maps' side in texels.
+    pub map: u32,
+    /// Whether the back layer is read.
+    pub back: bool,
+    /// Whether the nearest back faces and the furthest front faces are read too.
+    pub inner: bool,
+    /// The receiver map's side in texels, where one is read.
+    pub receiver_map: Option<u32>,
+}
+
+/// The layers as resources.
+#[derive(Clone, Copy, Debug)]
+pub struct DepthLayers {
+    /// Occluders' nearest faces; 0 where there are none.
+    pub front: ResourceId,
+    /// Occluders' furthest back faces; 1 where there are none.
+    pub back: Option<ResourceId>,
+    /// Occluders' nearest back faces, 0 where there are none, and their furthest front faces, 1 where
+    /// there are none.
+    pub inner: Option<[ResourceId; 2]>,
+    /// Receivers' nearest faces; 0 where there are none.
+    pub receivers: Option<ResourceId>,
+}
+
+/// Where the occluders come from.
+pub(crate) enum Occluders<'a> {
+    /// The frame's meshes.
+    Meshes,
+    /// Depth images of the host's.
+    Maps { front: ResourceId, back: Option<ResourceId>, camera: &'a HostMapView },
+}
+
+/// Which layers a frame needs.
+#[derive(Clone, Copy)]
+pub(crate) struct Needs<'a> {
+    pub front: &'a Need,
+    pub back: &'a Need,
+    pub inner: &'a Need,
+    pub receivers: &'a Need,
+}
+
+/// Adds the layers and the passes that make them. Those that a frame does without are `None`, though their rows
+/// and images are there.
+pub(crate) fn declare(
+    graph: &mut Graph,
+    wanted: Wanted,
+    occluders: &Occluders,
+    needs: &Needs,
+) -> DepthLayers {
+    let map = wanted.map;
+    let need = needs.front;
+    let (front, back) = match occluders {
+        Occluders::Meshes => {
+            let names = [FRONT, "depth_layers.front"];
+            let front = drawn(graph, Layer::Front, names, map, need);
+            let names = [BACK, "depth_layers.back"];
+            (front, wanted.back.then(|| drawn(graph, Layer::Back, names, map, needs.back)))
+        }
+        Occluders::Maps { front, back, camera } => {
+            let front = taken(graph, *front, map, camera, Layer::Front, need);
+            let back = back.filter(|_| wanted.back);
+            (front, back.map(|b| taken(graph, b, map, camera, Layer::Back, needs.back)))
+        }
+    };
+    let inner = (wanted.inner && matches!(occluders, Occluders::Meshes)).then(|| {
+        let names = ["depth_layers.near_back_depth", "depth_layers.near_back"];
+        let near_back = drawn(graph, Layer::NearBack, names, map, needs.inner);
+        let names = ["depth_layers.far_front_depth", "depth_layers.far_front"];
+        [near_back, drawn(graph, Layer::FarFront, names, map, needs.inner)]
+    });
+    let names = ["depth_layers.receiver_depth", "depth_layers.receivers"];
+    let receivers = wanted
+        .receiver_map
+        .map(|side| drawn(graph, Layer::Receivers, names, side, needs.receivers));
+    DepthLayers {
+        front,
+        back: back.filter(|_| needs.back.is_yes()),
+        inner: inner.filter(|_| needs.inner.is_yes()),
+        receivers,
+    }
+}
+
+/// Adds the map of a hard shadow to a technique that has none from the light's centre.
+pub(crate) fn hard(graph: &mut Graph, side: u32, need: &Need) -> ResourceId {
+    drawn(graph, Layer::Front, ["depth_layers.hard_depth", "depth_layers.hard"], side, need)
+}
+
+/// How a layer is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Raster {
+    /// Faces left out.
+    pub cull: vk::CullModeFlags,
+    /// What the layer is cleared to.
+    pub clear: f32,
+    /// Which of two depths stays: the new one where new `compare` old.
+    pub compare: vk::CompareOp,
+}
+
+/// How a layer is drawn.
+pub fn raster_of(layer: Layer) -> Raster {
+    use vk::{CompareOp as Op, CullModeFlags as Cull};
+    match layer {
+        Layer::Front | Layer::Receivers => {
+            Raster { cull: Cull::NONE, clear: 0.0, compare: Op::GREATER }
+        }
+        Layer::Back => Raster { cull: Cull::FRONT, clear: 1.0, compare: Op::LESS },
+        Layer::NearBack => Raster { cull: Cull::FRONT, clear: 0.0, compare: Op::GREATER },
+        Layer::FarFront => Raster { cull: Cull::BACK, clear: 1.0, compare: Op::LESS },
+        // Without a depth test: every face counts.
+        Layer::Slices => Raster { cull: Cull::NONE, clear: 0.0, compare: Op::ALWAYS },
+        Layer::FrontSlices => Raster { cull: Cull::BACK, clear: 0.0, compare: Op::ALWAYS },
+        Layer::BackSlices => Raster { cull: Cull::FRONT, clear: 0.0, compare: Op::ALWAYS },
+    }
+}
+
+const FRONT: &str = "depth_layers.front_depth";
+const BACK: &str = "depth_layers.back_depth";
+
+/// Adds a layer as the light's centre sees it, by the names of its image and of its pass.
+fn drawn(
+    graph: &mut Graph,
+    layer: Layer,
+    [image, pass]: [&'static str; 2],
+    side: u32,
+    need: &Need,
+) -> ResourceId {
+    let image = graph.image(image, FORMAT, [side, side], Owner::Transient);
+    draw(graph, pass, image, layer, 0, need);
+    image
+}
+
+/// Adds the row that draws a layer into a depth image, as one of the frame's views has it.
+pub(crate) fn draw(
+    graph: &mut Graph,
+    name: &'static str,
+    image: ResourceId,
+    layer: Layer,
+    view: u32,
+    need: &Need,
+) {
+    let Raster { cull, clear, compare } = raster_of(layer);
+    graph.push(Pass {
+        name,
+        uses: smallvec![Use::fixed(image, Access::DepthTarget)],
+        push: Push::NONE,
+        work: Work::Raster {
+            vertex: shaders::DEPTH_VERT,
+            fragment: None,
+            cull,
+            target: Target::Depth { clear, compare },
+            draw: Draw::Layer { layer, view },
+        },
+        need: *need,
+    });
+}
+
+fn taken(
+    graph: &mut Graph,
+    map: ResourceId,
+    side: u32,
+    camera: &HostMapView,
+    layer: Layer,
+    need: &Need,
+) -> ResourceId {
+    let back = layer == Layer::Back;
+    let (image, name) =
+        if back { (BACK, "depth_layers.take_back") } else { (FRONT, "depth_layers.take_front") };
+    let image = graph.image(image, TAKEN_FORMAT, [side, side], Owner::Transient);
+    let near = camera.view.near;
+    graph.push(Pass {
+        name,
+        uses: smallvec![
+            Use::bound(0, map, Access::SampledCompute),
+            Use::bound(1, image, Access::ImageWrite),
+        ],
+        push: Push::new(&TakePush {
+            flip: camera.flip.map(i32::from),
+            side: side as i32,
+            scale: (camera.scale * near) as f32,
+            offset: (camera.offset * near) as f32,
+            empty: if back { camera.near_value } else { camera.far_value },
+            nothing: if back { 1.0 } else { 0.0 },
+            // A back face on the near plane itself must not read as none.
+            most: if back { 1.0 - f32::EPSILON } else { 1.0 },
+        }),
+        work: Work::Dispatch {
+            shader: shaders::TAKE,
+            groups: [side.div_ceil(8), side.div_ceil(8), 1],
+        },
+        need: *need,
+    });
+    image
+}

@@ -1,0 +1,396 @@
+//! The window that a light-space map looks through, fitted to what it must show.
+
+use super::boxes::LightBox;
+use crate::RectangleLight;
+use crate::lent::MeshBounds;
+use glam::{DMat4, DVec3, DVec4};
+
+/// A map looks no further aside than this tangent (84°); occluders beyond it are not seen.
+const MAX_TANGENT: f64 = 10.0;
+
+/// The near plane is no nearer than this share of the furthest distance seen.
+const MIN_NEAR: f64 = 1e-4;
+
+/// The near plane stands this share of what is seen before the nearest point of it, so that what is stored
+/// stays under 1.
+const NEAR_MARGIN: f64 = 1e-3;
+
+/// What is seen is at least this share of the furthest distance deep: floats tell a thousand steps of it apart.
+const LEAST_SPAN: f64 = 1e-3;
+
+/// And what the roundings of a vertex may come to: 64 of f32, as a share of what is added up.
+const ROUNDING: f64 = 64.0 * 5.960_464_477_539_063e-8;
+
+/// Where a map is seen from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Eye {
+    /// A point this far behind the light's centre, metres; 0 is the centre.
+    Behind(f64),
+    /// Infinitely far behind it: the projection is orthographic.
+    Infinity,
+}
+
+/// A map parallel to the light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapView {
+    /// Where it is seen from.
+    pub eye: Eye,
+    /// Least u and v: tangents, or metres where the projection is orthographic.
+    pub min: [f64; 2],
+    /// Largest u and v.
+    pub max: [f64; 2],
+    /// Distance of the near plane from the eye, or from the light's plane where the eye is infinitely
+    /// far; metres.
+    pub near: f64,
+    /// Distance of the furthest point of what is seen, metres.
+    pub far: f64,
+    /// The map's side in texels.
+    pub side: u32,
+}
+
+impl MapView {
+    /// Light space to clip space, reversed: depth is near · w without a far plane, or falls from 1 at the
+    /// near plane to 0 at the far one where the projection is orthographic.
+    pub fn clip_from_light(&self) -> DMat4 {
+        let [sx, sy] = [0, 1].map(|i| 2.0 / (self.max[i] - self.min[i]));
+        let [cx, cy] = [0, 1].map(|i| -(self.max[i] + self.min[i]) / (self.max[i] - self.min[i]));
+        match self.eye {
+            Eye::Behind(behind) => DMat4::from_cols(
+                DVec4::new(sx, 0.0, 0.0, 0.0),
+                DVec4::new(0.0, sy, 0.0, 0.0),
+                DVec4::new(cx, cy, 0.0, 1.0),
+                DVec4::new(cx * behind, cy * behind, self.near, behind),
+            ),
+            Eye::Infinity => {
+                let range = self.far - self.near;
+                DMat4::from_cols(
+                    DVec4::new(sx, 0.0, 0.0, 0.0),
+                    DVec4::new(0.0, sy, 0.0, 0.0),
+                    DVec4::new(0.0, 0.0, -1.0 / range, 0.0),
+                    DVec4::new(cx, cy, self.far / range, 1.0),
+                )
+            }
+        }
+    }
+
+    /// The height of the near plane: w = 1/distance, or metres above the far plane where the projection
+    /// is orthographic. Heights are this times what is stored.
+    pub fn top(&self) -> f64 {
+        match self.eye {
+            Eye::Behind(_) => 1.0 / self.near,
+            Eye::Infinity => self.far - self.near,
+        }
+    }
+
+    /// Texels a unit of u and of v.
+    pub fn texels_per_uv(&self) -> [f64; 2] {
+        [0, 1].map(|i| f64::from(self.side) / (self.max[i] - self.min[i]))
+    }
+
+    /// The texel coordinates of u = v = 0.
+    pub fn first(&self) -> [f64; 2] {
+        let per = self.texels_per_uv();
+        [0, 1].map(|i| -self.min[i] * per[i])
+    }
+
+    /// (Δu/Lx, Δv/Ly): the size of a texel over the light's, per metre.
+    pub fn scale(&self, light: &RectangleLight) -> [f64; 2] {
+        let per = self.texels_per_uv();
+        let half = light.half_extents();
+        [0, 1].map(|i| 1.0 / (per[i] * 2.0 * half[i]))
+    }
+}
+
+/// The tangents under which the light's centre sees the part of the boxes beyond `near`.
+fn tangents(boxes: &[LightBox], near: f64) -> Option<([f64; 2], [f64; 2])> {
+    extents(boxes, near, |p| [p.x, p.y].map(|x| (x / p.z).clamp(-MAX_TANGENT, MAX_TANGENT)))
+}
+
+/// Least and largest u and v under which the light's centre sees what of some meshes is beyond `near`; none where
+/// nothing is.
+pub(crate) fn tangents_of(
+    light: &RectangleLight,
+    meshes: &[(MeshBounds, DMat4)],
+    near: f64,
+) -> Option<([f64; 2], [f64; 2])> {
+    tangents(&LightBox::of_all(light, meshes), near)
+}
+
+/// Least and largest u and v under which an eye behind the light sees what of a box is beyond `near`, which is
+/// counted from the eye as in [`MapView::near`]; none where nothing is.
+pub(crate) fn window_of(eye: Eye, of: &LightBox, near: f64) -> Option<([f64; 2], [f64; 2])> {
+    let boxes = std::slice::from_ref(of);
+    match eye {
+        Eye::Behind(behind) => extents(boxes, near - behind, |p| {
+            [p.x, p.y].map(|x| (x / (p.z + behind)).clamp(-MAX_TANGENT, MAX_TANGENT))
+        }),
+        Eye::Infinity => extents(boxes, near, |p| [p.x, p.y]),
+    }
+}
+
+/// The least and the largest of what `of` says of the part of the boxes beyond `near`.
+fn extents(
+    boxes: &[LightBox],
+    near: f64,
+    of: impl Fn(DVec3) -> [f64; 2],
+) -> Option<([f64; 2], [f64; 2])> {
+    let mut window = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    let add = |(min, max): &mut ([f64; 2], [f64; 2]), p: DVec3| {
+        for (i, x) in of(p).into_iter().enumerate() {
+            min[i] = min[i].min(x);
+            max[i] = max[i].max(x);
+        }
+    };
+    let holds = |(min, max): &([f64; 2], [f64; 2]), p: DVec3| {
+        let at = of(p);
+        (0..2).all(|i| min[i] <= at[i] && at[i] <= max[i])
+    };
+    for LightBox { corners, min: least, max: most, .. } in boxes {
+        if least.z >= near {
+            // u and v are largest and least in these corners of the box around it: most lie where others do.
+            let outermost = [*least, *most, least.with_z(most.z), most.with_z(least.z)];
+            if !outermost.into_iter().all(|p| holds(&window, p)) {
+                corners.iter().for_each(|&p| add(&mut window, p));
+            }
+            continue;
+        }
+        for (i, &a) in corners.iter().enumerate() {
+            if a.z >= near {
+                add(&mut window, a);
+            }
+            // The three edges to the neighbours above, where they cross the near plane.
+            for b in (0..3).filter(|axis| i >> axis & 1 == 0).map(|axis| corners[i | 1 << axis]) {
+                if (a.z < near) != (b.z < near) {
+                    let t = (near - a.z) / (b.z - a.z);
+                    add(&mut window, (a + (b - a) * t).with_z(near));
+                }
+            }
+        }
+    }
+    (window.0[0] <= window.1[0]).then_some(window)
+}
+
+/// Widens a window by one texel on each side, or by half of what it shows where a map has no three, and a window of
+/// no width to one that has some.
+fn pad(min: &mut [f64; 2], max: &mut [f64; 2], side: u32) {
+    let wider = if side > 2 { f64::from(side) / (f64::from(side) - 2.0) } else { 2.0 };
+    for i in 0..2 {
+        let middle = 0.5 * (min[i] + max[i]);
+        let least = 1e-6 * (1.0 + middle.abs());
+        let half = (0.5 * (max[i] - min[i])).max(least);
+        let half = half * wider;
+        min[i] = middle - half;
+        max[i] = middle + half;
+    }
+}
+
+/// Whether a mesh is flat and has the whole light and every receiver on one side of its plane, as a
+/// ground has: no ray from the one to the other crosses it, so it blocks nothing, and a map need not
+/// spend its texels on it.
+pub fn is_aside(
+    light: &RectangleLight,
+    mesh: &(MeshBounds, DMat4),
+    receivers: &[(MeshBounds, DMat4)],
+) -> bool {
+    let own = LightBox::of_all(light, std::slice::from_ref(mesh));
+    own[0].is_aside(light.half_extents(), || LightBox::of_all(light, receivers).into_iter())
+}
+
+/// The view that just holds all occluders; none where there are none in front of the light.
+///
+/// `window` fixes the tangents (least and largest u, v) instead of fitting them, as a host does that
+/// wants texels to stay where they are while occluders move.
+pub fn fit_occluders(
+    light: &RectangleLight,
+    occluders: &[(MeshBounds, DMat4)],
+    window: Option<[[f64; 2]; 2]>,
+    side: u32,
+) -> Option<MapView> {
+    fit_boxes(&LightBox::of_all(light, occluders), window, side)
+}
+
+/// The same of boxes.
+pub(crate) fn fit_boxes(
+    occluders: &[LightBox],
+    window: Option<[[f64; 2]; 2]>,
+    side: u32,
+) -> Option<MapView> {
+    let Some([min, max]) = window else {
+        return fit_boxes_from(Eye::Behind(0.0), occluders, side);
+    };
+    let (near, far) = planes_of(occluders)?;
+    Some(MapView { eye: Eye::Behind(0.0), min, max, near, far, side })
+}
+
+/// Least and largest distance of boxes; none where all lie behind the light.
+fn distances(boxes: &[LightBox]) -> Option<(f64, f64)> {
+    let largest = boxes.iter().map(|b| b.max.z).fold(f64::NEG_INFINITY, f64::max);
+    let least = boxes.iter().map(|b| b.min.z).fold(f64::INFINITY, f64::min);
+    (largest > 0.0).then_some((least, largest))
+}
+
+/// The distances of the near plane and of the furthest occluder; none where all lie behind the light.
+fn planes_of(occluders: &[LightBox]) -> Option<(f64, f64)> {
+    let summed = occluders.iter().map(|b| b.summed).fold(0.0, f64::max);
+    let (least, far) = distances(occluders)?;
+    let span = far - least;
+    let margin = (NEAR_MARGIN * span + ROUNDING * summed).max(LEAST_SPAN * far - span);
+    let near = (least - margin).max(far * MIN_NEAR);
+    Some((near, far))
+}
+
+/// As [`fit_occluders`], from an eye behind the light; what is behind the light is not seen.
+pub fn fit_from(
+    eye: Eye,
+    light: &RectangleLight,
+    occluders: &[(MeshBounds, DMat4)],
+    side: u32,
+) -> Option<MapView> {
+    fit_boxes_from(eye, &LightBox::of_all(light, occluders), side)
+}
+
+/// The same of boxes.
+pub(crate) fn fit_boxes_from(eye: Eye, occluders: &[LightBox], side: u32) -> Option<MapView> {
+    let (near, far) = planes_of(occluders)?;
+    let (mut window, near, far) = match eye {
+        Eye::Behind(behind) => {
+            let of = |p: DVec3| {
+                [p.x, p.y].map(|x| (x / (p.z + behind)).clamp(-MAX_TANGENT, MAX_TANGENT))
+            };
+            (extents(occluders, near, of)?, near + behind, far + behind)
+        }
+        Eye::Infinity => {
+            // What is furthest must not read as nothing.
+            let far = far + NEAR_MARGIN * (far - near).max(far * MIN_NEAR);
+            (extents(occluders, near, |p| [p.x, p.y])?, near, far)
+        }
+    };
+    pad(&mut window.0, &mut window.1, side);
+    Some(MapView { eye, min: window.0, max: window.1, near, far, side })
+}
+
+/// The view that holds what of the receivers the occluders can shadow; none where that is nothing.
+pub fn fit_receivers(
+    light: &RectangleLight,
+    receivers: &[(MeshBounds, DMat4)],
+    occluders: &MapView,
+    side: u32,
+) -> Option<MapView> {
+    fit_receiver_boxes(light.half_extents(), &LightBox::of_all(light, receivers), occluders, side)
+}
+
+/// The same of boxes, for a light of these half-extents.
+pub(crate) fn fit_receiver_boxes(
+    light: [f64; 2],
+    receivers: &[LightBox],
+    occluders: &MapView,
+    side: u32,
+) -> Option<MapView> {
+    let (least, far) = distances(receivers)?;
+    // A receiver nearer than every occluder is lit, and must not hide one that is not.
+    if far <= occluders.near {
+        return None;
+    }
+    let near = least.max(occluders.near) * (1.0 - NEAR_MARGIN);
+    let (mut min, mut max) = tangents(receivers, near)?;
+    // A penumbra reaches (L/2)(w_o − w_r) around its occluder in u (Atty 2006 section 3.3).
+    let spread = 1.0 / occluders.near - 1.0 / far;
+    for (i, half) in light.into_iter().enumerate() {
+        min[i] = min[i].max(occluders.min[i] - half * spread);
+        max[i] = max[i].min(occluders.max[i] + half * spread);
+        // Equal are those of receivers whose plane holds the light's centre.
+        if min[i] > max[i] {
+            return None;
+        }
+    }
+    pad(&mut min, &mut max, side);
+    Some(MapView { eye: Eye::Behind(0.0), min, max, near, far, side })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec4Swizzles as _;
+
+    fn ceiling() -> RectangleLight {
+        RectangleLight::new(DVec3::new(0.0, 4.0, 0.0), DVec3::X * 0.5, DVec3::NEG_Z * 0.5).unwrap()
+    }
+
+    const UNIT: MeshBounds = [[-0.5; 3], [0.5; 3]];
+
+    #[test]
+    fn the_window_holds_every_corner_and_little_more() {
+        let at = DMat4::from_translation(DVec3::new(0.3, 2.0, -0.1));
+        let view = fit_occluders(&ceiling(), &[(UNIT, at)], None, 64).unwrap();
+        assert!(view.near < 1.5 && view.near > 1.49);
+        let to_clip = view.clip_from_light() * ceiling().light_from_world() * at;
+        let mut widest: f64 = 0.0;
+        for i in 0..8 {
+            let corner = DVec3::from_array(std::array::from_fn(|a| f64::from(i >> a & 1) - 0.5));
+            let clip = to_clip * corner.extend(1.0);
+            let ndc = clip.xyz() / clip.w;
+            assert!(ndc.x.abs() < 1.0 && ndc.y.abs() < 1.0 && ndc.z > 0.0 && ndc.z < 1.0);
+            assert!((ndc.z - view.near / clip.w).abs() < 1e-12);
+            widest = widest.max(ndc.x.abs());
+        }
+        assert!((widest - 62.0 / 64.0).abs() < 1e-9, "one texel of margin, not {widest}");
+    }
+
+    #[test]
+    fn the_smallest_maps_hold_every_corner() {
+        let at = DMat4::from_translation(DVec3::new(0.3, 2.0, -0.1));
+        let wide = fit_occluders(&ceiling(), &[(UNIT, at)], None, 1 << 20).unwrap();
+        for side in 1..8 {
+            let view = fit_occluders(&ceiling(), &[(UNIT, at)], None, side).unwrap();
+            let holds = |i: usize| view.min[i] < wide.min[i] && view.max[i] > wide.max[i];
+            assert!(holds(0) && holds(1) && view.max[0].is_finite(), "{side}");
+        }
+    }
+
+    #[test]
+    fn what_lies_behind_the_light_is_left_out() {
+        let above = DMat4::from_translation(DVec3::new(0.0, 6.0, 0.0));
+        assert_eq!(fit_occluders(&ceiling(), &[(UNIT, above)], None, 64), None);
+        // Through the light's plane: clipped, finite.
+        let across = DMat4::from_translation(DVec3::new(0.0, 4.0, 0.0));
+        let view = fit_occluders(&ceiling(), &[(UNIT, across)], None, 64).unwrap();
+        assert!(view.near > 0.0 && view.max[0].is_finite() && view.max[0] <= 11.0);
+    }
+
+    #[test]
+    fn a_ground_under_everything_is_aside() {
+        let light = ceiling();
+        let ground = ([[-4.0, 0.0, -4.0], [4.0, 0.0, 4.0]], DMat4::IDENTITY);
+        let standing = (UNIT, DMat4::from_translation(DVec3::new(0.0, 0.5, 0.0)));
+        let sunk = (UNIT, DMat4::from_translation(DVec3::new(0.0, 0.4, 0.0)));
+        assert!(is_aside(&light, &ground, &[ground, standing]));
+        assert!(!is_aside(&light, &ground, &[ground, sunk]), "it shadows what lies beneath it");
+        assert!(!is_aside(&light, &standing, &[ground]), "a box is not flat");
+        // A wall that the light shines past on both sides.
+        let wall = ([[0.0, 0.0, -4.0], [0.0, 4.0, 4.0]], DMat4::IDENTITY);
+        assert!(!is_aside(&light, &wall, &[ground]));
+    }
+
+    #[test]
+    fn receivers_are_cut_to_what_can_be_shadowed() {
+        let light = ceiling();
+        let card: MeshBounds = [[-0.5, 0.0, -0.5], [0.5, 0.0, 0.5]];
+        let card_at = DMat4::from_translation(DVec3::new(0.0, 2.0, 0.0));
+        let occluders = fit_occluders(&light, &[(card, card_at)], None, 64).unwrap();
+        let ground: MeshBounds = [[-50.0, 0.0, -50.0], [50.0, 0.0, 50.0]];
+        let view = fit_receivers(&light, &[(ground, DMat4::IDENTITY)], &occluders, 64).unwrap();
+        // The penumbra's outer edge: the light's far edge through the card's edge, at x = 1.5.
+        let edge = view.max[0] * 62.0 / 64.0 * 4.0;
+        assert!((edge - 1.5).abs() < 0.05, "{edge}");
+        // A light that stands on the ground, half of it beneath: its centre sees the ground edge-on.
+        let standing =
+            RectangleLight::new(DVec3::X * -3.0, DVec3::Z * 0.5, DVec3::Y * 0.5).unwrap();
+        let wall = DMat4::from_rotation_z(std::f64::consts::FRAC_PI_2);
+        let walled = fit_occluders(&standing, &[(card, wall)], None, 64).unwrap();
+        let seen = fit_receivers(&standing, &[(ground, DMat4::IDENTITY)], &walled, 64).unwrap();
+        assert!((0..2).all(|i| seen.min[i] < seen.max[i]));
+        // A shelf above the card receives nothing.
+        let shelf = DMat4::from_translation(DVec3::new(0.0, 3.0, 0.0));
+        assert_eq!(fit_receivers(&light, &[(card, shelf)], &occluders, 64), None);
+    }
+}

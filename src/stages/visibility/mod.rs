@@ -1,0 +1,148 @@
+//! The result: one image that holds the visible fraction of the light for each pixel.
+//!
+//! `visibility` is R32_SFLOAT, as large as the G-buffer: 1 is lit, 0 is umbra; 1 where nothing
+//! receives. Techniques that work at the pixels write it themselves; those that work in the light's
+//! space are resolved onto the pixels here.
+
+pub mod twin;
+
+use crate::graph::{Access, Graph, Need, Owner, Pass, Push, ResourceId, Use, Work};
+use crate::shaders;
+use crate::stages::depth_layers::MapView;
+use ash::vk;
+use bytemuck::{Pod, Zeroable};
+use smallvec::smallvec;
+
+/// The visibility image's format.
+pub const FORMAT: vk::Format = vk::Format::R32_SFLOAT;
+
+/// The same where the visible fraction is one of red, green and blue each; alpha is 1.
+pub const COLOR_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+
+/// What hosts do with a node's own visibility image: sample it, or copy it out.
+pub(crate) const USAGE: vk::ImageUsageFlags = vk::ImageUsageFlags::from_raw(
+    vk::ImageUsageFlags::STORAGE.as_raw()
+        | vk::ImageUsageFlags::SAMPLED.as_raw()
+        | vk::ImageUsageFlags::TRANSFER_SRC.as_raw(),
+);
+
+/// The visibility image's format, with color or without.
+pub fn format(color: bool) -> vk::Format {
+    if color { COLOR_FORMAT } else { FORMAT }
+}
+
+/// The host's pixels, as resources of the graph.
+#[derive(Clone, Copy, Debug)]
+pub struct GBuffer {
+    /// Depth, as the host's camera sees it.
+    pub depth: ResourceId,
+    /// Roles: red 1 blocks and receives, ½ receives only, 0 receives nothing. All are 1 without it.
+    pub mask: Option<ResourceId>,
+    /// Width and height in pixels.
+    pub extent: [u32; 2],
+    /// Normalized device coordinates to light space, by column.
+    pub light_from_ndc: [f32; 16],
+    /// The depth of a pixel that shows no surface.
+    pub background: f32,
+}
+
+/// `lit.comp`
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct LitPush {
+    /// Width and height.
+    pub extent: [i32; 2],
+}
+
+/// `resolve.comp`
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct ResolvePush {
+    /// Normalized device coordinates to light space.
+    pub light_from_ndc: [f32; 16],
+    /// Receiver texels a unit of u and v.
+    pub texels_per_uv: [f32; 2],
+    /// Receiver-texel coordinates of u = v = 0.
+    pub first: [f32; 2],
+    /// The G-buffer's width and height.
+    pub extent: [i32; 2],
+    /// The depth of a pixel that shows no surface.
+    pub background: f32,
+    /// 1 over the receiver map's near plane, 1/m.
+    pub receiver_inv_near: f32,
+    /// The map's side in texels.
+    pub receiver_map: i32,
+    /// Bit 0: the mask is there; bit 1: the mean of both maps, not their maximum.
+    pub flags: i32,
+}
+
+/// What is resolved.
+#[derive(Clone, Copy, Debug)]
+pub struct Resolve<'a> {
+    /// The receiver map.
+    pub receiver_depth: ResourceId,
+    /// How it looks at the scene.
+    pub view: &'a MapView,
+    /// Occlusion of both sides; the same twice where there is one.
+    pub maps: [ResourceId; 2],
+    /// Their mean is the occlusion, not their maximum.
+    pub mean: bool,
+}
+
+/// Declares the visibility image: the node's own, or `lent` by the host.
+pub fn declare(graph: &mut Graph, extent: [u32; 2], color: bool, lent: bool) -> ResourceId {
+    let owner = if lent { Owner::Lent } else { Owner::Exported };
+    graph.image("visibility", format(color), extent, owner)
+}
+
+/// One invocation a pixel, in groups of 8×8.
+pub(crate) fn grid(extent: [u32; 2]) -> [u32; 3] {
+    [extent[0].div_ceil(8), extent[1].div_ceil(8), 1]
+}
+
+/// Adds the row that makes every pixel lit.
+pub fn lit(graph: &mut Graph, visibility: ResourceId, extent: [u32; 2], color: bool, need: Need) {
+    graph.push(Pass {
+        name: "visibility.lit",
+        uses: smallvec![Use::bound(0, visibility, Access::ImageWrite)],
+        push: Push::new(&LitPush { extent: extent.map(|e| e as i32) }),
+        work: Work::Dispatch {
+            shader: if color { shaders::LIT_COLOR } else { shaders::LIT },
+            groups: grid(extent),
+        },
+        need,
+    });
+}
+
+/// Adds the row that projects a soft shadow map onto the pixels.
+pub fn resolve(
+    graph: &mut Graph,
+    visibility: ResourceId,
+    what: &Resolve,
+    gbuffer: &GBuffer,
+    need: &Need,
+) {
+    graph.push(Pass {
+        name: "visibility.resolve",
+        uses: smallvec![
+            Use::bound(0, gbuffer.depth, Access::SampledCompute),
+            Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
+            Use::bound(2, what.receiver_depth, Access::SampledCompute),
+            Use::bound(3, what.maps[0], Access::SampledCompute),
+            Use::bound(4, what.maps[1], Access::SampledCompute),
+            Use::bound(5, visibility, Access::ImageWrite),
+        ],
+        push: Push::new(&ResolvePush {
+            light_from_ndc: gbuffer.light_from_ndc,
+            texels_per_uv: what.view.texels_per_uv().map(|x| x as f32),
+            first: what.view.first().map(|x| x as f32),
+            extent: gbuffer.extent.map(|e| e as i32),
+            background: gbuffer.background,
+            receiver_inv_near: (1.0 / what.view.near) as f32,
+            receiver_map: what.view.side as i32,
+            flags: i32::from(gbuffer.mask.is_some()) | i32::from(what.mean) << 1,
+        }),
+        work: Work::Dispatch { shader: shaders::RESOLVE, groups: grid(gbuffer.extent) },
+        need: *need,
+    });
+}

@@ -1,0 +1,87 @@
+//! Soft shadow mapping by back-projection (Guennebaud, Barthe, Paulin 2006).
+//!
+//! ```text
+//!   light      ├──┤├──┤    ├─┤          each texel in front of the pixel, projected back onto the light
+//!               \  \ \  \    |
+//!   map          ├──┼──┤ ╵   |          a gap between neighbours at different distances: the nearer
+//!                 \ \ \   ├──┤          texel reaches over it, to the left and up (section 4)
+//!                  \ | |  /
+//!   pixel             ●
+//! ```
+//! The sum over texels of the soft shadow map ([`crate::techniques::soft_shadow_map`]), published in the same year, in
+//! screen space from the start, and texel by texel: each pixel visits the window of the map that the
+//! light can be hidden from. A hierarchy of the least and the largest distance (their hierarchical shadow
+//! map) shrinks that window to what its nearest occluder asks for, and says where a pixel is lit or in
+//! umbra without a visit.
+//!
+//! Where we depart: the bias is this room's, and what the pixel's own surface hides is a closed form. Their
+//! umbra is where every texel of the window is nearer than the pixel; here those texels must be above the
+//! pixel's plane as well, which the pixel's own slope is not.
+//!
+//! **Limits.** Gaps are filled, overlaps are not taken out: where a near edge passes before something
+//! further, both count, and shadows come out too dark: 2 % in the
+//! mean on spheres and the bunny. A pixel in a wide penumbra costs as many
+//! fetches as its window has texels, so the time grows with the square of the light's and the map's side.
+//! Mesa's CPU driver stops a shader after 65,535 turns of its loops; eight texels a turn are enough for a
+//! window of 700² texels.
+
+pub mod twin;
+
+use crate::graph::{Access, Graph, Pass, Push, ResourceId, Use};
+use crate::shaders;
+use crate::techniques::common::{Inputs, one_map, push};
+use smallvec::smallvec;
+
+/// Nodes a side of a level of a map.
+fn level_side(map: u32, level: u32) -> u32 {
+    map.div_ceil(1 << level)
+}
+
+/// How many nodes the levels before a level have.
+fn level_start(map: u32, level: u32) -> u32 {
+    (1..level).map(|k| level_side(map, k).pow(2)).sum()
+}
+
+/// The level that is one node.
+fn top(map: u32) -> u32 {
+    map.next_power_of_two().trailing_zeros()
+}
+
+/// Adds the rows that turn the map `front` into `visibility`.
+pub fn declare(graph: &mut Graph, front: ResourceId, visibility: ResourceId, inputs: &Inputs) {
+    let map = inputs.occluders.side;
+    let nodes = u64::from(level_start(map, top(map) + 1));
+    let levels = graph.buffer("baseline.levels", nodes * size_of::<[f32; 2]>() as u64);
+    let grid = |level| {
+        let groups = level_side(map, level).div_ceil(8);
+        [groups, groups, 1]
+    };
+    graph.push(Pass::compute(
+        "baseline.finest_level",
+        shaders::FINEST_LEVEL,
+        grid(1),
+        Push::new(&push::FinestLevel {
+            map: map as i32,
+            inv_near: (1.0 / inputs.occluders.near) as f32,
+        }),
+        smallvec![
+            Use::bound(0, front, Access::SampledCompute),
+            Use::bound(1, levels, Access::BufferWriteCompute),
+        ],
+        inputs.need,
+    ));
+    for level in 2..=top(map) {
+        graph.push(Pass::compute(
+            "baseline.next_level",
+            shaders::NEXT_LEVEL,
+            grid(level),
+            Push::new(&push::NextLevel { map: map as i32, level: level as i32 }),
+            smallvec![Use::bound(0, levels, Access::BufferUpdate)],
+            inputs.need,
+        ));
+    }
+    let more = [Use::bound(4, levels, Access::BufferReadCompute)];
+    let name = "baseline.back_projection";
+    let maps = (front, visibility);
+    one_map(graph, name, shaders::BACK_PROJECTION, maps, top(map), &more, inputs);
+}

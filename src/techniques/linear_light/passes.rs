@@ -1,0 +1,152 @@
+//! The rows: samples' maps → which of them count → skins → channels, line by line; pixels → visible fractions.
+
+use super::push;
+use super::samples::{self, Layers};
+use super::segments::{self, Skins};
+use super::settings::{MOST_SAMPLES, Settings, skin_bytes};
+use super::view::Line;
+use crate::graph::{Access, Graph, Need, Owner, Pass, Push, ResourceId, Use};
+use crate::shaders;
+use crate::stages::depth_layers;
+use crate::stages::visibility::{GBuffer, grid};
+use ash::vk;
+use smallvec::smallvec;
+
+/// Texels of the image of places before a line's samples.
+pub(super) const SAMPLES_AT: u32 = 4;
+
+/// What a frame gives the technique.
+#[derive(Clone, Copy, Debug)]
+pub struct Inputs<'a> {
+    /// The light's lines.
+    pub lines: &'a [Line],
+    /// The maps' side in texels.
+    pub side: u32,
+    /// The w of the furthest receiver, 1/m.
+    pub w_far: f64,
+    /// The host's pixels.
+    pub gbuffer: &'a GBuffer,
+    /// How far a raster moves a vertex, in texels.
+    pub snap: f32,
+    /// Whether anything can be shadowed.
+    pub need: &'a Need,
+}
+
+/// What a line's maps and channels are made in, and what is made of all of them.
+pub(super) struct Made {
+    pub layers: Layers,
+    pub left: Skins,
+    pub right: Skins,
+    /// What of the segment that is being made its rows must know.
+    pub here: ResourceId,
+    /// How large the grids of its rows are.
+    pub groups: ResourceId,
+    /// The arguments of the draws of its skins.
+    pub draws: ResourceId,
+    /// A layer a sample, line by line: what pixels ask for.
+    pub maps: ResourceId,
+    /// A row a line.
+    pub places: ResourceId,
+}
+
+/// What the rows of one line are made of.
+pub(super) struct OfLine<'a> {
+    pub made: &'a Made,
+    pub settings: &'a Settings,
+    pub inputs: &'a Inputs<'a>,
+    pub line: &'a Line,
+    /// Which line it is: its row of places, its view of the meshes.
+    pub row: u32,
+}
+
+/// Adds the rows that turn the meshes, as the samples see them, into `visibility`.
+pub fn declare(graph: &mut Graph, visibility: ResourceId, settings: &Settings, inputs: &Inputs) {
+    let side = inputs.side;
+    let format = vk::Format::R32G32B32A32_SFLOAT;
+    let depth = |graph: &mut Graph, name| {
+        graph.image(name, depth_layers::FORMAT, [side; 2], Owner::Transient)
+    };
+    let layers = Layers {
+        occluders: depth(graph, "linear_light.occluders"),
+        receivers: depth(graph, "linear_light.receivers"),
+        of: graph.buffer("linear_light.samples", 4 + 4 * u64::from(MOST_SAMPLES)),
+        seen: graph.image_array("linear_light.seen", format, [side; 2], 2),
+        masks: graph.buffer(
+            "linear_light.masks",
+            4 * samples::RECEIVERS.map(u64::from).iter().product::<u64>(),
+        ),
+    };
+    let bytes = skin_bytes(side);
+    let left = Skins {
+        edges: "linear_light.left_edges",
+        draw: "linear_light.left_skins",
+        side: -1,
+        skins: graph.buffer("linear_light.left_skins", bytes),
+        offset: 0,
+        channel: depth(graph, "linear_light.left_channel"),
+    };
+    let right = Skins {
+        edges: "linear_light.right_edges",
+        draw: "linear_light.right_skins",
+        side: 1,
+        skins: graph.buffer("linear_light.right_skins", bytes),
+        offset: 16,
+        channel: depth(graph, "linear_light.right_channel"),
+    };
+    let kept = settings.lines * settings.samples;
+    let maps = graph.image_array("linear_light.maps", format, [side; 2], kept);
+    let size = [SAMPLES_AT + settings.samples, settings.lines];
+    let places = graph.image("linear_light.places", format, size, Owner::Transient);
+    let made = Made {
+        layers,
+        left,
+        right,
+        here: graph.buffer("linear_light.segment", 16),
+        groups: graph.buffer("linear_light.groups", 48),
+        draws: graph.buffer("linear_light.draws", 32),
+        maps,
+        places,
+    };
+
+    let none = [Line::NONE];
+    let lines = if inputs.lines.is_empty() { &none } else { inputs.lines };
+    for (row, line) in lines.iter().enumerate() {
+        let of = OfLine { made: &made, settings, inputs, line, row: row as u32 };
+        samples::place(graph, &of);
+        for nth in 0..settings.samples {
+            samples::look(graph, &of, nth);
+            segments::start(graph, &of, nth);
+            graph.push(samples::take(&of, nth % 2));
+            if nth > 0 {
+                segments::declare(graph, &of, nth);
+            }
+        }
+        segments::start(graph, &of, settings.samples);
+        segments::keep(graph, &of, settings.samples);
+    }
+
+    let gbuffer = inputs.gbuffer;
+    graph.push(Pass::compute(
+        "linear_light.visibility",
+        shaders::LINE_VISIBILITY,
+        grid(gbuffer.extent),
+        Push::new(&push::Visibility {
+            light_from_ndc: gbuffer.light_from_ndc,
+            extent: gbuffer.extent.map(|e| e as i32),
+            background: gbuffer.background,
+            snap: inputs.snap,
+            map: side as i32,
+            most: settings.samples as i32,
+            lines: lines.len() as i32,
+            masked: i32::from(gbuffer.mask.is_some()),
+        }),
+        smallvec![
+            Use::bound(0, gbuffer.depth, Access::SampledCompute),
+            Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
+            Use::bound(2, maps, Access::SampledCompute),
+            Use::bound(3, places, Access::SampledCompute),
+            Use::bound(4, visibility, Access::ImageWrite),
+        ],
+        inputs.need,
+    ));
+}

@@ -1,0 +1,365 @@
+//! The rows: slices → mask → tables; pixels → visible fractions.
+
+use super::pixels::{Filtered, declare_pixels};
+use super::push;
+use super::settings::{Prefilter, Settings};
+use crate::RectangleLight;
+use crate::graph::{
+    Access, COLOR_ATTACHMENTS, Draw, Graph, Layer, Need, Owner, Pass, Push, ResourceId, Target,
+    Use, Work,
+};
+use crate::shaders::{self, Module};
+use crate::stages::depth_layers::{self, DepthLayers, Eye, MapView, Wanted};
+use crate::stages::nbuffer::Levels;
+use crate::stages::visibility::{GBuffer, grid};
+use ash::vk;
+use smallvec::{SmallVec, smallvec};
+
+/// The width of the image of filtered tiles: the largest that every device has (maxImageDimension2D).
+pub(super) const IMAGE_WIDTH: u32 = 4096;
+
+/// Bins of distances, as in `placement.glsl`.
+const BINS: u32 = 960;
+
+/// Bins and planes of slices.
+const PLACEMENT: [u32; 2] = [1024, 1];
+
+/// The most texels a side of the layers that the histogram is made of.
+const HISTOGRAM_MAP: u32 = 128;
+
+/// Slices that one draw counts.
+const SLICES_A_DRAW: u32 = 4 * COLOR_ATTACHMENTS as u32;
+
+/// What a frame gives the technique.
+#[derive(Clone, Copy, Debug)]
+pub struct Inputs<'a> {
+    /// The light.
+    pub light: &'a RectangleLight,
+    /// How the slices look at the scene.
+    pub view: &'a MapView,
+    /// The host's pixels.
+    pub gbuffer: &'a GBuffer,
+    /// Whether anything can be shadowed.
+    pub need: &'a Need,
+}
+
+impl Inputs<'_> {
+    /// How far behind the light the projection point is, m.
+    pub(super) fn eye(&self) -> f64 {
+        match self.view.eye {
+            Eye::Behind(behind) => behind,
+            Eye::Infinity => 0.0,
+        }
+    }
+}
+
+/// The layers that the histogram is made of: few texels tell as much.
+pub fn wanted(settings: &Settings, map: u32) -> Wanted {
+    let back = settings.is_fitted();
+    Wanted { map: map.min(HISTOGRAM_MAP), back, inner: false, receiver_map: None }
+}
+
+/// Adds the rows that turn meshes into `visibility`; `layers` where slices are fitted to them.
+pub fn declare(
+    graph: &mut Graph,
+    layers: Option<&DepthLayers>,
+    visibility: ResourceId,
+    settings: &Settings,
+    inputs: &Inputs,
+) {
+    let placement = declare_placement(graph, layers, settings, inputs);
+    let mask = declare_mask(graph, placement, settings, inputs);
+    let sums = settings.prefilter == Prefilter::Sat;
+    let filtered = if sums {
+        declare_sums(graph, mask, settings, inputs)
+    } else {
+        declare_levels(graph, mask, settings, inputs)
+    };
+    let made = Filtered { placement, mask, filtered };
+    declare_pixels(graph, &made, visibility, settings, inputs);
+}
+
+fn declare_placement(
+    graph: &mut Graph,
+    layers: Option<&DepthLayers>,
+    settings: &Settings,
+    inputs: &Inputs,
+) -> ResourceId {
+    let format = vk::Format::R32G32B32A32_SFLOAT;
+    let name = "occlusion_textures.placement";
+    let placement = graph.image(name, format, PLACEMENT, Owner::Transient);
+    let eye = inputs.eye();
+    let pushed = Push::new(&push::Place {
+        near: (inputs.view.near - eye) as f32,
+        far: (inputs.view.far - eye) as f32,
+        eye: eye as f32,
+        // Published at the bottom; in the middle the error is smaller.
+        plane: if settings.is_correlated() { 0.5 } else { 1.0 },
+        slices: settings.slices as i32,
+    });
+    let mut uses = smallvec![Use::bound(0, placement, Access::ImageWrite)];
+    let (name, shader, groups) = match layers {
+        Some(layers) => {
+            let histogram = declare_histogram(graph, layers, settings, inputs);
+            uses.push(Use::bound(1, histogram, Access::BufferReadCompute));
+            ("occlusion_textures.place_fitted", shaders::PLACE_FITTED, 1)
+        }
+        None => ("occlusion_textures.place", shaders::PLACE, PLACEMENT[0].div_ceil(64)),
+    };
+    graph.push(Pass::compute(name, shader, [groups, 1, 1], pushed, uses, inputs.need));
+    placement
+}
+
+fn declare_histogram(
+    graph: &mut Graph,
+    layers: &DepthLayers,
+    settings: &Settings,
+    inputs: &Inputs,
+) -> ResourceId {
+    let histogram = graph.buffer("occlusion_textures.histogram", 4 * u64::from(BINS));
+    graph.push(Pass::compute(
+        "occlusion_textures.histogram_start",
+        shaders::HISTOGRAM_START,
+        [BINS.div_ceil(64), 1, 1],
+        Push::NONE,
+        smallvec![Use::bound(0, histogram, Access::BufferWriteCompute)],
+        inputs.need,
+    ));
+    let map = wanted(settings, inputs.view.side).map;
+    graph.push(Pass::compute(
+        "occlusion_textures.histogram",
+        shaders::HISTOGRAM,
+        grid([map; 2]),
+        Push::new(&push::Histogram {
+            map: map as i32,
+            near: inputs.view.near as f32,
+            span: (inputs.view.far - inputs.view.near) as f32,
+        }),
+        smallvec![
+            Use::bound(0, layers.front, Access::SampledCompute),
+            Use::bound(1, layers.back.unwrap_or(layers.front), Access::SampledCompute),
+            Use::bound(2, histogram, Access::BufferUpdate),
+        ],
+        inputs.need,
+    ));
+    histogram
+}
+
+/// The names of what is drawn with some faces: rows, images.
+struct Drawn {
+    layer: Layer,
+    rows: [&'static str; 2],
+    images: [&'static str; 8],
+}
+
+const ALL_FACES: Drawn = Drawn {
+    layer: Layer::Slices,
+    rows: ["occlusion_textures.slices", "occlusion_textures.lower_slices"],
+    images: [
+        "occlusion_textures.faces_0",
+        "occlusion_textures.faces_1",
+        "occlusion_textures.faces_2",
+        "occlusion_textures.faces_3",
+        "occlusion_textures.faces_4",
+        "occlusion_textures.faces_5",
+        "occlusion_textures.faces_6",
+        "occlusion_textures.faces_7",
+    ],
+};
+
+const FRONTS: Drawn = Drawn {
+    layer: Layer::FrontSlices,
+    rows: ["occlusion_textures.front_slices", "occlusion_textures.lower_front_slices"],
+    images: [
+        "occlusion_textures.fronts_0",
+        "occlusion_textures.fronts_1",
+        "occlusion_textures.fronts_2",
+        "occlusion_textures.fronts_3",
+        "occlusion_textures.fronts_4",
+        "occlusion_textures.fronts_5",
+        "occlusion_textures.fronts_6",
+        "occlusion_textures.fronts_7",
+    ],
+};
+
+const BACKS: Drawn = Drawn {
+    layer: Layer::BackSlices,
+    rows: ["occlusion_textures.back_slices", "occlusion_textures.lower_back_slices"],
+    images: [
+        "occlusion_textures.backs_0",
+        "occlusion_textures.backs_1",
+        "occlusion_textures.backs_2",
+        "occlusion_textures.backs_3",
+        "occlusion_textures.backs_4",
+        "occlusion_textures.backs_5",
+        "occlusion_textures.backs_6",
+        "occlusion_textures.backs_7",
+    ],
+};
+
+/// What is drawn: four slices each.
+type Slabs = SmallVec<[ResourceId; 8]>;
+
+/// Adds the rows that count faces; four slices an image.
+fn draw(
+    graph: &mut Graph,
+    drawn: &Drawn,
+    placement: ResourceId,
+    settings: &Settings,
+    inputs: &Inputs,
+) -> Slabs {
+    let draws = settings.slices.div_ceil(SLICES_A_DRAW) as usize;
+    let raster = depth_layers::raster_of(drawn.layer);
+    let mut images = Slabs::new();
+    for row in 0..draws {
+        let targets: Slabs = drawn.images[COLOR_ATTACHMENTS * row..][..COLOR_ATTACHMENTS]
+            .iter()
+            .map(|name| {
+                let format = vk::Format::R8G8B8A8_UNORM;
+                graph.image(name, format, [inputs.view.side; 2], Owner::Transient)
+            })
+            .collect();
+        let mut uses = smallvec![Use::bound(0, placement, Access::SampledFragment)];
+        uses.extend(targets.iter().map(|&t| Use::fixed(t, Access::ColorTarget)));
+        graph.push(Pass {
+            name: drawn.rows[row],
+            uses,
+            push: Push::NONE,
+            work: Work::Raster {
+                vertex: shaders::DEPTH_VERT,
+                fragment: Some([shaders::SLICE, shaders::SLICE_LOWER][row]),
+                cull: raster.cull,
+                target: Target::Add,
+                draw: Draw::Layer { layer: drawn.layer, view: 0 },
+            },
+            need: *inputs.need,
+        });
+        images.extend(targets);
+    }
+    images
+}
+
+/// Adds the rows that make one number a texel, a bit a slice.
+fn declare_mask(
+    graph: &mut Graph,
+    placement: ResourceId,
+    settings: &Settings,
+    inputs: &Inputs,
+) -> ResourceId {
+    let (fronts, backs) = if settings.is_correlated() {
+        let fronts = draw(graph, &FRONTS, placement, settings, inputs);
+        (fronts, draw(graph, &BACKS, placement, settings, inputs))
+    } else {
+        let faces = draw(graph, &ALL_FACES, placement, settings, inputs);
+        (faces.clone(), faces)
+    };
+    let side = inputs.view.side;
+    let format = vk::Format::R32_UINT;
+    let mask = graph.image("occlusion_textures.mask", format, [side; 2], Owner::Transient);
+    let mut uses = smallvec![Use::bound(0, mask, Access::ImageWrite)];
+    for (images, first) in [(&fronts, 1), (&backs, 9)] {
+        // What there is no slice for is not looked at.
+        let bound = |i| images.get(i).or(images.first()).copied();
+        uses.extend(
+            (0..8).filter_map(|i| {
+                Some(Use::bound(first + i as u8, bound(i)?, Access::SampledCompute))
+            }),
+        );
+    }
+    graph.push(Pass::compute(
+        "occlusion_textures.mask",
+        shaders::MASK,
+        grid([side; 2]),
+        Push::new(&push::Mask {
+            map: side as i32,
+            slices: settings.slices as i32,
+            solid: i32::from(settings.is_correlated()),
+            fill: i32::from(settings.fill),
+        }),
+        uses,
+        inputs.need,
+    ));
+    mask
+}
+
+fn declare_sums(
+    graph: &mut Graph,
+    mask: ResourceId,
+    settings: &Settings,
+    inputs: &Inputs,
+) -> ResourceId {
+    let side = inputs.view.side;
+    let tiles = settings.tiles();
+    let (values, format) = (tiles * side * side, vk::Format::R32G32B32A32_UINT);
+    let extent = [IMAGE_WIDTH.min(values), values.div_ceil(IMAGE_WIDTH)];
+    let sums = graph.image("occlusion_textures.filtered", format, extent, Owner::Transient);
+    let groups = [side.div_ceil(64), tiles, 1];
+    let mut row = |name, shader: Module, push, uses| {
+        graph.push(Pass::compute(name, shader, groups, push, uses, inputs.need));
+    };
+    row(
+        "occlusion_textures.sum_rows",
+        shaders::SUM_ROWS,
+        Push::new(&push::SumRows {
+            map: side as i32,
+            correlated: i32::from(settings.is_correlated()),
+        }),
+        smallvec![
+            Use::bound(0, mask, Access::SampledCompute),
+            Use::bound(1, sums, Access::ImageWrite)
+        ],
+    );
+    row(
+        "occlusion_textures.sum_columns",
+        shaders::SUM_COLUMNS,
+        Push::new(&push::SumColumns { map: side as i32 }),
+        smallvec![Use::bound(0, sums, Access::ImageUpdate)],
+    );
+    sums
+}
+
+fn declare_levels(
+    graph: &mut Graph,
+    mask: ResourceId,
+    settings: &Settings,
+    inputs: &Inputs,
+) -> ResourceId {
+    let side = inputs.view.side;
+    let tiles = settings.tiles();
+    let levels = Levels { map: side, kind: settings.level_kind() };
+    let format = vk::Format::R16G16B16A16_SFLOAT;
+    let name = "occlusion_textures.filtered";
+    // The map itself is in the mask.
+    let image = graph.image_array(name, format, [side; 2], tiles * (levels.layers() - 1));
+    let kind = levels.kind.code();
+    let groups = |level| {
+        let [x, y, _] = grid([levels.side(level); 2]);
+        [x, y, tiles]
+    };
+    graph.push(Pass::compute(
+        "occlusion_textures.first_level",
+        shaders::MEANS_FIRST_LEVEL,
+        groups(1),
+        Push::new(&push::FirstLevel {
+            map: side as i32,
+            kind,
+            correlated: i32::from(settings.is_correlated()),
+        }),
+        smallvec![
+            Use::bound(0, mask, Access::SampledCompute),
+            Use::bound(1, image, Access::ImageWrite)
+        ],
+        inputs.need,
+    ));
+    for level in 2..=levels.top() {
+        graph.push(Pass::compute(
+            "occlusion_textures.next_level",
+            shaders::MEANS_NEXT_LEVEL,
+            groups(level),
+            Push::new(&push::NextLevel { map: side as i32, kind, level: level as i32 }),
+            smallvec![Use::bound(0, image, Access::ImageUpdate)],
+            inputs.need,
+        ));
+    }
+    image
+}

@@ -1,0 +1,120 @@
+//! The rows over the pixels: at all of them, or at those of tiles that meet something.
+
+use super::passes::Inputs;
+use super::push;
+use super::settings::{Combine, Prefilter, Settings};
+use crate::graph::{Access, Graph, Owner, Pass, Push, ResourceId, Use};
+use crate::shaders;
+use crate::stages::nearest::nodes_a_row;
+use crate::stages::tiles::Tiles;
+use crate::stages::visibility::grid;
+use ash::vk;
+use smallvec::smallvec;
+
+const NAME: &str = "occlusion_textures.visibility";
+
+/// What the pixels are told by.
+pub(super) struct Filtered {
+    /// Where slices begin and end.
+    pub placement: ResourceId,
+    /// A bit a slice.
+    pub mask: ResourceId,
+    /// Its sums or means.
+    pub filtered: ResourceId,
+}
+
+/// Adds the rows that make `visibility` of what is filtered.
+pub(super) fn declare_pixels(
+    graph: &mut Graph,
+    of: &Filtered,
+    visibility: ResourceId,
+    settings: &Settings,
+    inputs: &Inputs,
+) {
+    let sums = settings.prefilter == Prefilter::Sat;
+    let gbuffer = inputs.gbuffer;
+    let push = Push::new(&pixel_push(settings, inputs));
+    let write = if settings.classify { Access::ImageUpdate } else { Access::ImageWrite };
+    let mut uses = smallvec![
+        Use::bound(0, gbuffer.depth, Access::SampledCompute),
+        Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
+        Use::bound(2, of.placement, Access::SampledCompute),
+        Use::bound(3, of.filtered, Access::SampledCompute),
+        Use::bound(4, visibility, write),
+    ];
+    if !sums {
+        uses.push(Use::bound(5, of.mask, Access::SampledCompute));
+    }
+    if !settings.classify {
+        let shader = match (sums, settings.is_correlated()) {
+            (true, false) => shaders::VISIBILITY_SAT,
+            (true, true) => shaders::VISIBILITY_SAT_CORRELATED,
+            (false, false) => shaders::VISIBILITY_LEVELS,
+            (false, true) => shaders::VISIBILITY_LEVELS_CORRELATED,
+        };
+        let groups = grid(gbuffer.extent);
+        graph.push(Pass::compute(NAME, shader, groups, push, uses, inputs.need));
+        return;
+    }
+    // Of levels no mean tells whether there is nothing or little: squares of the mask do.
+    let blocking = if sums { of.filtered } else { squares(graph, of.mask, inputs) };
+    let (sort, shader) = match (sums, settings.is_correlated()) {
+        (true, false) => (shaders::SLICE_TILES_SAT, shaders::LISTED_SAT),
+        (true, true) => (shaders::SLICE_TILES_SAT_CORRELATED, shaders::LISTED_SAT_CORRELATED),
+        (false, false) => (shaders::SLICE_TILES_LEVELS, shaders::LISTED_LEVELS),
+        (false, true) => (shaders::SLICE_TILES_LEVELS, shaders::LISTED_LEVELS_CORRELATED),
+    };
+    let tiles = Tiles::start(graph, gbuffer.extent, inputs.need);
+    let met = graph.buffer("occlusion_textures.met", 4 * Tiles::in_image(gbuffer.extent));
+    let asked = [
+        Use::bound(2, blocking, Access::SampledCompute),
+        Use::bound(6, of.placement, Access::SampledCompute),
+        Use::bound(7, met, Access::BufferWriteCompute),
+    ];
+    tiles.sort(graph, sort, push, (&asked, visibility), gbuffer, inputs.need);
+    uses.push(Use::bound(7, met, Access::BufferReadCompute));
+    tiles.run(graph, (NAME, shader), push, uses, 6, inputs.need);
+}
+
+/// Adds the row that says what blocks in squares of the mask.
+fn squares(graph: &mut Graph, mask: ResourceId, inputs: &Inputs) -> ResourceId {
+    let side = inputs.view.side;
+    let row = nodes_a_row(side);
+    let name = "occlusion_textures.squares";
+    let squares = graph.image(name, vk::Format::R32_UINT, [row; 2], Owner::Transient);
+    graph.push(Pass::compute(
+        name,
+        shaders::SQUARES,
+        grid([row; 2]),
+        Push::new(&push::Squares { map: side as i32 }),
+        smallvec![
+            Use::bound(0, mask, Access::SampledCompute),
+            Use::bound(1, squares, Access::ImageWrite),
+        ],
+        inputs.need,
+    ));
+    squares
+}
+
+fn pixel_push(settings: &Settings, inputs: &Inputs) -> push::Visibility {
+    let Inputs { view, gbuffer, light, .. } = inputs;
+    let combine = match settings.combine {
+        Combine::Product | Combine::Correlated => 0,
+        Combine::Sum => 1,
+        Combine::Max => 2,
+    };
+    push::Visibility {
+        light_from_ndc: gbuffer.light_from_ndc,
+        texels_per_uv: view.texels_per_uv().map(|x| x as f32),
+        first: view.first().map(|x| x as f32),
+        half_light: light.half_extents().map(|x| x as f32),
+        extent: gbuffer.extent.map(|e| e as i32),
+        background: gbuffer.background,
+        eye: inputs.eye() as f32,
+        map: view.side as i32,
+        flags: settings.slices as i32
+            | i32::from(gbuffer.mask.is_some()) << 8
+            | combine << 9
+            | i32::from(settings.prefilter == Prefilter::Mip) << 12,
+    }
+}

@@ -1,0 +1,80 @@
+//! Percentage-closer soft shadows (Fernando 2005).
+//!
+//! ```text
+//!   light     ├────── L ──────┤          1. the light through the near plane: which part of the map
+//!              \      |      /              could hold blockers
+//!   near plane  \  ├──┼──┤  /            2. their mean distance d_b
+//!                \    |    /             3. the light through d_b: the penumbra's width in the map,
+//!   blockers      \ ├─┼─┤ / d_b             L (1/d_b − 1/d_r) in tangents, and the share of the
+//!                  \  |  /                  comparisons within it that pass
+//!   receiver        \ ● / d_r
+//! ```
+//! All in metres of the rectangle as it is: width and height have a reach each. The taps are a disc of
+//! points that lie far apart; each pixel turns it by an angle of its own, and equal areas of the disc go
+//! to equal areas of the light's rectangle (Shirley and Chiu 1997), so that the mean over the taps is the
+//! mean over the light. Each filter tap is bilinear over four comparisons, so that no filter is narrower
+//! than a texel.
+//!
+//! Where we depart: the disc is a spiral (Vogel 1979) where others use a table of Poisson-disc points. It
+//! needs no table, has as many points as are asked for, and as many of them in each ring as its area
+//! takes, which a short prefix of a Poisson disc has not. Fernando leaves the bias to the user; here it is
+//! the receiver-plane bias of this room. What the pixel's own surface hides of the light is a closed form,
+//! and the taps that stand for the rest of the light say how much of that is hidden.
+//!
+//! **Tiles.** Where nothing in the part of the map that a tile's pixels search lies before any of them, there is
+//! no blocker to be found, and no tap is taken; see `visibility/tiles.rs`. The largest w of squares of the map's
+//! texels tells that.
+//!
+//! **Limits.** One distance stands for all blockers, so shadows of things behind each other are wrong
+//! where they overlap; blockers beside the light's view of the pixel count in the mean. The error does
+//! not vanish with more taps. Pixels are turned apart, so that few taps show as grain.
+
+pub mod twin;
+
+use crate::graph::{Access, Graph, Pass, Push, ResourceId, Use};
+use crate::shaders;
+use crate::stages::nearest::nodes_a_row;
+use crate::stages::tiles::Tiles;
+use crate::stages::visibility::grid;
+use crate::techniques::common::push::FinestLevel;
+use crate::techniques::common::{Inputs, Settings, one_map, pixel_push, pixel_uses};
+use smallvec::smallvec;
+
+const NAME: &str = "baseline.pcss";
+
+/// Adds the rows that turn the map `front` into `visibility`, with as many taps to search as to filter.
+pub fn declare(
+    graph: &mut Graph,
+    front: ResourceId,
+    visibility: ResourceId,
+    settings: &Settings,
+    inputs: &Inputs,
+) {
+    let taps = settings.taps;
+    if !settings.classify {
+        one_map(graph, NAME, shaders::PCSS, (front, visibility), taps, &[], inputs);
+        return;
+    }
+    let Inputs { gbuffer, occluders, need, .. } = *inputs;
+    let map = occluders.side;
+    let row = nodes_a_row(map);
+    let nearest = graph.buffer("baseline.nearest", 4 * u64::from(row * row));
+    graph.push(Pass::compute(
+        "baseline.nearest",
+        shaders::NEAREST,
+        grid([row; 2]),
+        Push::new(&FinestLevel { map: map as i32, inv_near: (1.0 / occluders.near) as f32 }),
+        smallvec![
+            Use::bound(0, front, Access::SampledCompute),
+            Use::bound(1, nearest, Access::BufferWriteCompute),
+        ],
+        need,
+    ));
+    let push = pixel_push(taps, inputs);
+    let tiles = Tiles::start(graph, gbuffer.extent, need);
+    let nearest = Use::bound(2, nearest, Access::BufferReadCompute);
+    tiles.sort(graph, shaders::PCSS_SORT, push, (&[nearest], visibility), gbuffer, need);
+    let mut uses = pixel_uses(front, gbuffer);
+    uses.push(Use::bound(3, visibility, Access::ImageUpdate));
+    tiles.run(graph, (NAME, shaders::PCSS_TILES), push, uses, 4, need);
+}

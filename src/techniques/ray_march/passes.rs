@@ -1,0 +1,312 @@
+//! The rows: layers → columns → levels; pixels → list → rays.
+
+use super::push;
+use super::settings::{Hash, Layers, Projection, Sampling, Search, Settings};
+use crate::RectangleLight;
+use crate::graph::{Access, Graph, Need, Owner, Pass, Push, ResourceId, Use, Uses, Work};
+use crate::lent::MeshBounds;
+use crate::shaders::{self, Module};
+use crate::stages::depth_layers::{
+    DepthLayers, Eye, LightBox, MapView, Wanted, fit_boxes, fit_boxes_from,
+};
+use crate::stages::nbuffer::{self, Levels};
+use crate::stages::visibility::{self, COLOR_FORMAT, GBuffer, grid};
+use glam::DMat4;
+use smallvec::smallvec;
+
+/// The list of pixels: its head, and for each where it is and the heights that its rays need look at.
+pub(crate) fn list_bytes([width, height]: [u32; 2]) -> u64 {
+    80 + 12 * u64::from(width) * u64::from(height)
+}
+
+/// What a frame gives the technique.
+#[derive(Clone, Copy, Debug)]
+pub struct Inputs<'a> {
+    /// The light.
+    pub light: &'a RectangleLight,
+    /// How the layers look at the scene.
+    pub view: &'a MapView,
+    /// The host's pixels.
+    pub gbuffer: &'a GBuffer,
+    /// Light space to the G-buffer's NDC, by column.
+    pub ndc_from_light: [f32; 16],
+    /// Added to the seed.
+    pub noise: u32,
+    /// What the light emits over its surface; the same everywhere without.
+    pub light_texture: Option<ResourceId>,
+    /// Whether the visible fraction is one of each color.
+    pub color: bool,
+    /// 2^−(sub-pixel bits): how far the device's rasters move a vertex, in texels.
+    pub snap: f32,
+    /// How far off the w of an occluder may be beyond its rounding, 1/m.
+    pub depth_error: f64,
+    /// Whether anything can be shadowed.
+    pub need: &'a Need,
+    /// Whether the noise filter is needed, where the settings have one.
+    pub filter: &'a Need,
+}
+
+/// The depth layers that these settings read, with maps of `map` texels a side.
+pub fn wanted(settings: &Settings, map: u32) -> Wanted {
+    Wanted { map, back: true, inner: settings.layers == Layers::Four, receiver_map: None }
+}
+
+/// How far behind the light the projection point lies at most, over the distance of the furthest occluder.
+/// From there on rays of the map are parallel to within 1/64, and a height's rounding, 6e-8 of it, is that of
+/// a distance 65 times as large: 4e-6 of the furthest occluder's, a thousandth of a texel where 256 cover it.
+const MOST_BEHIND: f64 = 64.0;
+
+/// How the layers look at the occluders; none where there are none in front of the light.
+///
+/// The projection point lies so far behind the light that the light fills the angle under which its centre
+/// sees the occluders (Curtis 2009 eq. 3.1). Rays need no more than that: they are cut to what lies over
+/// the map, and beyond the map there are no occluders. For a light so large that this would be further away
+/// than 64 times the furthest occluder the point lies there; rays to its rim leave the map through its sides.
+pub fn view(
+    light: &RectangleLight,
+    occluders: &[(MeshBounds, DMat4)],
+    projection: Projection,
+    side: u32,
+) -> Option<MapView> {
+    view_of(light.half_extents(), &LightBox::of_all(light, occluders), projection, side)
+}
+
+/// The same of boxes, for a light of these half-extents.
+pub(crate) fn view_of(
+    half: [f64; 2],
+    occluders: &[LightBox],
+    projection: Projection,
+    side: u32,
+) -> Option<MapView> {
+    let eye = match projection {
+        Projection::Centre => Eye::Behind(0.0),
+        Projection::Orthographic => Eye::Infinity,
+        Projection::Behind => {
+            let from_centre = fit_boxes(occluders, None, side)?;
+            let tangent = |i: usize| from_centre.max[i].abs().max(from_centre.min[i].abs());
+            let behind = [0, 1].map(|i| half[i] / tangent(i)).into_iter().fold(0.0, f64::max);
+            Eye::Behind(behind.min(MOST_BEHIND * from_centre.far))
+        }
+    };
+    fit_boxes_from(eye, occluders, side)
+}
+
+/// The shaders of some settings.
+struct Shaders {
+    classify: Module,
+    trace: Module,
+    rows: Module,
+    columns: Module,
+}
+
+/// What most settings have is compiled apart from what seldom is asked for.
+fn shaders_of(settings: &Settings, inputs: &Inputs) -> Shaders {
+    let usual = settings.levels == nbuffer::Kind::NBuffer
+        && settings.search == Search::Hierarchical
+        && settings.layers != Layers::Eye;
+    let (rows, columns) = (shaders::FILTER_ROWS, shaders::FILTER_COLUMNS);
+    match (inputs.light_texture, inputs.color) {
+        (Some(_), true) => Shaders {
+            classify: shaders::CLASSIFY_COLOR,
+            trace: shaders::TRACE_COLOR,
+            rows: shaders::FILTER_ROWS_COLOR,
+            columns: shaders::FILTER_COLUMNS_COLOR,
+        },
+        (Some(_), false) => {
+            let (classify, trace) = (shaders::CLASSIFY_ANY, shaders::TRACE_TEXTURED);
+            Shaders { classify, trace, rows, columns }
+        }
+        _ if usual => Shaders { classify: shaders::CLASSIFY, trace: shaders::TRACE, rows, columns },
+        _ => Shaders { classify: shaders::CLASSIFY_ANY, trace: shaders::TRACE_ANY, rows, columns },
+    }
+}
+
+/// Adds the rows that turn depth layers into `visibility`.
+pub fn declare(
+    graph: &mut Graph,
+    layers: &DepthLayers,
+    visibility: ResourceId,
+    settings: &Settings,
+    inputs: &Inputs,
+) {
+    let windows = declare_levels(graph, layers, settings, inputs);
+    let gbuffer = inputs.gbuffer;
+    let arguments = graph.buffer("ray_march.arguments", 16);
+    let pixels = graph.buffer("ray_march.pixels", list_bytes(gbuffer.extent));
+    // Without a filter nobody reads them.
+    let filtered = if settings.filter { gbuffer.extent } else { [1, 1] };
+    let mut image = |name, format| graph.image(name, format, filtered, Owner::Transient);
+    let noisy = image("ray_march.noisy", COLOR_FORMAT);
+    let halfway = image("ray_march.halfway", visibility::format(inputs.color));
+    // The pixels' normals, where the others have no room for them.
+    let surfaces = inputs.color.then(|| image("ray_march.surfaces", COLOR_FORMAT));
+    graph.push(Pass::compute(
+        "ray_march.start",
+        shaders::START,
+        [1, 1, 1],
+        Push::new(&push::Start { ndc_from_light: inputs.ndc_from_light }),
+        smallvec![
+            Use::bound(0, arguments, Access::BufferWriteCompute),
+            Use::bound(1, pixels, Access::BufferWriteCompute),
+        ],
+        inputs.need,
+    ));
+    let pushed = Push::new(&pixel_push(settings, inputs));
+    let shaders = shaders_of(settings, inputs);
+    let common = [
+        Use::bound(0, gbuffer.depth, Access::SampledCompute),
+        Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
+        Use::bound(2, windows, Access::SampledCompute),
+    ];
+    let mut uses = Uses::from_slice(&common);
+    uses.extend([
+        Use::bound(3, visibility, Access::ImageWrite),
+        Use::bound(4, arguments, Access::BufferUpdate),
+        Use::bound(5, pixels, Access::BufferUpdate),
+        Use::bound(6, halfway, Access::ImageWrite),
+        Use::bound(7, noisy, Access::ImageWrite),
+    ]);
+    uses.extend(surfaces.map(|s| Use::bound(8, s, Access::ImageWrite)));
+    let name = "ray_march.classify";
+    let groups = grid(gbuffer.extent);
+    graph.push(Pass::compute(name, shaders.classify, groups, pushed, uses, inputs.need));
+
+    let mut uses = Uses::from_slice(&common);
+    uses.extend([
+        Use::bound(3, visibility, Access::ImageUpdate),
+        Use::bound(4, pixels, Access::BufferReadCompute),
+        Use::bound(5, noisy, Access::ImageUpdate),
+    ]);
+    uses.extend(surfaces.map(|s| Use::bound(6, s, Access::ImageUpdate)));
+    uses.extend(inputs.light_texture.map(|t| Use::bound(7, t, Access::SampledCompute)));
+    listed(graph, "ray_march.trace", shaders.trace, arguments, pushed, uses, inputs.need);
+
+    if settings.filter {
+        let pushed = Push::new(&push::Filter {
+            light_from_ndc: gbuffer.light_from_ndc,
+            extent: gbuffer.extent.map(|e| e as i32),
+        });
+        let mut common = smallvec![
+            Use::bound(0, gbuffer.depth, Access::SampledCompute),
+            Use::bound(1, pixels, Access::BufferReadCompute),
+            Use::bound(2, noisy, Access::SampledCompute),
+        ];
+        common.extend(surfaces.map(|s| Use::bound(5, s, Access::SampledCompute)));
+        let mut uses = common.clone();
+        uses.push(Use::bound(3, halfway, Access::ImageUpdate));
+        let name = "ray_march.filter_rows";
+        listed(graph, name, shaders.rows, arguments, pushed, uses, inputs.filter);
+        let mut uses = common;
+        uses.push(Use::bound(3, halfway, Access::SampledCompute));
+        uses.push(Use::bound(4, visibility, Access::ImageUpdate));
+        let name = "ray_march.filter_columns";
+        listed(graph, name, shaders.columns, arguments, pushed, uses, inputs.filter);
+    }
+}
+
+/// Adds a row that runs for the listed pixels.
+fn listed(
+    graph: &mut Graph,
+    name: &'static str,
+    shader: Module,
+    arguments: ResourceId,
+    push: Push,
+    mut uses: Uses,
+    need: &Need,
+) {
+    uses.push(Use::fixed(arguments, Access::Indirect));
+    let work = Work::Indirect { shader, arguments, offset: 0 };
+    graph.push(Pass { name, uses, push, work, need: *need });
+}
+
+/// Adds the rows that turn the layers into columns, and these into bounds of windows.
+fn declare_levels(
+    graph: &mut Graph,
+    layers: &DepthLayers,
+    settings: &Settings,
+    inputs: &Inputs,
+) -> ResourceId {
+    let map = inputs.view.side;
+    let levels = Levels { map, kind: settings.levels };
+    let windows = graph.image_array("ray_march.windows", COLOR_FORMAT, [map; 2], levels.layers());
+    let back = layers.back.unwrap_or(layers.front);
+    let [near_back, far_front] = layers.inner.unwrap_or([layers.front; 2]);
+    let four = layers.inner.is_some();
+    graph.push(Pass::compute(
+        "ray_march.columns",
+        shaders::COLUMNS,
+        grid([map; 2]),
+        Push::new(&push::Columns {
+            map: map as i32,
+            layers: if four { 4 } else { 2 },
+            height: inputs.view.top() as f32,
+        }),
+        smallvec![
+            Use::bound(0, layers.front, Access::SampledCompute),
+            Use::bound(1, back, Access::SampledCompute),
+            Use::bound(2, near_back, Access::SampledCompute),
+            Use::bound(3, far_front, Access::SampledCompute),
+            Use::bound(4, windows, Access::ImageWrite),
+        ],
+        inputs.need,
+    ));
+    let kind = settings.levels.code();
+    let shader = match settings.levels {
+        nbuffer::Kind::NBuffer => shaders::LEVEL,
+        _ => shaders::LEVEL_ANY,
+    };
+    for level in 1..=levels.top() {
+        graph.push(Pass::compute(
+            "ray_march.level",
+            shader,
+            grid([levels.side(level); 2]),
+            Push::new(&push::Level { map: map as i32, kind, level: level as i32 }),
+            smallvec![Use::bound(0, windows, Access::ImageUpdate)],
+            inputs.need,
+        ));
+    }
+    windows
+}
+
+fn pixel_push(settings: &Settings, inputs: &Inputs) -> push::Pixels {
+    let Inputs { view, gbuffer, light, .. } = inputs;
+    let [half_x, half_y] = light.half_extents();
+    let rays = f64::from(settings.rays);
+    let rows = (rays * half_y / half_x).sqrt().round().clamp(1.0, rays) as i32;
+    let bit = |on: bool, at: i32| i32::from(on) << at;
+    let flags = (settings.rays as i32 - 1)
+        | (rows - 1) << 8
+        | bit(gbuffer.mask.is_some(), 16)
+        | bit(view.eye == Eye::Infinity, 17)
+        | bit(settings.search == Search::Linear, 18)
+        | bit(settings.hash == Hash::Pcg, 19)
+        | bit(settings.layers == Layers::Eye, 20)
+        | bit(settings.classify, 21)
+        // Without the filter's rows the rays' own pass writes the result.
+        | bit(settings.filter && inputs.filter.is_yes(), 22)
+        | match settings.sampling {
+            Sampling::Jittered => 0,
+            Sampling::Random => 1,
+            Sampling::LowDiscrepancy => 2,
+        } << 23
+        | settings.levels.code() << 25
+        | bit(inputs.light_texture.is_some(), 27);
+    push::Pixels {
+        light_from_ndc: gbuffer.light_from_ndc,
+        texels_per_unit: view.texels_per_uv().map(|x| x as f32),
+        first: view.first().map(|x| x as f32),
+        half_light: light.half_extents().map(|x| x as f32),
+        extent: gbuffer.extent.map(|e| e as i32),
+        background: gbuffer.background,
+        eye: match view.eye {
+            Eye::Behind(behind) => behind as f32,
+            Eye::Infinity => view.far as f32,
+        },
+        top: view.top() as f32,
+        snap: inputs.snap,
+        depth_error: inputs.depth_error as f32,
+        map: view.side as i32,
+        flags,
+        seed: settings.seed.wrapping_add(inputs.noise),
+    }
+}

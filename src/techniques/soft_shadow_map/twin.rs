@@ -1,0 +1,252 @@
+//! The CPU twins of the sums over micro-patches, in any float type.
+//!
+//! A twin says the same as the shader, line by line, and shares no code with it.
+
+use crate::techniques::common::twin::{clamp, half, patch_occlusion};
+use num_traits::Float;
+
+/// A square occluder map of w, 0 where there is nothing, and the light as it is seen through it.
+#[derive(Clone, Copy, Debug)]
+pub struct OccluderMap<'a> {
+    /// w of each texel, row by row.
+    pub w: &'a [f32],
+    /// Texels a row.
+    pub side: usize,
+    /// (Δu/Lx, Δv/Ly), 1/m.
+    pub scale: [f32; 2],
+}
+
+/// The occlusion of a receiver by every micro-patch of a map, added up in f64: what blending and
+/// gathering both stand for.
+pub fn occlusion(map: &OccluderMap, t: [f32; 2], w_r: f32) -> f64 {
+    let wide = |a: [f32; 2]| a.map(f64::from);
+    map.w
+        .iter()
+        .enumerate()
+        .filter(|(_, w)| **w > 0.0)
+        .map(|(i, &w)| {
+            let lo = [(i % map.side) as f64, (i / map.side) as f64];
+            let hi = [lo[0] + 1.0, lo[1] + 1.0];
+            patch_occlusion(lo, hi, w.into(), wide(t), w_r.into(), wide(map.scale))
+        })
+        .sum()
+}
+
+/// The back layer as the mean uses it: w of each back texel, 0 where there is none or where the front is
+/// flatter than it by `FLATTER` and there is nothing to cancel.
+pub fn backs_of_mean(front: &[f32], back: &[f32], side: usize) -> Vec<f32> {
+    const FLATTER: f32 = 30.0;
+    const ROUNDING: f32 = 1e-4;
+    let steepness = |w: &[f32], at: usize| {
+        let (x, y) = (at % side, at / side);
+        let other = |inside: bool, i: usize| (inside && w[i] > 0.0).then(|| (w[i] - w[at]).abs());
+        let lesser = |a: Option<f32>, b: Option<f32>| match (a, b) {
+            (Some(a), Some(b)) => Some(a.min(b)),
+            (a, b) => a.or(b),
+        };
+        let along_x =
+            lesser(other(x > 0, at.wrapping_sub(1)), other(x + 1 < side, at.wrapping_add(1)));
+        let along_y =
+            lesser(other(y > 0, at.wrapping_sub(side)), other(y + 1 < side, at.wrapping_add(side)));
+        along_x.unwrap_or(0.0).max(along_y.unwrap_or(0.0))
+    };
+    (0..back.len())
+        .map(|i| {
+            let noise = back[i] > 0.0
+                && steepness(back, i) > FLATTER * steepness(front, i) + ROUNDING * back[i];
+            if noise { 0.0 } else { back[i] }
+        })
+        .collect()
+}
+
+/// What one receiver sees of both layers in pairs: each back texel that lies before it, and the front
+/// texel where the back does not.
+pub fn back_or_front(front: &[f32], back: &[f32], w_r: f32) -> Vec<f32> {
+    front.iter().zip(back).map(|(&f, &b)| if b > 0.0 && b > w_r { b } else { f }).collect()
+}
+
+/// The occlusion by both sides from that by either, as in `merge.glsl`.
+pub fn merged_sides<T: Float>(front: T, back: T) -> T {
+    let tenth = T::one() / (half::<T>() * T::from(20.0).unwrap_or_else(T::nan));
+    let larger = front.max(back);
+    let umbra = clamp((larger - (T::one() - tenth)) / tenth, T::zero(), T::one());
+    half::<T>() * (front + back) * (T::one() - umbra) + larger * umbra
+}
+
+/// The sum of k² over texels whose w is `mean` + d, with `s` = (count, Σd, Σd², Σd³), by the series of
+/// the module's derivation.
+pub fn series<T: Float>(s: [T; 4], mean: T, w_r: T) -> T {
+    let two = T::one() + T::one();
+    let k = T::one() / (mean - w_r);
+    k * k * (s[0] + k * (k * ((two + T::one()) * s[2] - two * two * s[3] * k) - two * s[1]))
+}
+
+/// How a node lies to a tile of receivers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// It hides nothing of the light from any of them.
+    Outside,
+    /// The series serves all of them.
+    Inside,
+    /// Neither for sure.
+    Mixed,
+}
+
+/// A square node of an occluder map.
+#[derive(Clone, Copy, Debug)]
+pub struct Node<T> {
+    /// Occupied texels.
+    pub count: T,
+    /// Mean, least and largest w of them.
+    pub w: [T; 3],
+    /// Its first texel.
+    pub lo: [T; 2],
+    /// Its side in texels.
+    pub side: T,
+}
+
+/// Receivers with t from `t_min` to `t_max` and w from `w[0]` to `w[1]`.
+#[derive(Clone, Copy, Debug)]
+pub struct Tile<T> {
+    /// Least t.
+    pub t_min: [T; 2],
+    /// Largest t.
+    pub t_max: [T; 2],
+    /// Least and largest w.
+    pub w: [T; 2],
+}
+
+/// The twin of `is_felt` in `node.glsl`: whether a node could hide any of the light from a tile.
+pub fn is_felt<T: Float>(node: &Node<T>, tile: &Tile<T>, scale: [T; 2]) -> bool {
+    let w_max = node.w[2];
+    let along = |i: usize| {
+        let hi = node.lo[i] + node.side;
+        let gap = (node.lo[i] - tile.t_max[i]).max(tile.t_min[i] - hi);
+        gap < half::<T>() * (w_max - tile.w[0]) / scale[i]
+    };
+    node.count > T::zero() && w_max > tile.w[0] && along(0) && along(1)
+}
+
+/// The twin of `superblocks_around` in `node.glsl`: columns and rows of superblocks of 32 texels, first and last,
+/// that hold all that a tile could feel of occluders up to `w_max`.
+pub fn superblocks_around<T: Float>(
+    tile: &Tile<T>,
+    row: T,
+    w_max: T,
+    scale: [T; 2],
+) -> [[T; 2]; 2] {
+    let side = T::from(32.0).unwrap_or_else(T::nan);
+    let cell = |t: T| clamp((t / side).floor(), T::zero(), row - T::one());
+    let widest = [0, 1].map(|i| half::<T>() * (w_max - tile.w[0]) / scale[i]);
+    [
+        [0, 1].map(|i| cell(tile.t_min[i] - widest[i])),
+        [0, 1].map(|i| cell(tile.t_max[i] + widest[i])),
+    ]
+}
+
+/// The twin of `classify` in `node.glsl`.
+pub fn classify<T: Float>(node: &Node<T>, tile: &Tile<T>, scale: [T; 2], spread: T) -> Kind {
+    let [mean, w_min, w_max] = node.w;
+    if !is_felt(node, tile, scale) {
+        return Kind::Outside;
+    }
+    let h = half::<T>();
+    let hi = [0, 1].map(|i| node.lo[i] + node.side);
+    let within = |i: usize| {
+        let reach = (hi[i] - tile.t_min[i]).max(tile.t_max[i] - node.lo[i]);
+        reach <= h * (w_min - tile.w[1]) / scale[i]
+    };
+    let deviation = (w_max - mean).max(mean - w_min);
+    if within(0) && within(1) && deviation <= spread * (mean - tile.w[1]) {
+        Kind::Inside
+    } else {
+        Kind::Mixed
+    }
+}
+
+/// A bit for each texel of an 8×8 block with lo ≤ (x, y) < hi; bit 8y + x.
+pub fn rectangle_mask(lo: [u32; 2], hi: [u32; 2]) -> u64 {
+    (0..64)
+        .filter(|i| {
+            let at = [i % 8, i / 8];
+            (0..2).all(|axis| (lo[axis]..hi[axis]).contains(&at[axis]))
+        })
+        .fold(0, |mask, i| mask | 1 << i)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::techniques::common::twin::magnification;
+
+    #[test]
+    fn a_patch_hides_what_back_projection_says() {
+        // Light 1 m wide, patch 0.25 m wide at half the distance to the receiver on the axis at 2 m:
+        // it covers 0.5 m of the light.
+        let (w_o, w_r) = (1.0_f64, 0.5);
+        let texel = 0.25;
+        let seen = patch_occlusion([-0.5; 2], [0.5; 2], w_o, [0.0; 2], w_r, [texel; 2]);
+        assert!((seen - 0.25).abs() < 1e-15);
+        // Moved aside until half of it misses the light.
+        let aside = patch_occlusion([0.5, -0.5], [1.5, 0.5], w_o, [0.0; 2], w_r, [texel; 2]);
+        assert!((aside - 0.125).abs() < 1e-15);
+        assert_eq!(patch_occlusion([-0.5; 2], [0.5; 2], w_r, [0.0; 2], w_o, [texel; 2]), 0.0);
+    }
+
+    /// A node that a tile does not feel hides nothing from any of its receivers, in floats as they are.
+    #[test]
+    fn what_is_not_felt_hides_nothing() {
+        let mut seed = 1_u32;
+        let mut random = move |low: f32, high: f32| {
+            seed = seed.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+            low + (high - low) * (seed >> 8) as f32 / 16_777_216.0
+        };
+        let (mut apart, mut felt) = (0, 0);
+        for _ in 0..20_000 {
+            let corner = [random(0.0, 248.0).floor(), random(0.0, 248.0).floor()];
+            let w = [0.0, random(0.3, 1.0), random(1.0, 2.0)];
+            let node = Node { count: 3.0, w, lo: corner, side: 8.0 };
+            let t_min = corner.map(|c| c + random(-40.0, 40.0));
+            let t_max = [0, 1].map(|i| t_min[i] + random(0.0, 9.0));
+            let w_near = random(0.1, 2.1);
+            let tile = Tile { t_min, t_max, w: [w_near, w_near + random(0.0, 0.2)] };
+            let scale = [random(0.002, 0.05), random(0.002, 0.05)];
+            if is_felt(&node, &tile, scale) {
+                felt += 1;
+                continue;
+            }
+            apart += 1;
+            for _ in 0..8 {
+                let within = |i: usize, share: f32| t_min[i] + (t_max[i] - t_min[i]) * share;
+                let t = [within(0, random(0.0, 1.0)), within(1, random(0.0, 1.0))];
+                let lo = [0, 1].map(|i| node.lo[i] + random(0.0, 8.0).floor());
+                let hi = lo.map(|x| x + 1.0);
+                let (w_o, w_r) = (random(w[1], w[2]), random(tile.w[0], tile.w[1]));
+                let hidden = patch_occlusion(lo, hi, w_o, t, w_r, scale);
+                assert_eq!(hidden, 0.0, "{node:?} {tile:?} {t:?} {w_r} {lo:?} {w_o}");
+            }
+        }
+        assert!(apart > 2000 && felt > 1000, "{apart} apart, {felt} felt");
+    }
+
+    #[test]
+    fn a_flat_map_that_fills_the_light_sums_to_one() {
+        let w = vec![1.0_f32; 64 * 64];
+        let map = OccluderMap { w: &w, side: 64, scale: [1.0 / 40.0; 2] };
+        let sum = occlusion(&map, [32.25, 31.5], 0.5);
+        assert!((sum - 1.0).abs() < 1e-12, "{sum}");
+    }
+
+    #[test]
+    fn the_series_is_the_sum_for_small_spreads() {
+        let w_r = 0.3_f64;
+        let ws: Vec<f64> = (0..64).map(|i| 0.8 + 0.02 * f64::from(i * 37 % 64) / 64.0).collect();
+        let n = ws.len() as f64;
+        let mean = ws.iter().sum::<f64>() / n;
+        let moment = |p: i32| ws.iter().map(|w| (w - mean).powi(p)).sum::<f64>();
+        let exact: f64 = ws.iter().map(|&w| magnification(w, w_r).powi(2)).sum();
+        let series = series([n, moment(1), moment(2), moment(3)], mean, w_r);
+        let q = 0.01 / (mean - w_r) * 1.02;
+        assert!((series / exact - 1.0).abs() < 5.0 * q.powi(4) * 1.1);
+    }
+}
