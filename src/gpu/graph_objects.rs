@@ -91,7 +91,6 @@ impl GraphObjects {
     }
 
     /// What is behind a resource.
-    #[cfg(feature = "headless")]
     pub fn get(&self, id: ResourceId) -> Object {
         self.objects.get(id)
     }

@@ -1,6 +1,5 @@
 //! What the rows of a kind are bound by: a descriptor set layout and a pipeline layout.
 
-use super::host::Host;
 use crate::Error;
 use ash::vk;
 use std::collections::HashMap;
@@ -22,12 +21,12 @@ pub(super) struct LayoutsInfo<'a> {
 
 impl RowLayouts {
     /// Makes both for the row of this name; nothing is left behind where that fails.
-    pub fn new(host: &Host, info: &LayoutsInfo, row: &str) -> Result<Self, Error> {
+    pub fn new(device: &ash::Device, info: &LayoutsInfo, row: &str) -> Result<Self, Error> {
         let mut made = Self::default();
-        match made.make(&host.device, info, row) {
+        match made.make(device, info, row) {
             Ok(()) => Ok(made),
             Err(e) => {
-                made.destroy(&host.device);
+                made.destroy(device);
                 Err(e)
             }
         }
@@ -66,12 +65,14 @@ impl RowLayouts {
     }
 }
 
-/// Layouts that outlive the nodes made with them, one for all rows that are bound alike.
+/// The descriptor set layouts and pipeline layouts of one device, which outlive the nodes made with them: one
+/// pair for all passes that are bound alike.
 ///
+/// A host that makes nodes again and again gives this to each of them by [`super::Host::with_layouts`].
 /// SwiftShader finds what it has compiled by the identity of the layout besides the shader, so its pipeline
 /// cache holds nothing for a node that makes layouts of its own.
 #[derive(Default)]
-pub(super) struct SharedLayouts(Mutex<HashMap<Key, RowLayouts>>);
+pub struct SharedLayouts(Mutex<HashMap<Key, RowLayouts>>);
 
 /// Binding, type and stages of each binding; stages and bytes of the push constants.
 type Key = (Vec<(u32, vk::DescriptorType, vk::ShaderStageFlags)>, vk::ShaderStageFlags, u32);
@@ -80,7 +81,7 @@ impl SharedLayouts {
     /// Those that say this, made where there are none yet; they stay the table's.
     pub(super) fn find(
         &self,
-        host: &Host,
+        device: &ash::Device,
         info: &LayoutsInfo,
         row: &str,
     ) -> Result<RowLayouts, Error> {
@@ -91,14 +92,17 @@ impl SharedLayouts {
         if let Some(&layouts) = known.get(&key) {
             return Ok(layouts);
         }
-        let layouts = RowLayouts::new(host, info, row)?;
+        let layouts = RowLayouts::new(device, info, row)?;
         known.insert(key, layouts);
         Ok(layouts)
     }
 
-    /// Destroys all of them; nothing may use them any more.
-    #[cfg(feature = "headless")]
-    pub(super) fn destroy(&self, device: &ash::Device) {
+    /// Destroys all of them.
+    ///
+    /// # Safety
+    /// The device is the one that the nodes were made on, it lives, and those nodes and everything that they
+    /// retired are destroyed.
+    pub unsafe fn destroy(&self, device: &ash::Device) {
         let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         known.drain().for_each(|(_, layouts)| layouts.destroy(device));
     }

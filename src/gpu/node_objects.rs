@@ -119,7 +119,6 @@ impl NodeObjects {
     }
 
     /// What is behind a resource of one of the settings.
-    #[cfg(feature = "headless")]
     pub fn get(&self, settings: u32, id: ResourceId) -> Object {
         self.settings.get(settings as usize).map_or(Object::None, |s| s.get(id))
     }

@@ -86,8 +86,8 @@ impl RowPipeline {
         let info =
             LayoutsInfo { bindings: &bindings, push_stages: stages, push_bytes: push_bytes as u32 };
         self.layouts = match &host.layouts {
-            Some(shared) => shared.find(host, &info, pass.name)?,
-            None => RowLayouts::new(host, &info, pass.name)?,
+            Some(shared) => shared.find(&host.device, &info, pass.name)?,
+            None => RowLayouts::new(&host.device, &info, pass.name)?,
         };
 
         match pass.work {

@@ -86,8 +86,7 @@ pub mod push;
 mod settings;
 pub mod twin;
 
-#[cfg(feature = "headless")]
-pub(crate) use passes::{BLEND_STEPS, receiver_grid};
+pub use passes::{BLEND_STEPS, receiver_grid};
 pub use settings::{Accumulate, Receivers, Settings, Sides, spread_of};
 
 use self::passes::declare;
