@@ -168,3 +168,167 @@ impl FromStr for Technique {
         Ok(technique)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::knob::Values;
+
+    fn named(words: &str) -> Technique {
+        words.parse().unwrap_or_else(|e| panic!("{words}: {e}"))
+    }
+
+    /// A value just below the range, its ends, and one just above it, as text.
+    fn around(values: Values) -> [Option<String>; 4] {
+        match values {
+            Values::Whole(least, most) => [
+                Some(least.checked_sub(1).map_or("-1".into(), |x| x.to_string())),
+                Some(least.to_string()),
+                Some(most.to_string()),
+                Some((u64::from(most) + 1).to_string()),
+            ],
+            Values::Real(least, most) => {
+                [least.next_down(), least, most, most.next_up()].map(|x| Some(x.to_string()))
+            }
+            Values::Choice(names) => [
+                Some("no such name".into()),
+                names.first().map(|n| (*n).into()),
+                names.last().map(|n| (*n).into()),
+                Some(String::new()),
+            ],
+            Values::Switch => ["ON", "on", "off", "1"].map(|text| Some(text.into())),
+        }
+    }
+
+    /// Both ends of every range are taken, what lies just beyond is refused with what would be right, and no knob writes
+    /// where another one reads.
+    #[test]
+    fn every_knob_takes_its_range_and_nothing_else() {
+        for plain in Technique::all() {
+            let name = plain.name();
+            for knob in plain.knobs() {
+                let [below, least, most, above] = around(knob.values).map(Option::unwrap);
+                for good in [least, most] {
+                    let mut technique = plain;
+                    technique.set(knob.key, &good).unwrap_or_else(|e| panic!("{name}: {e}"));
+                    assert_eq!(technique.get(knob.key), Some(good), "{name} {}", knob.key);
+                    for other in plain.knobs().iter().filter(|other| other.key != knob.key) {
+                        let (now, before) = (technique.get(other.key), plain.get(other.key));
+                        assert_eq!(now, before, "{name}: {} writes {}", knob.key, other.key);
+                    }
+                }
+                for bad in [below, above] {
+                    let sentence = { plain }.set(knob.key, &bad).unwrap_err().to_string();
+                    assert!(
+                        sentence.contains(&knob.values.to_string()),
+                        "{name} {}={bad}: {sentence}",
+                        knob.key
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn defaults_work_and_are_not_written_out() {
+        for plain in Technique::all() {
+            plain.check().unwrap();
+            assert_eq!(plain.to_string(), plain.name());
+            assert_eq!(named(plain.name()), plain);
+            for knob in plain.knobs() {
+                let default = plain.get(knob.key).unwrap();
+                assert_eq!(plain.room().default_of(knob.key), Some(default.clone()));
+                let mut technique = plain;
+                technique.set(knob.key, &default).unwrap();
+                assert_eq!(technique, plain);
+            }
+            assert_eq!(plain.get("no such key"), None);
+        }
+    }
+
+    #[test]
+    fn text_comes_back_as_it_was() {
+        for words in
+            ["pcss taps=8", "ray-march map=128 rays=4", "linear-light error=0.05 across=edges"]
+        {
+            let mut sorted: Vec<_> = words.split(' ').collect();
+            let shown = named(words).to_string();
+            let mut again: Vec<_> = shown.split(' ').collect();
+            sorted.sort_unstable();
+            again.sort_unstable();
+            assert_eq!(sorted, again);
+            assert_eq!(named(&shown), named(words));
+        }
+    }
+
+    #[test]
+    fn wrong_words_are_refused_with_what_would_be_right() {
+        let refuse = |words: &str| words.parse::<Technique>().unwrap_err().to_string();
+        assert!(refuse("psss").contains("hard, pcss, many-lights"));
+        assert!(refuse("").contains("hard, pcss, many-lights"));
+        assert!(refuse("pcss taps").contains("KEY=VALUE"));
+        assert!(refuse("pcss rays=4").contains("pcss has no such setting; it has map, taps"));
+        assert!(refuse("soft-shadow-map sides=three").contains("one, bottom, two, mean"));
+        assert!(refuse("soft-shadow-map tolerance=NaN").contains("0 to 0.1 (visible fraction)"));
+        assert!(refuse("many-lights seed=-1").contains("0 to 4294967295"));
+    }
+
+    /// Knobs that are fine alone may be too much together.
+    #[test]
+    fn knobs_that_do_not_agree_are_refused() {
+        let refuse = |words: &str| named(words).check().unwrap_err().to_string();
+        assert!(refuse("ray-march map=2048").contains("levels=mip"));
+        assert!(refuse("soft-shadow-map accumulate=blend").contains("receivers=map"));
+        assert!(refuse("occlusion-textures map=4096").contains("map="));
+        assert!(refuse("linear-light map=4096").contains("fewer lines"));
+    }
+
+    /// A value that was never set through text is checked as well, and by the technique's own range: many-lights is
+    /// not refused for what linear-light does not take.
+    #[test]
+    fn members_are_checked_against_their_own_technique() {
+        let one = many_lights::Settings { samples: 1, ..Default::default() };
+        Technique::from(one).check().unwrap();
+        let one = linear_light::Settings { samples: 1, ..Default::default() };
+        let sentence = Technique::from(one).check().unwrap_err().to_string();
+        assert!(sentence.contains("samples") && sentence.contains("2 to 16"), "{sentence}");
+    }
+
+    /// `docs/settings.md` is what the knobs say; `ANTUMBRA_WRITE_DOCS=1 cargo test --workspace --lib` writes it.
+    #[test]
+    fn the_page_of_settings_is_what_the_knobs_say() {
+        let page = page();
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/settings.md");
+        if std::env::var("ANTUMBRA_WRITE_DOCS").is_ok_and(|value| value == "1") {
+            std::fs::write(path, &page).unwrap();
+        }
+        let written = std::fs::read_to_string(path).unwrap_or_default();
+        assert!(
+            written == page,
+            "docs/settings.md is not what the knobs say; run\n\
+             ANTUMBRA_WRITE_DOCS=1 cargo test --workspace --lib the_page_of_settings"
+        );
+    }
+
+    fn page() -> String {
+        let mut page = String::from(
+            "# Settings\n\n\
+             A technique is written as its name and any settings, `KEY=VALUE` each: `pcss taps=32 map=512`. On the \
+             command line of `render` the settings are `--set KEY=VALUE`; in code they are the members of the \
+             technique's `Settings`, or `Technique::set`. This page is made from the code by a test.\n",
+        );
+        for technique in Technique::all() {
+            let default = if technique == Technique::default() { ", the default" } else { "" };
+            page += &format!(
+                "\n## {}{default}\n\n| key | unit | values | default | what it does |\n|---|---|---|---|---|\n",
+                technique.name()
+            );
+            for knob in technique.knobs() {
+                let default = technique.get(knob.key).unwrap_or_default();
+                let Knob { key, unit, values, about } = knob;
+                page += &format!("| `{key}` | {unit} | {values} | {default} | {about} |\n");
+            }
+        }
+        page
+    }
+}

@@ -11,8 +11,8 @@
 // What the driver calls its version is queried from Vulkan itself.
 #![allow(unsafe_code)]
 
-use antumbra::gpu::headless::{HeadlessDevice, View};
 use antumbra::scene::generate;
+use antumbra_harness::{HeadlessDevice, View};
 use antumbra_tests::device;
 use antumbra_tests::example::root;
 use antumbra_tests::measure::{Setup, model};

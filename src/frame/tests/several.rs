@@ -15,7 +15,7 @@ struct Node {
 }
 
 impl Node {
-    fn new(lights: u32, other_techniques: Vec<Settings>) -> Self {
+    fn new(lights: u32, other_techniques: Vec<Technique>) -> Self {
         let left = Left::new(lights, 1 + other_techniques.len());
         let description = Description { lights, other_techniques, ..description(&[]) };
         description.check().unwrap();
@@ -87,10 +87,10 @@ fn barriers_name_the_lights_layer_of_the_result_and_nothing_else() {
 }
 
 #[test]
-fn every_bad_number_of_lights_or_settings_is_one_sentence() {
+fn every_bad_number_of_lights_or_techniques_is_one_sentence() {
     let meshes = meshes();
     let d =
-        Description { lights: 4, other_techniques: vec![Settings::default()], ..description(&[]) };
+        Description { lights: 4, other_techniques: vec![Technique::default()], ..description(&[]) };
     let f = frame(&meshes);
     let refuse = |d: &Description, frame: Frame| {
         plan(d, Limits::default(), &frame).map(|p| ran(&p)).unwrap_err().to_string()
@@ -98,20 +98,20 @@ fn every_bad_number_of_lights_or_settings_is_one_sentence() {
     let sentence = refuse(&d, Frame { light_index: 4, ..f });
     assert!(sentence.contains("light 4 does not exist; the description has 4"), "{sentence}");
     let sentence = refuse(&d, Frame { technique_index: 2, ..f });
-    assert!(sentence.contains("settings 2 do not exist; the description has 2"), "{sentence}");
+    assert!(sentence.contains("technique 2 does not exist; the description has 2"), "{sentence}");
     for lights in [0, 65] {
         let sentence = Description { lights, ..d.clone() }.check().unwrap_err().to_string();
         assert!(sentence.contains(&format!("1 to 64 lights, not for {lights}")), "{sentence}");
     }
-    let other_techniques = vec![Settings::default(); 8];
+    let other_techniques = vec![Technique::default(); 8];
     let sentence = Description { other_techniques, ..d.clone() }.check().unwrap_err().to_string();
-    assert!(sentence.contains("8 other settings are more than the 7"), "{sentence}");
-    // Each of the settings is held against the rest of the description, and against its frames.
-    let many = Settings { technique: Technique::ManyLights, ..Settings::default() };
+    assert!(sentence.contains("8 other techniques are more than the 7"), "{sentence}");
+    // Each of the techniques is held against the rest of the description, and against its frames.
+    let many = "many-lights".parse().unwrap();
     let d = Description { other_techniques: vec![many], ..d };
     let maps = Description { occluder_maps: Some(vk::Format::D32_SFLOAT), ..d.clone() };
     assert!(maps.check().unwrap_err().to_string().contains("many-lights"));
-    let small = Settings { map: 0, ..Settings::default() };
+    let small = crate::techniques::hard::Settings { map: 0 }.into();
     let small = Description { other_techniques: vec![small], ..d.clone() };
     assert!(small.check().unwrap_err().to_string().contains("1 to 4096"));
     let line = generate::line_light(1.0, 0.3).unwrap();
@@ -120,19 +120,16 @@ fn every_bad_number_of_lights_or_settings_is_one_sentence() {
 }
 
 #[test]
-fn a_frame_has_the_rows_of_the_settings_that_it_chooses() {
+fn a_frame_has_the_passes_of_the_technique_that_it_chooses() {
     let meshes = meshes();
     let d = description(&[]);
-    let others: Vec<_> = Technique::ALL
-        .iter()
-        .filter(|(_, t)| *t != Technique::SoftShadowMap)
-        .map(|&(_, technique)| Settings { technique, ..Settings::default() })
-        .collect();
+    let mut others = Technique::all();
+    others.retain(|technique| *technique != Technique::default());
     let several = Description { other_techniques: others.clone(), ..d.clone() };
-    for (index, settings) in others.into_iter().enumerate() {
+    for (index, technique) in others.into_iter().enumerate() {
         let technique_index = 1 + index as u32;
         let mut chosen = make(&several, &Frame { technique_index, ..frame(&meshes) });
-        let alone = make(&Description { settings, ..d.clone() }, &frame(&meshes));
+        let alone = make(&Description { technique, ..d.clone() }, &frame(&meshes));
         assert_eq!(chosen.technique_index, technique_index);
         chosen.technique_index = 0;
         assert_eq!(chosen, alone);
@@ -161,7 +158,7 @@ fn all_lights_may_be_planned_before_the_first_is_recorded() {
 #[test]
 fn maps_are_kept_for_a_light_that_has_settings_to_itself() {
     let meshes = meshes();
-    let hard = Settings { technique: Technique::Hard, ..Settings::default() };
+    let hard = "hard".parse().unwrap();
     let mut node = Node::new(2, vec![hard]);
     let both = |view| {
         let mut both = frames(&meshes, 2, 1, view);
@@ -212,7 +209,7 @@ fn maps_of_one_light_are_never_anothers() {
 fn what_is_lit_stays_lit_whatever_the_numbers_say() {
     let shadowed = meshes();
     for lights in [1, 2] {
-        let mut node = Node::new(lights, vec![Settings::default()]);
+        let mut node = Node::new(lights, vec![Technique::default()]);
         let light_index = lights - 1;
         let lit = Frame { light_index, ..frame(&[]) };
         assert_eq!(node.all(&[lit]), [1]);

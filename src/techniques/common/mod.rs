@@ -17,7 +17,6 @@ use crate::graph::{Access, Graph, Pass, Push, ResourceId, Use, Uses};
 use crate::shaders::Module;
 use crate::stages::visibility::{GBuffer, grid};
 use bytemuck::{Pod, Zeroable};
-use smallvec::smallvec;
 
 /// What passes over the pixels with one occluder map are given (`push.glsl`).
 #[repr(C)]

@@ -1,13 +1,8 @@
 //! The knobs.
 
-use crate::graph::{Graph, ResourceId, STORAGE_BYTES};
+use crate::Error;
+use crate::graph::STORAGE_BYTES;
 use crate::knob::{Field, Knobs, choice, choices};
-use crate::light::outline::quarter_turned;
-use crate::stages::depth_layers::MapView;
-use crate::stages::views::{Line, Views};
-use crate::techniques::room::{HostDraws, Maps, PassInputs, Room, Seen, Shows, Takes, Turned};
-use crate::{Error, RectangleLight};
-use std::borrow::Cow;
 
 /// The most samples on a line.
 pub(super) const MOST_SAMPLES: u32 = 16;

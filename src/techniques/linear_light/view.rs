@@ -2,12 +2,11 @@
 
 use super::settings::Across;
 use super::settings::Settings;
-use crate::lent::MeshBounds;
 use crate::stages::depth_layers::{fit_occluders, tangents_of};
 use crate::stages::views::Line;
 use crate::techniques::room::Seen;
 use crate::{Error, RectangleLight};
-use glam::{DMat4, DVec2, DVec3, DVec4};
+use glam::DVec2;
 
 /// How much longer one side must be to be the longer one, as a share: more than rounding makes of equal ones, or the
 /// lines of a square would jump from one direction to the other as it turns.

@@ -4,8 +4,7 @@ use super::pixels::{Filtered, declare_pixels};
 use super::push;
 use super::settings::{Prefilter, Settings};
 use crate::graph::{
-    Access, COLOR_ATTACHMENTS, Draw, Graph, Layer, Need, Owner, Pass, Push, ResourceId, Target,
-    Use, Work,
+    Access, COLOR_ATTACHMENTS, Draw, Graph, Layer, Owner, Pass, Push, ResourceId, Target, Use, Work,
 };
 use crate::shaders::{self, Module};
 use crate::stages::depth_layers::{self, DepthLayers, Eye, Wanted};

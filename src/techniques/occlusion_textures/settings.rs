@@ -1,11 +1,8 @@
 //! The knobs of occlusion textures.
 
 use crate::Error;
-use crate::graph::{Graph, ResourceId};
 use crate::knob::{Field, Knobs, choice, choices};
-use crate::stages::depth_layers::Projection;
 use crate::stages::nbuffer::{self, Levels};
-use crate::techniques::room::{HostDraws, Maps, PassInputs, Room, Shows, Takes};
 
 /// How means of rectangles are made ready.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -3,11 +3,10 @@
 use super::push;
 use super::settings::{Hash, Layers, Sampling, Search, Settings};
 use crate::graph::{Access, Graph, Need, Owner, Pass, Push, ResourceId, Use, Uses, Work};
-use crate::lent::MeshBounds;
 use crate::shaders::{self, Module};
 use crate::stages::depth_layers::{DepthLayers, Eye};
 use crate::stages::nbuffer::{self, Levels};
-use crate::stages::visibility::{self, COLOR_FORMAT, GBuffer, grid};
+use crate::stages::visibility::{self, COLOR_FORMAT, grid};
 use crate::techniques::room::PassInputs;
 use smallvec::smallvec;
 

@@ -1,11 +1,9 @@
 //! The knobs of ray marching.
 
 use crate::Error;
-use crate::graph::{Graph, ResourceId};
 use crate::knob::{Field, Knobs, choice, choices};
-use crate::stages::depth_layers::{Projection, Wanted};
+use crate::stages::depth_layers::Projection;
 use crate::stages::nbuffer::{self, Levels};
-use crate::techniques::room::{Maps, Noise, PassInputs, Room, Shows, Takes};
 
 /// The depth layers that say what is solid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

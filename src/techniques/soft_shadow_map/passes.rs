@@ -2,13 +2,12 @@
 
 use super::settings::{Accumulate, Receivers, Settings, Sides, spread_of};
 use super::{pixels, push};
-use crate::RectangleLight;
 use crate::graph::{
-    Access, Draw, Graph, Need, Owner, Pass, Push, ResourceId, STORAGE_BYTES, Target, Use, Work,
+    Access, Draw, Graph, Owner, Pass, Push, ResourceId, STORAGE_BYTES, Target, Use, Work,
 };
 use crate::shaders;
 use crate::stages::depth_layers::{DepthLayers, MapView};
-use crate::stages::visibility::{self, GBuffer};
+use crate::stages::visibility::{self};
 use crate::techniques::room::PassInputs;
 use ash::vk;
 use smallvec::{SmallVec, smallvec};

@@ -1,10 +1,7 @@
 //! The knobs of soft shadow maps, and the gather's tolerance.
 
 use crate::Error;
-use crate::graph::{Graph, ResourceId};
 use crate::knob::{Field, Knobs, choice, choices};
-use crate::stages::depth_layers::Wanted;
-use crate::techniques::room::{Maps, PassInputs, Room, Shows, Takes};
 
 /// Where visibility is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
