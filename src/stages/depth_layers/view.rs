@@ -49,6 +49,14 @@ pub struct MapView {
 }
 
 impl MapView {
+    /// How far behind the light the eye is, metres; 0 for an eye at infinity.
+    pub fn behind(&self) -> f64 {
+        match self.eye {
+            Eye::Behind(behind) => behind,
+            Eye::Infinity => 0.0,
+        }
+    }
+
     /// Light space to clip space, reversed: depth is near · w without a far plane, or falls from 1 at the
     /// near plane to 0 at the far one where the projection is orthographic.
     pub fn clip_from_light(&self) -> DMat4 {

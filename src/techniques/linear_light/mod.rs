@@ -55,14 +55,17 @@
 //! does not block hides others from the channels. Leaves want many samples. Where the light is lost to all samples, a
 //! penumbra ends in a step.
 
+mod line;
 mod passes;
-pub mod push;
 mod samples;
 mod segments;
 mod settings;
 pub mod twin;
 mod view;
 
+pub use passes::Visibility;
+pub use samples::{Mask, Place, Sample, Spread, Take};
+pub use segments::{Edges, Keep, Skins, Start};
 pub use settings::{Across, Settings, Transition};
 pub use view::{lines, turned};
 

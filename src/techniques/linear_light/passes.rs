@@ -1,46 +1,42 @@
 //! The rows: samples' maps → which of them count → skins → channels, line by line; pixels → visible fractions.
 
-use super::push;
-use super::samples::{self, Layers};
-use super::segments::{self, Skins};
+use super::line::{Layers, LineContext, LineResources, SkinSide};
+use super::samples;
+use super::segments;
 use super::settings::{MOST_SAMPLES, Settings, skin_bytes};
-use crate::graph::{Access, Graph, Owner, Pass, Push, ResourceId, Use};
+use crate::graph::{Access, Graph, Owner, Pass, Push, Use};
 use crate::shaders;
 use crate::stages::depth_layers;
 use crate::stages::views::Line;
 use crate::stages::visibility::grid;
 use crate::techniques::room::PassInputs;
 use ash::vk;
+use bytemuck::{Pod, Zeroable};
 use smallvec::smallvec;
 
 /// Texels of the image of places before a line's samples.
 pub(super) const SAMPLES_AT: u32 = 4;
 
-/// What a line's maps and channels are made in, and what is made of all of them.
-pub(super) struct Made {
-    pub layers: Layers,
-    pub left: Skins,
-    pub right: Skins,
-    /// What of the segment that is being made its rows must know.
-    pub here: ResourceId,
-    /// How large the grids of its rows are.
-    pub groups: ResourceId,
-    /// The arguments of the draws of its skins.
-    pub draws: ResourceId,
-    /// A layer a sample, line by line: what pixels ask for.
-    pub maps: ResourceId,
-    /// A row a line.
-    pub places: ResourceId,
-}
-
-/// What the rows of one line are made of.
-pub(super) struct OfLine<'a> {
-    pub made: &'a Made,
-    pub settings: &'a Settings,
-    pub inputs: &'a PassInputs<'a>,
-    pub line: &'a Line,
-    /// Which line it is: its row of places, its view of the meshes.
-    pub row: u32,
+/// What `visibility.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Visibility {
+    /// The G-buffer's NDC to light space, by column.
+    pub light_from_ndc: [f32; 16],
+    /// Of the G-buffer.
+    pub extent: [i32; 2],
+    /// The depth of a pixel that shows no surface.
+    pub background: f32,
+    /// How far a raster moves a vertex, in texels.
+    pub snap: f32,
+    /// The maps' side in texels.
+    pub map: i32,
+    /// Samples that a line may have.
+    pub most: i32,
+    /// How many there are.
+    pub lines: i32,
+    /// 1: the mask holds the receivers' roles.
+    pub masked: i32,
 }
 
 /// Adds the passes that turn the meshes, as the samples see them, into the visible fraction.
@@ -61,7 +57,7 @@ pub(super) fn declare(graph: &mut Graph, settings: &Settings, inputs: &PassInput
         ),
     };
     let bytes = skin_bytes(side);
-    let left = Skins {
+    let left = SkinSide {
         edges: "linear_light.left_edges",
         draw: "linear_light.left_skins",
         side: -1,
@@ -69,7 +65,7 @@ pub(super) fn declare(graph: &mut Graph, settings: &Settings, inputs: &PassInput
         offset: 0,
         channel: depth(graph, "linear_light.left_channel"),
     };
-    let right = Skins {
+    let right = SkinSide {
         edges: "linear_light.right_edges",
         draw: "linear_light.right_skins",
         side: 1,
@@ -81,7 +77,7 @@ pub(super) fn declare(graph: &mut Graph, settings: &Settings, inputs: &PassInput
     let maps = graph.image_array("linear_light.maps", format, [side; 2], kept);
     let size = [SAMPLES_AT + settings.samples, settings.lines];
     let places = graph.image("linear_light.places", format, size, Owner::Transient);
-    let made = Made {
+    let made = LineResources {
         layers,
         left,
         right,
@@ -98,18 +94,18 @@ pub(super) fn declare(graph: &mut Graph, settings: &Settings, inputs: &PassInput
         lines => lines,
     };
     for (row, line) in lines.iter().enumerate() {
-        let of = OfLine { made: &made, settings, inputs, line, row: row as u32 };
-        samples::place(graph, &of);
+        let ctx = LineContext { made: &made, settings, inputs, line, row: row as u32 };
+        samples::place(graph, &ctx);
         for nth in 0..settings.samples {
-            samples::look(graph, &of, nth);
-            segments::start(graph, &of, nth);
-            graph.push(samples::take(&of, nth % 2));
+            samples::look(graph, &ctx, nth);
+            segments::start(graph, &ctx, nth);
+            graph.push(samples::take(&ctx, nth % 2));
             if nth > 0 {
-                segments::declare(graph, &of, nth);
+                segments::declare(graph, &ctx, nth);
             }
         }
-        segments::start(graph, &of, settings.samples);
-        segments::keep(graph, &of, settings.samples);
+        segments::start(graph, &ctx, settings.samples);
+        segments::keep(graph, &ctx, settings.samples);
     }
 
     let gbuffer = inputs.gbuffer;
@@ -117,7 +113,7 @@ pub(super) fn declare(graph: &mut Graph, settings: &Settings, inputs: &PassInput
         "linear_light.visibility",
         shaders::LINE_VISIBILITY,
         grid(gbuffer.extent),
-        Push::new(&push::Visibility {
+        Push::new(&Visibility {
             light_from_ndc: gbuffer.light_from_ndc,
             extent: gbuffer.extent.map(|e| e as i32),
             background: gbuffer.background,

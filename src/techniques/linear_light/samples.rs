@@ -1,53 +1,72 @@
 //! The rows that say where a line's samples are, and those that draw what they see.
 
-use super::passes::OfLine;
-use super::push;
+use super::line::LineContext;
 use crate::graph::{Access, Draw, Graph, Layer, Pass, Push, ResourceId, Target, Use, Work};
 use crate::shaders;
 use crate::stages::depth_layers::{self, Raster};
 use crate::stages::visibility::grid;
+use bytemuck::{Pod, Zeroable};
 use smallvec::smallvec;
 
 /// Receivers along and across the rows of `mask.comp`'s grid.
 pub(super) const RECEIVERS: [u32; 2] = [128, 32];
 
-/// What samples see.
-pub(super) struct Layers {
-    /// Where they are.
-    pub of: ResourceId,
-    /// The nearest occluders and receivers as one of them sees them: drawn into, and taken from.
-    pub occluders: ResourceId,
-    pub receivers: ResourceId,
-    /// Two that lie side by side.
-    pub seen: ResourceId,
-    /// What receivers see of the line.
-    pub masks: ResourceId,
+/// What `spread.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Spread {
+    /// Samples.
+    pub count: i32,
+}
+
+/// What `mask.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Mask {
+    /// Least and largest u at the line's first end, at its last.
+    pub u_window: [f32; 4],
+    /// Its length, m.
+    pub line: f32,
+    /// The maps' side in texels.
+    pub map: i32,
+}
+
+/// What `place.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Place {
+    /// Asked for, as a share of the line.
+    pub error: f32,
+    /// Samples.
+    pub most: i32,
+    /// 1: as many as may be, evenly.
+    pub even: i32,
 }
 
 /// Adds the rows that place a line's samples: evenly, or where its middle tells that light is lost.
-pub(super) fn place(graph: &mut Graph, of: &OfLine) {
-    let OfLine { made, settings, inputs, line, .. } = *of;
+pub(super) fn place(graph: &mut Graph, ctx: &LineContext) {
+    let LineContext { made, settings, inputs, line, .. } = *ctx;
     let layers = &made.layers;
     if settings.is_even() {
         graph.push(Pass::compute(
             "linear_light.spread",
             shaders::LINE_SPREAD,
             [1, 1, 1],
-            Push::new(&push::Spread { count: settings.samples as i32 }),
+            Push::new(&Spread { count: settings.samples as i32 }),
             smallvec![Use::bound(0, layers.of, Access::BufferWriteCompute)],
             inputs.need,
         ));
         return;
     }
-    graph.push(drawn("linear_light.middle_occluders", layers.occluders, Layer::Front, None, of));
+    graph.push(drawn("linear_light.middle_occluders", layers.occluders, Layer::Front, None, ctx));
     graph.push(drawn(
         "linear_light.middle_receivers",
         layers.receivers,
         Layer::Receivers,
         None,
-        of,
+        ctx,
     ));
-    let taken = take(of, 0);
+    let taken = take(ctx, 0);
     graph.push(Pass {
         name: "linear_light.middle_take",
         uses: taken.uses.iter().copied().filter(|u| u.access != Access::Indirect).collect(),
@@ -58,7 +77,7 @@ pub(super) fn place(graph: &mut Graph, of: &OfLine) {
         "linear_light.mask",
         shaders::LINE_MASK,
         grid(RECEIVERS),
-        Push::new(&push::Mask {
+        Push::new(&Mask {
             u_window: line.u_window(),
             line: line.length(),
             map: settings.map as i32,
@@ -73,7 +92,7 @@ pub(super) fn place(graph: &mut Graph, of: &OfLine) {
         "linear_light.place",
         shaders::LINE_PLACE,
         [1, 1, 1],
-        Push::new(&push::Place {
+        Push::new(&Place {
             error: settings.error,
             most: settings.samples as i32,
             even: i32::from(line.is_touched()),
@@ -87,10 +106,24 @@ pub(super) fn place(graph: &mut Graph, of: &OfLine) {
 }
 
 /// Adds the rows that draw what a sample sees.
-pub(super) fn look(graph: &mut Graph, of: &OfLine, nth: u32) {
-    let layers = &of.made.layers;
-    graph.push(drawn("linear_light.occluders", layers.occluders, Layer::Front, Some(nth), of));
-    graph.push(drawn("linear_light.receivers", layers.receivers, Layer::Receivers, Some(nth), of));
+pub(super) fn look(graph: &mut Graph, ctx: &LineContext, nth: u32) {
+    let layers = &ctx.made.layers;
+    graph.push(drawn("linear_light.occluders", layers.occluders, Layer::Front, Some(nth), ctx));
+    graph.push(drawn("linear_light.receivers", layers.receivers, Layer::Receivers, Some(nth), ctx));
+}
+
+/// What `view.glsl` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Sample {
+    /// By column; each mesh pushes its own.
+    pub line_from_mesh: [f32; 16],
+    /// Least and largest u at the line's first end, at its last.
+    pub u_window: [f32; 4],
+    /// Its length, m.
+    pub line: f32,
+    /// Which sample.
+    pub nth: i32,
 }
 
 /// The row that draws a layer as a sample sees it, or as the line's middle does.
@@ -99,18 +132,18 @@ fn drawn(
     image: ResourceId,
     layer: Layer,
     sample: Option<u32>,
-    of: &OfLine,
+    ctx: &LineContext,
 ) -> Pass {
     let Raster { cull, clear, compare } = depth_layers::raster_of(layer);
     let mut uses = smallvec![Use::fixed(image, Access::DepthTarget)];
-    uses.extend(sample.map(|_| Use::bound(0, of.made.layers.of, Access::BufferReadVertex)));
+    uses.extend(sample.map(|_| Use::bound(0, ctx.made.layers.of, Access::BufferReadVertex)));
     Pass {
         name,
         uses,
-        push: Push::new(&push::Sample {
+        push: Push::new(&Sample {
             line_from_mesh: [0.0; 16],
-            u_window: of.line.u_window(),
-            line: of.line.length(),
+            u_window: ctx.line.u_window(),
+            line: ctx.line.length(),
             nth: sample.map_or(-1, |nth| nth as i32),
         }),
         work: Work::Raster {
@@ -118,29 +151,41 @@ fn drawn(
             fragment: None,
             cull,
             target: Target::Depth { clear, compare },
-            draw: Draw::Layer { layer, view: of.row },
+            draw: Draw::Layer { layer, view: ctx.row },
         },
-        need: *of.inputs.need,
+        need: *ctx.inputs.need,
     }
 }
 
+/// What `take.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Take {
+    /// 1 over the map's near plane, 1/m.
+    pub inv_near: f32,
+    /// Its side in texels.
+    pub map: i32,
+    /// Where it goes.
+    pub layer: i32,
+}
+
 /// The row that takes what was drawn into a layer.
-pub(super) fn take(of: &OfLine, layer: u32) -> Pass {
-    let layers = &of.made.layers;
+pub(super) fn take(ctx: &LineContext, layer: u32) -> Pass {
+    let layers = &ctx.made.layers;
     Pass {
         name: "linear_light.take",
         uses: smallvec![
-            Use::fixed(of.made.groups, Access::Indirect),
+            Use::fixed(ctx.made.groups, Access::Indirect),
             Use::bound(0, layers.occluders, Access::SampledCompute),
             Use::bound(1, layers.receivers, Access::SampledCompute),
             Use::bound(2, layers.seen, Access::ImageWrite),
         ],
-        push: Push::new(&push::Take {
-            inv_near: (1.0 / of.line.near) as f32,
-            map: of.settings.map as i32,
+        push: Push::new(&Take {
+            inv_near: (1.0 / ctx.line.near) as f32,
+            map: ctx.settings.map as i32,
             layer: layer as i32,
         }),
-        work: Work::Indirect { shader: shaders::LINE_TAKE, arguments: of.made.groups, offset: 0 },
-        need: *of.inputs.need,
+        work: Work::Indirect { shader: shaders::LINE_TAKE, arguments: ctx.made.groups, offset: 0 },
+        need: *ctx.inputs.need,
     }
 }

@@ -1,49 +1,60 @@
 //! The rows that make channels of a line's samples, segment by segment.
 
-use super::passes::OfLine;
-use super::push;
+use super::line::{LineContext, SkinSide};
 use super::settings::Transition;
-use crate::graph::{Access, Draw, Graph, Pass, Push, ResourceId, Target, Use, Work};
+use crate::graph::{Access, Draw, Graph, Pass, Push, Target, Use, Work};
 use crate::shaders;
 use crate::stages::visibility::grid;
 use ash::vk;
+use bytemuck::{Pod, Zeroable};
 use smallvec::smallvec;
 
-/// Where in [`super::passes::Made::groups`] the grids of a segment's rows are, and of the row that keeps the sample before.
+/// Where in [`super::passes::LineResources::groups`] the grids of a segment's rows are, and of the row that keeps the sample before.
 const SEGMENT: u64 = 16;
+
 const SAMPLE_BEFORE: u64 = 32;
 
-/// What one sample of a segment makes of the other's occluders.
-pub(super) struct Skins {
-    pub edges: &'static str,
-    pub draw: &'static str,
-    /// Which ends of occluders are seen past: -1, those towards −x.
-    pub side: i32,
-    pub skins: ResourceId,
-    /// Of the draw's arguments in [`super::passes::Made::draws`].
-    pub offset: u64,
-    pub channel: ResourceId,
-}
-
 /// Adds the rows of the segment before a sample, and what they leave of the sample before it.
-pub(super) fn declare(graph: &mut Graph, of: &OfLine, nth: u32) {
+pub(super) fn declare(graph: &mut Graph, ctx: &LineContext, nth: u32) {
     // The first one's neighbour sees what ends towards it. Only then is what the segment before drew into the first
     // one's other channel done with.
-    skins(graph, of, &of.made.left);
-    keep(graph, of, nth);
-    skins(graph, of, &of.made.right);
+    skins(graph, ctx, &ctx.made.left);
+    keep(graph, ctx, nth);
+    skins(graph, ctx, &ctx.made.right);
+}
+
+/// What `start.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Start {
+    /// The line's x along the light's x and y; its middle, m.
+    pub turn: [f32; 4],
+    /// Least and largest u at its first end, at its last.
+    pub u_window: [f32; 4],
+    /// Least and largest v.
+    pub v_window: [f32; 2],
+    /// Its length, m.
+    pub line: f32,
+    /// Its share of the light.
+    pub weight: f32,
+    /// Which sample, and the segment before it.
+    pub nth: i32,
+    /// Of the image of places.
+    pub row: i32,
+    /// Workgroups along a side of a map.
+    pub groups: i32,
 }
 
 /// Adds the row that says which of the rows of a sample and of the segment before it have anything to do.
-pub(super) fn start(graph: &mut Graph, of: &OfLine, nth: u32) {
-    let OfLine { made, settings, inputs, line, row } = *of;
+pub(super) fn start(graph: &mut Graph, ctx: &LineContext, nth: u32) {
+    let LineContext { made, settings, inputs, line, row } = *ctx;
     let [c, s] = line.along;
     let [x, y] = line.middle;
     graph.push(Pass::compute(
         "linear_light.start",
         shaders::SKIN_START,
         [1, 1, 1],
-        Push::new(&push::Start {
+        Push::new(&Start {
             turn: [c, s, x, y].map(|x| x as f32),
             u_window: line.u_window(),
             v_window: line.v.map(|v| v as f32),
@@ -64,14 +75,44 @@ pub(super) fn start(graph: &mut Graph, of: &OfLine, nth: u32) {
     ));
 }
 
+/// What `edges.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Edges {
+    /// Least and largest u at the line's first end, at its last.
+    pub u_window: [f32; 4],
+    /// The maps' side in texels.
+    pub map: i32,
+    /// -1: occluders that end towards -x; 1: towards +x.
+    pub side: i32,
+}
+
+/// What `skins.vert` and `skins.frag` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Skins {
+    /// Least and largest u at the line's first end, at its last.
+    pub u_window: [f32; 4],
+    /// Its length, m.
+    pub line: f32,
+    /// No receiver is further than 1/w_far.
+    pub w_far: f32,
+    /// The maps' side in texels.
+    pub map: i32,
+    /// -1: skins that the last sample saw, as the first one sees them; 1: the other way round.
+    pub side: i32,
+    /// 1: by the w of what is behind; 0: by that of what lies beside the edge.
+    pub rational: i32,
+}
+
 /// Adds the rows that find where occluders end as one sample sees them, and draw that into the other's channel.
-fn skins(graph: &mut Graph, of: &OfLine, skins: &Skins) {
-    let OfLine { made, settings, inputs, line, .. } = *of;
+fn skins(graph: &mut Graph, ctx: &LineContext, skins: &SkinSide) {
+    let LineContext { made, settings, inputs, line, .. } = *ctx;
     let map = settings.map as i32;
     graph.push(Pass {
         name: skins.edges,
         work: Work::Indirect { shader: shaders::EDGES, arguments: made.groups, offset: SEGMENT },
-        push: Push::new(&push::Edges { u_window: line.u_window(), map, side: skins.side }),
+        push: Push::new(&Edges { u_window: line.u_window(), map, side: skins.side }),
         uses: smallvec![
             Use::fixed(made.groups, Access::Indirect),
             Use::bound(0, made.layers.seen, Access::SampledCompute),
@@ -90,7 +131,7 @@ fn skins(graph: &mut Graph, of: &OfLine, skins: &Skins) {
             Use::bound(1, made.here, Access::BufferReadVertex),
             Use::bound(2, made.layers.seen, Access::SampledFragment),
         ],
-        push: Push::new(&push::Skins {
+        push: Push::new(&Skins {
             u_window: line.u_window(),
             line: line.length(),
             w_far: (1.0 / inputs.receivers.far) as f32,
@@ -109,9 +150,19 @@ fn skins(graph: &mut Graph, of: &OfLine, skins: &Skins) {
     });
 }
 
+/// What `keep.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Keep {
+    /// The maps' side in texels.
+    pub map: i32,
+    /// Where the sample's goes.
+    pub layer: i32,
+}
+
 /// Adds the row that keeps the map of the sample before a sample.
-pub(super) fn keep(graph: &mut Graph, of: &OfLine, nth: u32) {
-    let OfLine { made, settings, inputs, row, .. } = *of;
+pub(super) fn keep(graph: &mut Graph, ctx: &LineContext, nth: u32) {
+    let LineContext { made, settings, inputs, row, .. } = *ctx;
     let layer = row * settings.samples + nth - 1;
     // Nothing was drawn for a segment before the first sample.
     let (name, before) = match nth {
@@ -125,7 +176,7 @@ pub(super) fn keep(graph: &mut Graph, of: &OfLine, nth: u32) {
             arguments: made.groups,
             offset: SAMPLE_BEFORE,
         },
-        push: Push::new(&push::Keep { map: settings.map as i32, layer: layer as i32 }),
+        push: Push::new(&Keep { map: settings.map as i32, layer: layer as i32 }),
         uses: smallvec![
             Use::fixed(made.groups, Access::Indirect),
             Use::bound(0, made.layers.seen, Access::SampledCompute),

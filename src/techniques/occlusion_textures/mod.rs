@@ -99,19 +99,25 @@
 //! slices of 1448² or 32 of 1024², by N-buffers 16 of 511². A host's fixed window is not looked at, as with
 //! `ray-march`.
 
-mod passes;
+mod filtered;
 mod pixels;
-pub mod push;
 mod settings;
+mod slices;
 pub mod twin;
 
 pub use settings::{Combine, Placement, Prefilter, Settings};
 
-use self::passes::{declare, histogram_layers};
+pub use filtered::{FirstLevel, NextLevel, SumColumns, SumRows};
+pub use pixels::{Squares, Visibility};
+pub use slices::{Histogram, Mask, Place};
+
+use self::filtered::{declare_levels, declare_sums};
+use self::pixels::{Filtered, declare_pixels};
+use self::slices::{declare_mask, declare_placement, histogram_layers};
 use super::room::{HostDraws, Maps, PassInputs, Room, Shows, Takes};
 use crate::Error;
 use crate::graph::{Graph, ResourceId};
-use crate::stages::depth_layers::Projection;
+use crate::stages::depth_layers::{DepthLayers, Projection};
 
 impl Room for Settings {
     fn takes(&self) -> Takes {
@@ -153,4 +159,23 @@ impl Room for Settings {
     fn check_agreement(&self) -> Result<(), Error> {
         self.check_together()
     }
+}
+
+/// Adds the passes that turn meshes into the visible fraction; `layers` where slices are fitted to them.
+fn declare(
+    graph: &mut Graph,
+    layers: Option<&DepthLayers>,
+    settings: &Settings,
+    inputs: &PassInputs,
+) {
+    let placement = declare_placement(graph, layers, settings, inputs);
+    let mask = declare_mask(graph, placement, settings, inputs);
+    let sums = settings.prefilter == Prefilter::Sat;
+    let filtered = if sums {
+        declare_sums(graph, mask, settings, inputs)
+    } else {
+        declare_levels(graph, mask, settings, inputs)
+    };
+    let made = Filtered { placement, mask, filtered };
+    declare_pixels(graph, &made, settings, inputs);
 }

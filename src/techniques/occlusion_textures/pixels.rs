@@ -1,7 +1,5 @@
 //! The rows over the pixels: at all of them, or at those of tiles that meet something.
 
-use super::passes::eye;
-use super::push;
 use super::settings::{Combine, Prefilter, Settings};
 use crate::graph::{Access, Graph, Owner, Pass, Push, ResourceId, Use};
 use crate::shaders;
@@ -10,6 +8,7 @@ use crate::stages::tiles::Tiles;
 use crate::stages::visibility::grid;
 use crate::techniques::room::PassInputs;
 use ash::vk;
+use bytemuck::{Pod, Zeroable};
 use smallvec::smallvec;
 
 const NAME: &str = "occlusion_textures.visibility";
@@ -76,6 +75,14 @@ pub(super) fn declare_pixels(
     tiles.run(graph, (NAME, shader), push, uses, 6, inputs.need);
 }
 
+/// What `squares.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Squares {
+    /// The map's side in texels.
+    pub map: i32,
+}
+
 /// Adds the row that says what blocks in squares of the mask.
 fn squares(graph: &mut Graph, mask: ResourceId, inputs: &PassInputs) -> ResourceId {
     let side = inputs.occluders.side;
@@ -86,7 +93,7 @@ fn squares(graph: &mut Graph, mask: ResourceId, inputs: &PassInputs) -> Resource
         name,
         shaders::SQUARES,
         grid([row; 2]),
-        Push::new(&push::Squares { map: side as i32 }),
+        Push::new(&Squares { map: side as i32 }),
         smallvec![
             Use::bound(0, mask, Access::SampledCompute),
             Use::bound(1, squares, Access::ImageWrite),
@@ -96,21 +103,45 @@ fn squares(graph: &mut Graph, mask: ResourceId, inputs: &PassInputs) -> Resource
     squares
 }
 
-fn pixel_push(settings: &Settings, inputs: &PassInputs) -> push::Visibility {
+/// What `visibility_*.comp`, `tiles_*.comp` and `listed_*.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Visibility {
+    /// The G-buffer's NDC to light space, by column.
+    pub light_from_ndc: [f32; 16],
+    /// Map texels a unit of u and v.
+    pub texels_per_uv: [f32; 2],
+    /// Texel coordinates of u = v = 0.
+    pub first: [f32; 2],
+    /// Half the light's width and height, m.
+    pub half_light: [f32; 2],
+    /// Of the G-buffer.
+    pub extent: [i32; 2],
+    /// The depth of a pixel that shows no surface.
+    pub background: f32,
+    /// How far behind the light the projection point is, m.
+    pub eye: f32,
+    /// The map's side in texels.
+    pub map: i32,
+    /// Slices and what is switched on, see `visibility.glsl`.
+    pub flags: i32,
+}
+
+fn pixel_push(settings: &Settings, inputs: &PassInputs) -> Visibility {
     let PassInputs { occluders: view, gbuffer, light, .. } = inputs;
     let combine = match settings.combine {
         Combine::Product | Combine::Correlated => 0,
         Combine::Sum => 1,
         Combine::Max => 2,
     };
-    push::Visibility {
+    Visibility {
         light_from_ndc: gbuffer.light_from_ndc,
         texels_per_uv: view.texels_per_uv().map(|x| x as f32),
         first: view.first().map(|x| x as f32),
         half_light: light.half_extents().map(|x| x as f32),
         extent: gbuffer.extent.map(|e| e as i32),
         background: gbuffer.background,
-        eye: eye(inputs) as f32,
+        eye: inputs.occluders.behind() as f32,
         map: view.side as i32,
         flags: settings.slices as i32
             | i32::from(gbuffer.mask.is_some()) << 8

@@ -79,6 +79,9 @@ impl Default for Settings {
     }
 }
 
+/// The width of the image of filtered tiles: the largest that every device has (maxImageDimension2D).
+pub(super) const IMAGE_WIDTH: u32 = 4096;
+
 /// Layers of an image that every device has (maxImageArrayLayers).
 const MOST_LAYERS: u64 = 256;
 
@@ -176,7 +179,7 @@ impl Settings {
         let tiles = u64::from(self.tiles());
         let texels = u64::from(map) * u64::from(map) * tiles;
         if self.prefilter == Prefilter::Sat {
-            return texels <= u64::from(super::passes::IMAGE_WIDTH).pow(2);
+            return texels <= u64::from(IMAGE_WIDTH).pow(2);
         }
         let layers = u64::from(Levels { map, kind: self.level_kind() }.layers() - 1);
         layers * tiles <= MOST_LAYERS && 8 * layers * texels <= MOST_BYTES

@@ -63,10 +63,10 @@
 //! Lent occluder maps have the light's centre as their projection point and two layers.
 
 mod passes;
-pub mod push;
 mod settings;
 pub mod twin;
 
+pub use passes::{Columns, Filter, Level, Pixels, Start};
 pub use settings::{Hash, Layers, Sampling, Search, Settings};
 
 use self::passes::{declare, list_bytes};

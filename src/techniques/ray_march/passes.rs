@@ -1,6 +1,5 @@
 //! The rows: layers → columns → levels; pixels → list → rays.
 
-use super::push;
 use super::settings::{Hash, Layers, Sampling, Search, Settings};
 use crate::graph::{Access, Graph, Need, Owner, Pass, Push, ResourceId, Use, Uses, Work};
 use crate::shaders::{self, Module};
@@ -8,6 +7,7 @@ use crate::stages::depth_layers::{DepthLayers, Eye};
 use crate::stages::nbuffer::{self, Levels};
 use crate::stages::visibility::{self, COLOR_FORMAT, grid};
 use crate::techniques::room::PassInputs;
+use bytemuck::{Pod, Zeroable};
 use smallvec::smallvec;
 
 /// The list of pixels: its head, and for each where it is and the heights that its rays need look at.
@@ -45,6 +45,24 @@ fn shaders_of(settings: &Settings, inputs: &PassInputs) -> Shaders {
     }
 }
 
+/// What `start.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Start {
+    /// Light space to the G-buffer's NDC, by column.
+    pub ndc_from_light: [f32; 16],
+}
+
+/// What `filter_rows.comp` and `filter_columns.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Filter {
+    /// The G-buffer's NDC to light space, by column.
+    pub light_from_ndc: [f32; 16],
+    /// Of the G-buffer.
+    pub extent: [i32; 2],
+}
+
 /// Adds the passes that turn depth layers into the visible fraction.
 pub(super) fn declare(
     graph: &mut Graph,
@@ -68,7 +86,7 @@ pub(super) fn declare(
         "ray_march.start",
         shaders::START,
         [1, 1, 1],
-        Push::new(&push::Start { ndc_from_light: inputs.ndc_from_light }),
+        Push::new(&Start { ndc_from_light: inputs.ndc_from_light }),
         smallvec![
             Use::bound(0, arguments, Access::BufferWriteCompute),
             Use::bound(1, pixels, Access::BufferWriteCompute),
@@ -106,7 +124,7 @@ pub(super) fn declare(
     listed(graph, "ray_march.trace", shaders.trace, arguments, pushed, uses, inputs.need);
 
     if settings.filter {
-        let pushed = Push::new(&push::Filter {
+        let pushed = Push::new(&Filter {
             light_from_ndc: gbuffer.light_from_ndc,
             extent: gbuffer.extent.map(|e| e as i32),
         });
@@ -143,6 +161,30 @@ fn listed(
     graph.push(Pass { name, uses, push, work, need: *need });
 }
 
+/// What `columns.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Columns {
+    /// The map's side in texels.
+    pub map: i32,
+    /// 2, or 4 where there are the nearest back and the furthest front faces too.
+    pub layers: i32,
+    /// Of what is stored as 1.
+    pub height: f32,
+}
+
+/// What `level.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Level {
+    /// The map's side in texels.
+    pub map: i32,
+    /// Of levels.
+    pub kind: i32,
+    /// The one to make.
+    pub level: i32,
+}
+
 /// Adds the rows that turn the layers into columns, and these into bounds of windows.
 fn declare_levels(
     graph: &mut Graph,
@@ -160,7 +202,7 @@ fn declare_levels(
         "ray_march.columns",
         shaders::COLUMNS,
         grid([map; 2]),
-        Push::new(&push::Columns {
+        Push::new(&Columns {
             map: map as i32,
             layers: if four { 4 } else { 2 },
             height: inputs.occluders.top() as f32,
@@ -184,7 +226,7 @@ fn declare_levels(
             "ray_march.level",
             shader,
             grid([levels.side(level); 2]),
-            Push::new(&push::Level { map: map as i32, kind, level: level as i32 }),
+            Push::new(&Level { map: map as i32, kind, level: level as i32 }),
             smallvec![Use::bound(0, windows, Access::ImageUpdate)],
             inputs.need,
         ));
@@ -192,7 +234,39 @@ fn declare_levels(
     windows
 }
 
-fn pixel_push(settings: &Settings, inputs: &PassInputs) -> push::Pixels {
+/// What `classify.comp` and `trace.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Pixels {
+    /// The G-buffer's NDC to light space, by column.
+    pub light_from_ndc: [f32; 16],
+    /// Map texels a unit of u and v, or a metre where the projection is orthographic.
+    pub texels_per_unit: [f32; 2],
+    /// Texel coordinates of u = v = 0.
+    pub first: [f32; 2],
+    /// Half the light's width and height, m.
+    pub half_light: [f32; 2],
+    /// Of the G-buffer.
+    pub extent: [i32; 2],
+    /// The depth of a pixel that shows no surface.
+    pub background: f32,
+    /// How far behind the light the projection point is, m; or the far plane's distance.
+    pub eye: f32,
+    /// The height of the near plane.
+    pub top: f32,
+    /// How far a raster moves a vertex, in texels.
+    pub snap: f32,
+    /// How far off an occluder's height may be beyond its rounding.
+    pub depth_error: f32,
+    /// The map's side in texels.
+    pub map: i32,
+    /// Rays, rows of cells and what is switched on, see `pixel.glsl`.
+    pub flags: i32,
+    /// Of the hashes.
+    pub seed: u32,
+}
+
+fn pixel_push(settings: &Settings, inputs: &PassInputs) -> Pixels {
     let PassInputs { occluders: view, gbuffer, light, .. } = inputs;
     let [half_x, half_y] = light.half_extents();
     let rays = f64::from(settings.rays);
@@ -215,7 +289,7 @@ fn pixel_push(settings: &Settings, inputs: &PassInputs) -> push::Pixels {
         } << 23
         | settings.levels.code() << 25
         | bit(inputs.light_texture.is_some(), 27);
-    push::Pixels {
+    Pixels {
         light_from_ndc: gbuffer.light_from_ndc,
         texels_per_unit: view.texels_per_uv().map(|x| x as f32),
         first: view.first().map(|x| x as f32),

@@ -80,20 +80,27 @@
 //! of the occluder map: of three texels a side from N = 1024 on, of eight from N = 2048. Other drivers have no
 //! such limit.
 
-mod passes;
+mod nodes;
 mod pixels;
-pub mod push;
+mod receiver_map;
 mod settings;
 pub mod twin;
 
-pub use passes::{BLEND_STEPS, receiver_grid};
+pub use nodes::{Blocks, Superblocks};
+pub use pixels::GatherPixels;
+pub use receiver_map::{
+    BLEND_STEPS, GatherMap, PatchCount, PatchDraw, PatchEmit, PatchScan, receiver_grid,
+};
 pub use settings::{Accumulate, Receivers, Settings, Sides, spread_of};
 
-use self::passes::declare;
+use self::nodes::{combination, declare_nodes, sides};
+use self::receiver_map::{blend_map, gather_map};
 use super::room::{Maps, PassInputs, Room, Shows, Takes};
 use crate::Error;
 use crate::graph::{Graph, ResourceId};
-use crate::stages::depth_layers::Wanted;
+use crate::stages::depth_layers::{DepthLayers, Wanted};
+use crate::stages::visibility;
+use smallvec::SmallVec;
 
 impl Room for Settings {
     fn takes(&self) -> Takes {
@@ -133,5 +140,36 @@ impl Room for Settings {
 
     fn blends_f32(&self) -> bool {
         self.accumulate == Accumulate::Blend
+    }
+}
+
+/// Adds the passes that turn depth layers into the visible fraction.
+fn declare(graph: &mut Graph, layers: &DepthLayers, settings: &Settings, inputs: &PassInputs) {
+    let (visibility, view) = (inputs.visibility, inputs.receivers);
+    // Without a back layer the front is all there is to both sides. A map of the receivers has rows for each side, which
+    // stay as they are.
+    let one = Settings { sides: Sides::One, ..*settings };
+    let at_pixels = settings.receivers == Receivers::Pixels;
+    let settings = if at_pixels && layers.back.is_none() { &one } else { settings };
+    let gather = settings.accumulate == Accumulate::Gather;
+    let nodes = declare_nodes(graph, layers, settings, inputs, gather);
+    match (settings.receivers, layers.receivers) {
+        (Receivers::Map, Some(receiver_depth)) => {
+            let maps: SmallVec<[_; 2]> = sides(settings)
+                .iter()
+                .map(|&side| {
+                    if gather {
+                        gather_map(graph, &nodes, receiver_depth, side, settings, inputs, view)
+                    } else {
+                        blend_map(graph, &nodes, receiver_depth, side, settings, inputs, view)
+                    }
+                })
+                .collect();
+            let both = [maps[0], maps[maps.len() - 1]];
+            let mean = combination(settings) == Sides::Mean;
+            let resolve = visibility::Resolve { receiver_depth, view, maps: both, mean };
+            visibility::resolve(graph, visibility, &resolve, inputs.gbuffer, inputs.need);
+        }
+        _ => pixels::gather(graph, &nodes, settings, inputs),
     }
 }

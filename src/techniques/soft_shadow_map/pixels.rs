@@ -1,15 +1,45 @@
 //! The rows of the gather at the G-buffer's pixels.
 
-use super::passes::{Nodes, scale_of, sides};
-use super::push;
+use super::nodes::{Nodes, scale_of, sides};
 use super::settings::{Settings, Sides, spread_of};
 use crate::graph::{Access, Graph, Pass, Push, Use};
 use crate::shaders;
 use crate::stages::tiles::Tiles;
 use crate::techniques::room::PassInputs;
+use bytemuck::{Pod, Zeroable};
 use smallvec::smallvec;
 
 const NAME: &str = "soft_shadow_map.gather_pixels";
+
+/// What `gather_pixels.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct GatherPixels {
+    /// Normalized device coordinates to light space.
+    pub light_from_ndc: [f32; 16],
+    /// (Δu/Lx, Δv/Ly), 1/m.
+    pub scale: [f32; 2],
+    /// Occluder texels a unit of u and v.
+    pub texels_per_uv: [f32; 2],
+    /// Texel coordinates of u = v = 0.
+    pub first: [f32; 2],
+    /// The G-buffer's width and height.
+    pub extent: [i32; 2],
+    /// The depth of a pixel that shows no surface.
+    pub background: f32,
+    /// No occluder is nearer than 1/w_max.
+    pub w_max: f32,
+    /// The series' limit.
+    pub spread: f32,
+    /// How far a raster moves a vertex, in texels.
+    pub snap: f32,
+    /// Superblocks a row.
+    pub row: i32,
+    /// Bit 0: the mask is there; bit 1: two sides; bit 2: their mean.
+    pub flags: i32,
+    /// How far off an occluder's w may be beyond its rounding, 1/m.
+    pub depth_error: f32,
+}
 
 /// Adds the rows that gather at the pixels: at all of them, or at those of tiles that may feel an occluder.
 pub(super) fn gather(graph: &mut Graph, nodes: &Nodes, settings: &Settings, inputs: &PassInputs) {
@@ -37,11 +67,11 @@ pub(super) fn gather(graph: &mut Graph, nodes: &Nodes, settings: &Settings, inpu
     }
 }
 
-fn pixel_push(nodes: &Nodes, settings: &Settings, inputs: &PassInputs) -> push::GatherPixels {
+fn pixel_push(nodes: &Nodes, settings: &Settings, inputs: &PassInputs) -> GatherPixels {
     let PassInputs { gbuffer, occluders, .. } = inputs;
     let two = i32::from(sides(settings).len() == 2);
     let mean = i32::from(settings.sides == Sides::Mean);
-    push::GatherPixels {
+    GatherPixels {
         light_from_ndc: gbuffer.light_from_ndc,
         scale: scale_of(inputs),
         texels_per_uv: occluders.texels_per_uv().map(|x| x as f32),

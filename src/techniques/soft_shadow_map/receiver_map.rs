@@ -1,156 +1,25 @@
-//! The rows of soft shadow maps.
+//! The soft shadow map: what patches hide of the light at each texel of a receiver map, gathered or blended.
 
-use super::settings::{Accumulate, Receivers, Settings, Sides, spread_of};
-use super::{pixels, push};
+use super::nodes::{Nodes, scale_of};
+use super::settings::{Accumulate, Settings, Sides, spread_of};
 use crate::graph::{
-    Access, Draw, Graph, Owner, Pass, Push, ResourceId, STORAGE_BYTES, Target, Use, Work,
+    Access, Draw, Graph, Owner, Pass, Push, ResourceId, Target, Use, Work,
 };
 use crate::shaders;
-use crate::stages::depth_layers::{DepthLayers, MapView};
-use crate::stages::visibility::{self};
+use crate::stages::depth_layers::MapView;
 use crate::techniques::room::PassInputs;
 use ash::vk;
-use smallvec::{SmallVec, smallvec};
+use bytemuck::{Pod, Zeroable};
+use smallvec::smallvec;
 
-/// Texels a side of a block and of a superblock, as in `node.glsl`.
-const BLOCK: u32 = 8;
-const SUPERBLOCK: u32 = 32;
 /// As in `gather.glsl`: each texel's back face where it lies before the receiver, else its front face.
 const BACK_OR_FRONT: i32 = 2;
+
 /// Blended contributions are multiples of 2⁻²⁴, see `patch.frag`.
 pub const BLEND_STEPS: f32 = 16_777_216.0;
-/// A superblock and its blocks, as they lie together.
-const FAMILY: u64 = 17;
+
 /// Blocks a group, as in `patch_count.comp`.
 const GROUP: u32 = 64;
-
-/// The occluder map's nodes, as resources and sizes.
-#[derive(Clone, Copy)]
-pub(super) struct Nodes {
-    pub texels: ResourceId,
-    blocks: ResourceId,
-    /// Moments of any rectangle of a block's texels.
-    pub sums: ResourceId,
-    /// Superblocks with their blocks.
-    pub families: ResourceId,
-    /// Blocks a row, a multiple of a superblock's.
-    block_row: u32,
-    pub superblock_row: u32,
-}
-
-/// Adds the passes that turn depth layers into the visible fraction.
-pub(super) fn declare(
-    graph: &mut Graph,
-    layers: &DepthLayers,
-    settings: &Settings,
-    inputs: &PassInputs,
-) {
-    let (visibility, view) = (inputs.visibility, inputs.receivers);
-    // Without a back layer the front is all there is to both sides. A map of the receivers has rows for each side, which
-    // stay as they are.
-    let one = Settings { sides: Sides::One, ..*settings };
-    let at_pixels = settings.receivers == Receivers::Pixels;
-    let settings = if at_pixels && layers.back.is_none() { &one } else { settings };
-    let gather = settings.accumulate == Accumulate::Gather;
-    let nodes = declare_nodes(graph, layers, settings, inputs, gather);
-    match (settings.receivers, layers.receivers) {
-        (Receivers::Map, Some(receiver_depth)) => {
-            let maps: SmallVec<[_; 2]> = sides(settings)
-                .iter()
-                .map(|&side| {
-                    if gather {
-                        gather_map(graph, &nodes, receiver_depth, side, settings, inputs, view)
-                    } else {
-                        blend_map(graph, &nodes, receiver_depth, side, settings, inputs, view)
-                    }
-                })
-                .collect();
-            let both = [maps[0], maps[maps.len() - 1]];
-            let mean = combination(settings) == Sides::Mean;
-            let resolve = visibility::Resolve { receiver_depth, view, maps: both, mean };
-            visibility::resolve(graph, visibility, &resolve, inputs.gbuffer, inputs.need);
-        }
-        _ => pixels::gather(graph, &nodes, settings, inputs),
-    }
-}
-
-/// The sides that are summed apart: 0 front, 1 back.
-pub(super) fn sides(settings: &Settings) -> &'static [u32] {
-    if matches!(settings.sides, Sides::Two | Sides::Mean) { &[0, 1] } else { &[0] }
-}
-
-/// How they are put together: blending cannot choose a face by receiver, as the mean does.
-fn combination(settings: &Settings) -> Sides {
-    match (settings.sides, settings.accumulate) {
-        (Sides::Mean, Accumulate::Blend | Accumulate::BlendFp16) => Sides::Two,
-        (sides, _) => sides,
-    }
-}
-
-fn declare_nodes(
-    graph: &mut Graph,
-    layers: &DepthLayers,
-    settings: &Settings,
-    inputs: &PassInputs,
-    superblocks_too: bool,
-) -> Nodes {
-    let sides = sides(settings).len() as u32;
-    let superblock_row = inputs.occluders.side.div_ceil(SUPERBLOCK);
-    let block_row = superblock_row * (SUPERBLOCK / BLOCK);
-    let count = |row: u32| u64::from(row) * u64::from(row) * u64::from(sides);
-    let node_bytes = 2 * size_of::<[f32; 4]>() as u64;
-    let texels_a_block = u64::from(BLOCK * BLOCK);
-    let nodes = Nodes {
-        texels: graph.buffer("soft_shadow_map.texels", count(block_row) * texels_a_block * 4),
-        blocks: graph.buffer("soft_shadow_map.blocks", count(block_row) * node_bytes),
-        sums: graph.buffer(
-            "soft_shadow_map.sums",
-            // Above N = 2048 they would be larger; blocks beyond do without.
-            (count(block_row) * texels_a_block * 16).min(STORAGE_BYTES),
-        ),
-        families: graph
-            .buffer("soft_shadow_map.families", count(superblock_row) * FAMILY * node_bytes),
-        block_row,
-        superblock_row,
-    };
-    graph.push(Pass::compute(
-        "soft_shadow_map.blocks",
-        shaders::BLOCKS,
-        [block_row.div_ceil(8), block_row.div_ceil(8), sides],
-        Push::new(&push::Blocks {
-            map: inputs.occluders.side as i32,
-            row: block_row as i32,
-            inv_near: (1.0 / inputs.occluders.near) as f32,
-            faces: match combination(settings) {
-                Sides::Bottom => 1,
-                Sides::Mean => 2,
-                Sides::One | Sides::Two => 0,
-            },
-        }),
-        smallvec![
-            Use::bound(0, layers.front, Access::SampledCompute),
-            Use::bound(1, layers.back.unwrap_or(layers.front), Access::SampledCompute),
-            Use::bound(2, nodes.texels, Access::BufferWriteCompute),
-            Use::bound(3, nodes.blocks, Access::BufferWriteCompute),
-            Use::bound(4, nodes.sums, Access::BufferWriteCompute),
-        ],
-        inputs.need,
-    ));
-    if superblocks_too {
-        graph.push(Pass::compute(
-            "soft_shadow_map.superblocks",
-            shaders::SUPERBLOCKS,
-            [superblock_row.div_ceil(8), superblock_row.div_ceil(8), sides],
-            Push::new(&push::Superblocks { row: superblock_row as i32 }),
-            smallvec![
-                Use::bound(0, nodes.blocks, Access::BufferReadCompute),
-                Use::bound(1, nodes.families, Access::BufferWriteCompute),
-            ],
-            inputs.need,
-        ));
-    }
-    nodes
-}
 
 /// Receiver texels in occluder texels: the step, and the centre of texel (0, 0).
 pub fn receiver_grid(view: &MapView, occluders: &MapView) -> ([f32; 2], [f32; 2]) {
@@ -161,11 +30,31 @@ pub fn receiver_grid(view: &MapView, occluders: &MapView) -> ([f32; 2], [f32; 2]
     (step.map(|s| s as f32), zero)
 }
 
-pub(super) fn scale_of(inputs: &PassInputs) -> [f32; 2] {
-    inputs.occluders.scale(inputs.light).map(|s| s as f32)
+/// What `gather_map.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct GatherMap {
+    /// (Δu/Lx, Δv/Ly), 1/m.
+    pub scale: [f32; 2],
+    /// Occluder texels a receiver texel.
+    pub t_step: [f32; 2],
+    /// The occluder-map position of the centre of receiver texel (0, 0), in texels.
+    pub t_first: [f32; 2],
+    /// No occluder is nearer than 1/w_max.
+    pub w_max: f32,
+    /// The series' limit.
+    pub spread: f32,
+    /// 1 over the receiver map's near plane, 1/m.
+    pub receiver_inv_near: f32,
+    /// The receiver map's side in texels.
+    pub receiver_map: i32,
+    /// Superblocks a row.
+    pub row: i32,
+    /// 0 front, 1 back.
+    pub side: i32,
 }
 
-fn gather_map(
+pub(super) fn gather_map(
     graph: &mut Graph,
     nodes: &Nodes,
     receiver_depth: ResourceId,
@@ -188,7 +77,7 @@ fn gather_map(
         pass_name,
         shaders::GATHER_MAP,
         [groups, groups, 1],
-        Push::new(&push::GatherMap {
+        Push::new(&GatherMap {
             scale: scale_of(inputs),
             t_step,
             t_first,
@@ -214,7 +103,55 @@ fn gather_map(
     map
 }
 
-fn blend_map(
+/// What `patch_count.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct PatchCount {
+    /// Blocks of one side.
+    pub blocks: i32,
+    /// 0 front, 1 back.
+    pub side: i32,
+}
+
+/// What `patch_scan.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct PatchScan {
+    /// Groups of 64 blocks.
+    pub groups: i32,
+}
+
+/// What `patch_emit.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct PatchEmit {
+    /// Blocks a row.
+    pub row: i32,
+    /// 0 front, 1 back.
+    pub side: i32,
+}
+
+/// What `patch.vert` and `patch.frag` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct PatchDraw {
+    /// (Δu/Lx, Δv/Ly), 1/m.
+    pub scale: [f32; 2],
+    /// Occluder texels a receiver texel.
+    pub t_step: [f32; 2],
+    /// The occluder-map position of the centre of receiver texel (0, 0), in texels.
+    pub t_first: [f32; 2],
+    /// No receiver is further than 1/w_far.
+    pub w_far: f32,
+    /// 1 over the receiver map's near plane, 1/m.
+    pub receiver_inv_near: f32,
+    /// The receiver map's side in texels.
+    pub receiver_map: i32,
+    /// Steps a unit of occlusion that contributions are rounded to; 0 rounds none.
+    pub steps: f32,
+}
+
+pub(super) fn blend_map(
     graph: &mut Graph,
     nodes: &Nodes,
     receiver_depth: ResourceId,
@@ -272,7 +209,7 @@ fn blend_map(
         count_name,
         shaders::PATCH_COUNT,
         [groups.div_ceil(64), 1, 1],
-        Push::new(&push::PatchCount { blocks: blocks as i32, side: side as i32 }),
+        Push::new(&PatchCount { blocks: blocks as i32, side: side as i32 }),
         smallvec![
             Use::bound(0, nodes.blocks, Access::BufferReadCompute),
             Use::bound(1, counts, Access::BufferWriteCompute),
@@ -283,7 +220,7 @@ fn blend_map(
         scan_name,
         shaders::PATCH_SCAN,
         [1, 1, 1],
-        Push::new(&push::PatchScan { groups: groups as i32 }),
+        Push::new(&PatchScan { groups: groups as i32 }),
         smallvec![
             Use::bound(0, counts, Access::BufferReadCompute),
             Use::bound(1, offsets, Access::BufferWriteCompute),
@@ -295,7 +232,7 @@ fn blend_map(
         emit_name,
         shaders::PATCH_EMIT,
         [blocks.div_ceil(64), 1, 1],
-        Push::new(&push::PatchEmit { row: nodes.block_row as i32, side: side as i32 }),
+        Push::new(&PatchEmit { row: nodes.block_row as i32, side: side as i32 }),
         smallvec![
             Use::bound(0, nodes.texels, Access::BufferReadCompute),
             Use::bound(1, nodes.blocks, Access::BufferReadCompute),
@@ -313,7 +250,7 @@ fn blend_map(
             Use::bound(0, patches, Access::BufferReadVertex),
             Use::bound(1, receiver_depth, Access::SampledFragment),
         ],
-        push: Push::new(&push::PatchDraw {
+        push: Push::new(&PatchDraw {
             scale: scale_of(inputs),
             t_step,
             t_first,

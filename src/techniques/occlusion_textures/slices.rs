@@ -1,21 +1,16 @@
-//! The rows: slices → mask → tables; pixels → visible fractions.
+//! Slices: where they begin and end, the faces drawn into them, and a mask of one bit a slice.
 
-use super::pixels::{Filtered, declare_pixels};
-use super::push;
-use super::settings::{Prefilter, Settings};
+use super::settings::Settings;
 use crate::graph::{
     Access, COLOR_ATTACHMENTS, Draw, Graph, Layer, Owner, Pass, Push, ResourceId, Target, Use, Work,
 };
-use crate::shaders::{self, Module};
-use crate::stages::depth_layers::{self, DepthLayers, Eye, Wanted};
-use crate::stages::nbuffer::Levels;
+use crate::shaders::{self};
+use crate::stages::depth_layers::{self, DepthLayers, Wanted};
 use crate::stages::visibility::grid;
 use crate::techniques::room::PassInputs;
 use ash::vk;
+use bytemuck::{Pod, Zeroable};
 use smallvec::{SmallVec, smallvec};
-
-/// The width of the image of filtered tiles: the largest that every device has (maxImageDimension2D).
-pub(super) const IMAGE_WIDTH: u32 = 4096;
 
 /// Bins of distances, as in `placement.glsl`.
 const BINS: u32 = 960;
@@ -29,40 +24,29 @@ const HISTOGRAM_MAP: u32 = 128;
 /// Slices that one draw counts.
 const SLICES_A_DRAW: u32 = 4 * COLOR_ATTACHMENTS as u32;
 
-/// How far behind the light the projection point is, m.
-pub(super) fn eye(inputs: &PassInputs) -> f64 {
-    match inputs.occluders.eye {
-        Eye::Behind(behind) => behind,
-        Eye::Infinity => 0.0,
-    }
-}
-
 /// The layers that the histogram is made of: few texels tell as much.
 pub(super) fn histogram_layers(settings: &Settings, map: u32) -> Wanted {
     let back = settings.is_fitted();
     Wanted { map: map.min(HISTOGRAM_MAP), back, inner: false, receiver_map: None }
 }
 
-/// Adds the passes that turn meshes into the visible fraction; `layers` where slices are fitted to them.
-pub(super) fn declare(
-    graph: &mut Graph,
-    layers: Option<&DepthLayers>,
-    settings: &Settings,
-    inputs: &PassInputs,
-) {
-    let placement = declare_placement(graph, layers, settings, inputs);
-    let mask = declare_mask(graph, placement, settings, inputs);
-    let sums = settings.prefilter == Prefilter::Sat;
-    let filtered = if sums {
-        declare_sums(graph, mask, settings, inputs)
-    } else {
-        declare_levels(graph, mask, settings, inputs)
-    };
-    let made = Filtered { placement, mask, filtered };
-    declare_pixels(graph, &made, settings, inputs);
+/// What `place.comp` and `place_fitted.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Place {
+    /// Of the occluders from the light's plane, m.
+    pub near: f32,
+    /// Of the furthest of them.
+    pub far: f32,
+    /// How far behind the light the projection point is, m.
+    pub eye: f32,
+    /// Where in a slice its texture lies: 0 above, 1 below.
+    pub plane: f32,
+    /// How many.
+    pub slices: i32,
 }
 
-fn declare_placement(
+pub(super) fn declare_placement(
     graph: &mut Graph,
     layers: Option<&DepthLayers>,
     settings: &Settings,
@@ -71,8 +55,8 @@ fn declare_placement(
     let format = vk::Format::R32G32B32A32_SFLOAT;
     let name = "occlusion_textures.placement";
     let placement = graph.image(name, format, PLACEMENT, Owner::Transient);
-    let behind = eye(inputs);
-    let pushed = Push::new(&push::Place {
+    let behind = inputs.occluders.behind();
+    let pushed = Push::new(&Place {
         near: (inputs.occluders.near - behind) as f32,
         far: (inputs.occluders.far - behind) as f32,
         eye: behind as f32,
@@ -91,6 +75,18 @@ fn declare_placement(
     };
     graph.push(Pass::compute(name, shader, [groups, 1, 1], pushed, uses, inputs.need));
     placement
+}
+
+/// What `histogram.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Histogram {
+    /// The layers' side in texels.
+    pub map: i32,
+    /// Distance of the near plane from the projection point, m.
+    pub near: f32,
+    /// Of the occluders, m.
+    pub span: f32,
 }
 
 fn declare_histogram(
@@ -113,7 +109,7 @@ fn declare_histogram(
         "occlusion_textures.histogram",
         shaders::HISTOGRAM,
         grid([map; 2]),
-        Push::new(&push::Histogram {
+        Push::new(&Histogram {
             map: map as i32,
             near: inputs.occluders.near as f32,
             span: (inputs.occluders.far - inputs.occluders.near) as f32,
@@ -222,8 +218,22 @@ fn draw(
     images
 }
 
+/// What `mask.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Mask {
+    /// The map's side in texels.
+    pub map: i32,
+    /// How many.
+    pub slices: i32,
+    /// 1: what lies between front and back faces blocks.
+    pub solid: i32,
+    /// 1: a slice blocks in the next one too.
+    pub fill: i32,
+}
+
 /// Adds the rows that make one number a texel, a bit a slice.
-fn declare_mask(
+pub(super) fn declare_mask(
     graph: &mut Graph,
     placement: ResourceId,
     settings: &Settings,
@@ -253,7 +263,7 @@ fn declare_mask(
         "occlusion_textures.mask",
         shaders::MASK,
         grid([side; 2]),
-        Push::new(&push::Mask {
+        Push::new(&Mask {
             map: side as i32,
             slices: settings.slices as i32,
             solid: i32::from(settings.is_correlated()),
@@ -263,86 +273,4 @@ fn declare_mask(
         inputs.need,
     ));
     mask
-}
-
-fn declare_sums(
-    graph: &mut Graph,
-    mask: ResourceId,
-    settings: &Settings,
-    inputs: &PassInputs,
-) -> ResourceId {
-    let side = inputs.occluders.side;
-    let tiles = settings.tiles();
-    let (values, format) = (tiles * side * side, vk::Format::R32G32B32A32_UINT);
-    let extent = [IMAGE_WIDTH.min(values), values.div_ceil(IMAGE_WIDTH)];
-    let sums = graph.image("occlusion_textures.filtered", format, extent, Owner::Transient);
-    let groups = [side.div_ceil(64), tiles, 1];
-    let mut row = |name, shader: Module, push, uses| {
-        graph.push(Pass::compute(name, shader, groups, push, uses, inputs.need));
-    };
-    row(
-        "occlusion_textures.sum_rows",
-        shaders::SUM_ROWS,
-        Push::new(&push::SumRows {
-            map: side as i32,
-            correlated: i32::from(settings.is_correlated()),
-        }),
-        smallvec![
-            Use::bound(0, mask, Access::SampledCompute),
-            Use::bound(1, sums, Access::ImageWrite)
-        ],
-    );
-    row(
-        "occlusion_textures.sum_columns",
-        shaders::SUM_COLUMNS,
-        Push::new(&push::SumColumns { map: side as i32 }),
-        smallvec![Use::bound(0, sums, Access::ImageUpdate)],
-    );
-    sums
-}
-
-fn declare_levels(
-    graph: &mut Graph,
-    mask: ResourceId,
-    settings: &Settings,
-    inputs: &PassInputs,
-) -> ResourceId {
-    let side = inputs.occluders.side;
-    let tiles = settings.tiles();
-    let levels = Levels { map: side, kind: settings.level_kind() };
-    let format = vk::Format::R16G16B16A16_SFLOAT;
-    let name = "occlusion_textures.filtered";
-    // The map itself is in the mask.
-    let image = graph.image_array(name, format, [side; 2], tiles * (levels.layers() - 1));
-    let kind = levels.kind.code();
-    let groups = |level| {
-        let [x, y, _] = grid([levels.side(level); 2]);
-        [x, y, tiles]
-    };
-    graph.push(Pass::compute(
-        "occlusion_textures.first_level",
-        shaders::MEANS_FIRST_LEVEL,
-        groups(1),
-        Push::new(&push::FirstLevel {
-            map: side as i32,
-            kind,
-            correlated: i32::from(settings.is_correlated()),
-        }),
-        smallvec![
-            Use::bound(0, mask, Access::SampledCompute),
-            Use::bound(1, image, Access::ImageWrite)
-        ],
-        inputs.need,
-    ));
-    for level in 2..=levels.top() {
-        graph.push(Pass::compute(
-            "occlusion_textures.next_level",
-            shaders::MEANS_NEXT_LEVEL,
-            groups(level),
-            Push::new(&push::NextLevel { map: side as i32, kind, level: level as i32 }),
-            smallvec![Use::bound(0, image, Access::ImageUpdate)],
-            inputs.need,
-        ));
-    }
-    image
 }

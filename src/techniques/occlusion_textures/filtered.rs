@@ -1,0 +1,134 @@
+//! Means over the slices: summed-area tables, or levels of a mip pyramid or an N-buffer.
+
+use super::settings::{IMAGE_WIDTH, Settings};
+use crate::graph::{
+    Access, Graph, Owner, Pass, Push, ResourceId, Use,
+};
+use crate::shaders::{self, Module};
+use crate::stages::nbuffer::Levels;
+use crate::stages::visibility::grid;
+use crate::techniques::room::PassInputs;
+use ash::vk;
+use bytemuck::{Pod, Zeroable};
+use smallvec::smallvec;
+
+/// What `sum_rows.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct SumRows {
+    /// The map's side in texels.
+    pub map: i32,
+    /// 1: a tile a slice; 0: a tile four slices.
+    pub correlated: i32,
+}
+
+/// What `sum_columns.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct SumColumns {
+    /// The map's side in texels.
+    pub map: i32,
+}
+
+pub(super) fn declare_sums(
+    graph: &mut Graph,
+    mask: ResourceId,
+    settings: &Settings,
+    inputs: &PassInputs,
+) -> ResourceId {
+    let side = inputs.occluders.side;
+    let tiles = settings.tiles();
+    let (values, format) = (tiles * side * side, vk::Format::R32G32B32A32_UINT);
+    let extent = [IMAGE_WIDTH.min(values), values.div_ceil(IMAGE_WIDTH)];
+    let sums = graph.image("occlusion_textures.filtered", format, extent, Owner::Transient);
+    let groups = [side.div_ceil(64), tiles, 1];
+    let mut row = |name, shader: Module, push, uses| {
+        graph.push(Pass::compute(name, shader, groups, push, uses, inputs.need));
+    };
+    row(
+        "occlusion_textures.sum_rows",
+        shaders::SUM_ROWS,
+        Push::new(&SumRows { map: side as i32, correlated: i32::from(settings.is_correlated()) }),
+        smallvec![
+            Use::bound(0, mask, Access::SampledCompute),
+            Use::bound(1, sums, Access::ImageWrite)
+        ],
+    );
+    row(
+        "occlusion_textures.sum_columns",
+        shaders::SUM_COLUMNS,
+        Push::new(&SumColumns { map: side as i32 }),
+        smallvec![Use::bound(0, sums, Access::ImageUpdate)],
+    );
+    sums
+}
+
+/// What `first_level.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct FirstLevel {
+    /// The map's side in texels.
+    pub map: i32,
+    /// Of levels.
+    pub kind: i32,
+    /// 1: a tile a slice; 0: a tile four slices.
+    pub correlated: i32,
+}
+
+/// What `next_level.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct NextLevel {
+    /// The map's side in texels.
+    pub map: i32,
+    /// Of levels.
+    pub kind: i32,
+    /// The one to make.
+    pub level: i32,
+}
+
+pub(super) fn declare_levels(
+    graph: &mut Graph,
+    mask: ResourceId,
+    settings: &Settings,
+    inputs: &PassInputs,
+) -> ResourceId {
+    let side = inputs.occluders.side;
+    let tiles = settings.tiles();
+    let levels = Levels { map: side, kind: settings.level_kind() };
+    let format = vk::Format::R16G16B16A16_SFLOAT;
+    let name = "occlusion_textures.filtered";
+    // The map itself is in the mask.
+    let image = graph.image_array(name, format, [side; 2], tiles * (levels.layers() - 1));
+    let kind = levels.kind.code();
+    let groups = |level| {
+        let [x, y, _] = grid([levels.side(level); 2]);
+        [x, y, tiles]
+    };
+    graph.push(Pass::compute(
+        "occlusion_textures.first_level",
+        shaders::MEANS_FIRST_LEVEL,
+        groups(1),
+        Push::new(&FirstLevel {
+            map: side as i32,
+            kind,
+            correlated: i32::from(settings.is_correlated()),
+        }),
+        smallvec![
+            Use::bound(0, mask, Access::SampledCompute),
+            Use::bound(1, image, Access::ImageWrite)
+        ],
+        inputs.need,
+    ));
+    for level in 2..=levels.top() {
+        graph.push(Pass::compute(
+            "occlusion_textures.next_level",
+            shaders::MEANS_NEXT_LEVEL,
+            groups(level),
+            Push::new(&NextLevel { map: side as i32, kind, level: level as i32 }),
+            smallvec![Use::bound(0, image, Access::ImageUpdate)],
+            inputs.need,
+        ));
+    }
+    image
+}

@@ -1,0 +1,138 @@
+//! The nodes of the occluder map: blocks of 8×8 texels and superblocks of 32×32, with their moments.
+
+use super::settings::{Accumulate, Settings, Sides};
+use crate::graph::{
+    Access, Graph, Pass, Push, ResourceId, STORAGE_BYTES, Use,
+};
+use crate::shaders;
+use crate::stages::depth_layers::DepthLayers;
+use crate::techniques::room::PassInputs;
+use bytemuck::{Pod, Zeroable};
+use smallvec::smallvec;
+
+/// Texels a side of a block and of a superblock, as in `node.glsl`.
+const BLOCK: u32 = 8;
+
+const SUPERBLOCK: u32 = 32;
+
+/// A superblock and its blocks, as they lie together.
+const FAMILY: u64 = 17;
+
+/// The occluder map's nodes, as resources and sizes.
+#[derive(Clone, Copy)]
+pub(super) struct Nodes {
+    pub texels: ResourceId,
+    pub blocks: ResourceId,
+    /// Moments of any rectangle of a block's texels.
+    pub sums: ResourceId,
+    /// Superblocks with their blocks.
+    pub families: ResourceId,
+    /// Blocks a row, a multiple of a superblock's.
+    pub block_row: u32,
+    pub superblock_row: u32,
+}
+
+/// The sides that are summed apart: 0 front, 1 back.
+pub(super) fn sides(settings: &Settings) -> &'static [u32] {
+    if matches!(settings.sides, Sides::Two | Sides::Mean) { &[0, 1] } else { &[0] }
+}
+
+/// How they are put together: blending cannot choose a face by receiver, as the mean does.
+pub(super) fn combination(settings: &Settings) -> Sides {
+    match (settings.sides, settings.accumulate) {
+        (Sides::Mean, Accumulate::Blend | Accumulate::BlendFp16) => Sides::Two,
+        (sides, _) => sides,
+    }
+}
+
+pub(super) fn scale_of(inputs: &PassInputs) -> [f32; 2] {
+    inputs.occluders.scale(inputs.light).map(|s| s as f32)
+}
+
+/// What `blocks.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Blocks {
+    /// The map's side in texels.
+    pub map: i32,
+    /// Blocks a row.
+    pub row: i32,
+    /// 1 over the near plane's distance, 1/m.
+    pub inv_near: f32,
+    /// 0: both layers as they are; 1: front texels take the back layer's distance where it has one; 2:
+    /// back texels behind a front that is flatter by far are left out.
+    pub faces: i32,
+}
+
+/// What `superblocks.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Superblocks {
+    /// Superblocks a row.
+    pub row: i32,
+}
+
+pub(super) fn declare_nodes(
+    graph: &mut Graph,
+    layers: &DepthLayers,
+    settings: &Settings,
+    inputs: &PassInputs,
+    superblocks_too: bool,
+) -> Nodes {
+    let sides = sides(settings).len() as u32;
+    let superblock_row = inputs.occluders.side.div_ceil(SUPERBLOCK);
+    let block_row = superblock_row * (SUPERBLOCK / BLOCK);
+    let count = |row: u32| u64::from(row) * u64::from(row) * u64::from(sides);
+    let node_bytes = 2 * size_of::<[f32; 4]>() as u64;
+    let texels_a_block = u64::from(BLOCK * BLOCK);
+    let nodes = Nodes {
+        texels: graph.buffer("soft_shadow_map.texels", count(block_row) * texels_a_block * 4),
+        blocks: graph.buffer("soft_shadow_map.blocks", count(block_row) * node_bytes),
+        sums: graph.buffer(
+            "soft_shadow_map.sums",
+            // Above N = 2048 they would be larger; blocks beyond do without.
+            (count(block_row) * texels_a_block * 16).min(STORAGE_BYTES),
+        ),
+        families: graph
+            .buffer("soft_shadow_map.families", count(superblock_row) * FAMILY * node_bytes),
+        block_row,
+        superblock_row,
+    };
+    graph.push(Pass::compute(
+        "soft_shadow_map.blocks",
+        shaders::BLOCKS,
+        [block_row.div_ceil(8), block_row.div_ceil(8), sides],
+        Push::new(&Blocks {
+            map: inputs.occluders.side as i32,
+            row: block_row as i32,
+            inv_near: (1.0 / inputs.occluders.near) as f32,
+            faces: match combination(settings) {
+                Sides::Bottom => 1,
+                Sides::Mean => 2,
+                Sides::One | Sides::Two => 0,
+            },
+        }),
+        smallvec![
+            Use::bound(0, layers.front, Access::SampledCompute),
+            Use::bound(1, layers.back.unwrap_or(layers.front), Access::SampledCompute),
+            Use::bound(2, nodes.texels, Access::BufferWriteCompute),
+            Use::bound(3, nodes.blocks, Access::BufferWriteCompute),
+            Use::bound(4, nodes.sums, Access::BufferWriteCompute),
+        ],
+        inputs.need,
+    ));
+    if superblocks_too {
+        graph.push(Pass::compute(
+            "soft_shadow_map.superblocks",
+            shaders::SUPERBLOCKS,
+            [superblock_row.div_ceil(8), superblock_row.div_ceil(8), sides],
+            Push::new(&Superblocks { row: superblock_row as i32 }),
+            smallvec![
+                Use::bound(0, nodes.blocks, Access::BufferReadCompute),
+                Use::bound(1, nodes.families, Access::BufferWriteCompute),
+            ],
+            inputs.need,
+        ));
+    }
+    nodes
+}
