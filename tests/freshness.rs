@@ -5,9 +5,8 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
-use antumbra_tests::compile::{
-    committed, compile, glsl_root, shader_names, spirv_root, to_bytes, try_compile,
-};
+use antumbra_tests::compile::{committed, glsl_root, spirv_root, to_bytes, try_compile};
+use antumbra_tests::permutations::{modules, modules_by};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -16,7 +15,9 @@ type Modules = BTreeMap<String, Vec<u8>>;
 /// One line for each module that is missing, left over or different.
 fn differences(compiled: &Modules, committed: &Modules) -> Vec<String> {
     let left_over = committed.keys().filter(|name| !compiled.contains_key(*name));
-    let left_over = left_over.map(|name| format!("spirv/{name}.spv has no glsl/{name}"));
+    let left_over = left_over.map(|name| {
+        format!("spirv/{name}.spv has no glsl/{name}, and no line in glsl/permutations.txt")
+    });
     let others = compiled.iter().filter_map(|(name, bytes)| match committed.get(name) {
         None => Some(format!("spirv/{name}.spv is missing")),
         Some(old) if old != bytes => Some(format!("spirv/{name}.spv is not what the GLSL gives")),
@@ -42,8 +43,11 @@ fn write(compiled: &Modules, committed: &Modules) {
 #[test]
 fn committed_modules_are_what_the_glsl_compiles_to() {
     assert!(glsl_root().join("common/light.glsl").exists(), "looked in {:?}", glsl_root());
-    let compiled: Modules =
-        shader_names().into_iter().map(|name| (name.clone(), to_bytes(&compile(&name)))).collect();
+    let compile = |module: antumbra_tests::permutations::Module| {
+        let bytes = to_bytes(&module.compile().words);
+        (module.name, bytes)
+    };
+    let compiled: Modules = modules().into_iter().map(compile).collect();
     if std::env::var("ANTUMBRA_WRITE_SPIRV").is_ok_and(|value| value == "1") {
         write(&compiled, &committed());
     }
@@ -67,6 +71,35 @@ fn a_stale_a_missing_and_a_left_over_module_are_each_named() {
     assert!(found[0].contains("d.comp.spv has no"));
     assert!(found[1].contains("b.comp.spv is not"));
     assert!(found[2].contains("c.comp.spv is missing"));
+}
+
+/// What the list of permutations makes of two files, one of which is not in it.
+fn listed(list: &str) -> Result<Vec<String>, Vec<String>> {
+    let shaders = ["a/one.comp".to_owned(), "a/two.frag".to_owned()];
+    let text = |_: &str| "#ifdef COLOR\nvec4(FIRST)\n".to_owned();
+    Ok(modules_by(list, &shaders, text)?.into_iter().map(|module| module.name).collect())
+}
+
+#[test]
+fn a_line_makes_a_module_and_a_file_without_one_is_one() {
+    assert_eq!(listed("").unwrap(), ["a/one.comp", "a/two.frag"]);
+    let two = "# Comment.\n\na/two.frag - FIRST=0\na/two.frag  lower_color  COLOR FIRST=16\n";
+    assert_eq!(listed(two).unwrap(), ["a/one.comp", "a/two.frag", "a/two_lower_color.frag"]);
+    // A file with lines is not compiled by itself.
+    assert_eq!(listed("a/one.comp rows\n").unwrap(), ["a/one_rows.comp", "a/two.frag"]);
+}
+
+#[test]
+fn a_line_without_a_file_or_with_an_unknown_define_is_named() {
+    let problems = |list: &str| listed(list).unwrap_err().join("\n");
+    let found = problems("\na/three.comp - COLOR\n");
+    assert_eq!(found, "glsl/permutations.txt:2: there is no shader glsl/a/three.comp");
+    let found = problems("a/one.comp - COLOUR FIRST=2\n");
+    assert!(found.contains("txt:1: COLOUR is not in glsl/a/one.comp"), "{found}");
+    assert!(!found.contains("FIRST"), "{found}");
+    let found = problems("a/one.comp any\na/one.comp any COLOR\n");
+    assert!(found.contains("txt:2: spirv/a/one_any.comp.spv is made by another"), "{found}");
+    assert!(problems("a/one.comp\n").contains("txt:1: a line is"));
 }
 
 #[test]

@@ -76,7 +76,7 @@ fn both_sides_merged() {
         (0..4).map(|i| merged_sides(x[i], x[4 + i])).collect()
     }
     // The mean; umbra by either; half way between; a sum above 1.
-    Function::new("soft_shadow_map/merge.glsl", "vec4 merged_sides(vec4 front, vec4 back)")
+    Function::new("common/merge.glsl", "vec4 merged_sides(vec4 front, vec4 back)")
         .case(((0.2, 1.0, 0.95, 1.2), (0.4, 0.5, 0.55, 1.0)))
         .random(10_000, (any.clone(), any))
         .f32(Tolerance::absolute(2e-6), twin::<f32>)

@@ -251,7 +251,7 @@ fn nodes_that_are_felt() {
 fn nodes_of_a_searched_part_of_the_map() {
     let part = (-500.0..1500.0_f32, -500.0..1500.0_f32, 0.0..400.0_f32, 0.0..400.0_f32)
         .prop_map(|(x, y, width, height)| ([x, y], [x + width, y + height]));
-    Function::new("baseline/nearest.glsl", "ivec4 nodes_around(int map, vec2 lo, vec2 hi)")
+    Function::new("common/nearest.glsl", "ivec4 nodes_around(int map, vec2 lo, vec2 hi)")
         .random(20_000, (16..4097_i32, part))
         // No case lies within the rounding of a division of the edge of a node.
         .f32(Tolerance::exact(), |x| {

@@ -14,7 +14,7 @@ layout(set = 0, binding = 4, r32f) writeonly uniform image2D visibility;
 
 #include "common/gbuffer.glsl"
 #include "common/light.glsl"
-#include "baseline/compare.glsl"
+#include "common/compare.glsl"
 #include "linear_light/channels.glsl"
 #include "linear_light/places.glsl"
 #include "linear_light/segment.glsl"

@@ -1,7 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-#include "baseline/nearest.glsl"
+#include "common/nearest.glsl"
 
 // What blocks in any texel of each square of the mask. One invocation a square.
 

@@ -5,7 +5,7 @@
 // Which tiles of pixels meet nothing, by squares of the mask, where means come from levels: from windows that are
 // larger than the kernels, and from those beside them.
 
-#include "baseline/nearest.glsl"
+#include "common/nearest.glsl"
 #include "occlusion_textures/tiles.glsl"
 
 layout(set = 0, binding = 2) uniform utexture2D squares;

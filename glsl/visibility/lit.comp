@@ -4,7 +4,12 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0, binding = 0, r32f) writeonly uniform image2D visibility;
+#ifdef COLOR
+#define FORMAT rgba32f
+#else
+#define FORMAT r32f
+#endif
+layout(set = 0, binding = 0, FORMAT) writeonly uniform image2D visibility;
 
 layout(push_constant) uniform Push {
     ivec2 extent;

@@ -16,7 +16,7 @@ layout(set = 0, binding = 4) uniform texture2D back_map;
 layout(set = 0, binding = 5, r32f) writeonly uniform image2D visibility;
 
 #include "common/gbuffer.glsl"
-#include "soft_shadow_map/merge.glsl"
+#include "common/merge.glsl"
 
 layout(push_constant) uniform Push {
     mat4 light_from_ndc;

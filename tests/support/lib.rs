@@ -12,6 +12,7 @@ pub mod example;
 pub mod function;
 pub mod layer;
 pub mod measure;
+pub mod permutations;
 pub mod random;
 pub mod reflect;
 pub mod rig;
