@@ -42,7 +42,7 @@ fn write(compiled: &Modules, committed: &Modules) {
 
 #[test]
 fn committed_modules_are_what_the_glsl_compiles_to() {
-    assert!(glsl_root().join("common/light.glsl").exists(), "looked in {:?}", glsl_root());
+    assert!(glsl_root().join("common/light_space.glsl").exists(), "looked in {:?}", glsl_root());
     let compile = |module: antumbra_tests::permutations::Module| {
         let bytes = to_bytes(&module.compile().words);
         (module.name, bytes)
@@ -105,7 +105,7 @@ fn a_line_without_a_file_or_with_an_unknown_define_is_named() {
 #[test]
 fn the_same_text_gives_the_same_words_without_paths() {
     let source = "#version 450\n#extension GL_GOOGLE_include_directive : require\n\
-                  #include \"common/light.glsl\"\n\
+                  #include \"common/light_space.glsl\"\n\
                   layout(local_size_x = 1) in;\n\
                   layout(set = 0, binding = 0) buffer B { float x; };\n\
                   void main() { x = overlap(x, 1.0); }\n";
@@ -114,7 +114,7 @@ fn the_same_text_gives_the_same_words_without_paths() {
     assert_eq!(words, compile());
     assert_eq!(words[1], 0x0001_0000, "SPIR-V 1.0");
     let text = String::from_utf8_lossy(&to_bytes(&words)).into_owned();
-    assert!(!text.contains("light.glsl") && !text.contains(".comp"), "a path in the module");
+    assert!(!text.contains("light_space.glsl") && !text.contains(".comp"), "a path in the module");
 }
 
 #[test]

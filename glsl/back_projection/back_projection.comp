@@ -1,7 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-#include "common/pixels.glsl"
+#include "common/one_map.glsl"
 #include "back_projection/filled.glsl"
 #include "back_projection/levels.glsl"
 

@@ -3,7 +3,7 @@
 #ifndef BACK_PROJECTION_FILLED_GLSL
 #define BACK_PROJECTION_FILLED_GLSL
 
-#include "common/light.glsl"
+#include "common/light_space.glsl"
 
 // What a texel with magnification k hides of the light, reaching to the edges of the texels before it
 // along x and y, which its own edges may lie beyond: surfaces have no gaps.

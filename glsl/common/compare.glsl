@@ -3,12 +3,12 @@
 #ifndef COMMON_COMPARE_GLSL
 #define COMMON_COMPARE_GLSL
 
-#include "common/plane.glsl"
+#include "common/light_space.glsl"
 
 struct MapPlane {
     vec2 t;        // the receiver, in texels
     float w;
-    vec2 n;        // see plane.glsl
+    vec2 n;        // see light_space.glsl
     float n_0;
     float c;       // above 0 where the map's eye is below the plane
     float rounding;

@@ -1,7 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-#include "common/pixels.glsl"
+#include "common/one_map.glsl"
 
 // A hard shadow map, 3x3 percentage-closer filtered (Reeves 1987): the mean of nine comparisons that are
 // each bilinear. Together they weigh 4x4 texels by (1 - f, 1, 1, f)/3 along each axis.

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "linear_light/skin.glsl"
-#include "linear_light/segment.glsl"
+#include "linear_light/line.glsl"
 
 // Where occluders end in a sample's map, on the side of its neighbour, to skins. Their order differs from frame to
 // frame; what is drawn of them does not.

@@ -1,8 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-#include "linear_light/segment.glsl"
-#include "linear_light/channels.glsl"
+#include "linear_light/line.glsl"
 
 // A sample's map as pixels ask for it: w of the nearest occluder, and how much of its two segments is seen by what the
 // sample sees past it; of a texel and of the next one in its row.

@@ -1,7 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "linear_light/mask.glsl"
-#include "linear_light/samples.glsl"
+#include "linear_light/line.glsl"
 
 // Where a line's samples are (the paper's open problem, section 5): at its ends, and then where the most light is lost,
 // until what is lost is no more than the error asked for, or there are as many samples as may be.

@@ -1,7 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "linear_light/skin.glsl"
-#include "linear_light/segment.glsl"
+#include "linear_light/line.glsl"
 
 // A skin as the sample's neighbour sees it: a row of texels from the occluder to the receiver, by pulling it from a
 // buffer: six vertices a skin, no instancing.

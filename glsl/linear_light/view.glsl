@@ -3,7 +3,7 @@
 #ifndef LINEAR_LIGHT_VIEW_GLSL
 #define LINEAR_LIGHT_VIEW_GLSL
 
-#include "linear_light/segment.glsl"
+#include "linear_light/line.glsl"
 
 layout(location = 0) in vec3 position;
 

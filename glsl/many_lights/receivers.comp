@@ -6,13 +6,12 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0, binding = 0) uniform texture2D gbuffer_depth;
-layout(set = 0, binding = 1) uniform texture2D gbuffer_mask;
 layout(set = 0, binding = 2, rgba32f) writeonly uniform image2D positions;
 layout(set = 0, binding = 3, rgba32f) writeonly uniform image2D normals;
 layout(set = 0, binding = 4, r32f) writeonly uniform image2D hidden_points;
 
-#include "common/gbuffer.glsl"
+#define GBUFFER
+#include "common/light_space.glsl"
 
 layout(push_constant) uniform Push {
     mat4 light_from_ndc;

@@ -1,6 +1,6 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "occlusion_textures/placement.glsl"
+#include "occlusion_textures/slices.glsl"
 
 // An empty histogram.
 

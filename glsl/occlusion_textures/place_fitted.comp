@@ -1,6 +1,6 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "occlusion_textures/placement.glsl"
+#include "occlusion_textures/slices.glsl"
 
 // Slices that are thin where there is much in them, and a texture where most of a slice is: placement by
 // the scene's depth histogram, which the authors leave to be done (Eisemann and Decoret 2008, section 5).

@@ -5,7 +5,7 @@
 // Counts faces in the channel of their slice, up to 255; blending adds. No order of the faces and no
 // optional feature is needed: every device blends into four images of four times eight bits at once.
 
-#include "occlusion_textures/placement.glsl"
+#include "occlusion_textures/slices.glsl"
 
 layout(set = 0, binding = 0) uniform texture2D placement;
 

@@ -5,12 +5,35 @@
 // The visible fraction: kernels of slices from summed-area tables, combined (Eisemann and Decoret 2008,
 // sections 3.3 and 3.5).
 
-#include "occlusion_textures/pixels.glsl"
+#include "occlusion_textures/tile.glsl"
+
+#ifdef CORRELATED
+const bool IS_CORRELATED = true;
+#else
+const bool IS_CORRELATED = false;
+#endif
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, binding = 2) uniform texture2D placement;
+layout(set = 0, binding = 4, r32f) writeonly uniform image2D visibility;
+
+#define GBUFFER
+#include "common/light_space.glsl"
+#define PIXELS
+#define TILES_A_GROUP 1u
+#include "occlusion_textures/slices.glsl"
+
+#ifdef LISTED
+layout(set = 0, binding = 6, std430) readonly buffer Tiles { uint count; uint tiles[]; };
+layout(set = 0, binding = 7, std430) readonly buffer Met { uint met[]; }; // slices, a bit each, tile by tile
+#endif
 
 #ifdef LEVELS
 layout(set = 0, binding = 3) uniform texture2DArray filtered;
 layout(set = 0, binding = 5) uniform utexture2D mask;
 
+#define RECTANGLES
 #include "occlusion_textures/levels.glsl"
 #else
 layout(set = 0, binding = 3) uniform utexture2D filtered;

@@ -5,13 +5,12 @@
 // Percentage-closer soft shadows (Fernando 2005): the blockers around a pixel's place in the map say how
 // far away they are, and with that how wide the penumbra is that the comparisons are averaged over.
 
-#include "common/pixels.glsl"
+#include "common/one_map.glsl"
 #include "pcss/disc.glsl"
-#include "common/light.glsl"
 
 #ifdef LISTED
 #define TILES_A_GROUP 1u
-#include "visibility/tile_list.glsl"
+#include "common/lists.glsl"
 layout(set = 0, binding = 4, std430) readonly buffer Tiles { uint count; uint tiles[]; };
 #endif
 

@@ -4,22 +4,20 @@
 #include "common/nearest.glsl"
 
 #define TILES_A_GROUP 1u
-#include "visibility/tile.glsl"
+#include "common/lists.glsl"
 
 // Which tiles of pixels find no blocker: nothing in the part of the map that they search, which is the light
 // seen through the near plane, lies before any of their receivers. One invocation a tile.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0, binding = 0) uniform texture2D gbuffer_depth;
-layout(set = 0, binding = 1) uniform texture2D gbuffer_mask;
 layout(set = 0, binding = 2, std430) readonly buffer Nearest { float nearest[]; };
 layout(set = 0, binding = 3, std430) buffer Arguments { uint groups[4]; };
 layout(set = 0, binding = 4, std430) buffer Tiles { uint count; uint tiles[]; };
 layout(set = 0, binding = 5, r32f) writeonly uniform image2D visibility;
 
-#include "common/gbuffer.glsl"
-#include "common/push.glsl"
+#define NO_MAP
+#include "common/one_map.glsl"
 
 vec2 place_of(vec3 position, float w)
 {

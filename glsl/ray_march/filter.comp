@@ -6,7 +6,8 @@
 
 layout(local_size_x = 64) in;
 
-#include "ray_march/fraction.glsl"
+#include "ray_march/noise.glsl"
+#include "common/lists.glsl"
 
 layout(set = 0, binding = 0) uniform texture2D gbuffer_depth;
 layout(set = 0, binding = 1, std430) readonly buffer Pixels {
@@ -25,11 +26,6 @@ layout(set = 0, binding = 3, FRACTION_FORMAT) writeonly uniform image2D halfway;
 #ifdef COLOR
 layout(set = 0, binding = 5) uniform texture2D surfaces;
 #endif
-
-#include "common/receiver.glsl"
-#include "ray_march/filter.glsl"
-#include "ray_march/normal.glsl"
-#include "ray_march/list.glsl"
 
 layout(push_constant) uniform Push {
     mat4 light_from_ndc;

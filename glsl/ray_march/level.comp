@@ -16,6 +16,7 @@ layout(push_constant) uniform Push {
     int level; // the one to make
 } push;
 
+#define VALUE vec4
 #include "nbuffer/levels.glsl"
 
 // Lanes of a processor that stands in for a GPU run through the branches of every kind that there could be:
@@ -29,8 +30,6 @@ int level_kind()
 #endif
 }
 
-#define VALUE vec4
-
 vec4 combine(vec4 a, vec4 b)
 {
     return max(a, b);
@@ -41,8 +40,6 @@ vec4 value_at(Levels l, int level, ivec2 node)
     vec4 v = imageLoad(windows, place_of(l, level, node));
     return level == 0 ? bounds_of(v) : v;
 }
-
-#include "nbuffer/values.glsl"
 
 void main()
 {

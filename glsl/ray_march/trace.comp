@@ -14,16 +14,10 @@ layout(set = 0, binding = 4, std430) readonly buffer Pixels {
 };
 
 #define SEEN
-bool seen(vec2 t, float w);
-
-#include "ray_march/pixel.glsl"
-#include "ray_march/rays.glsl"
-#include "ray_march/filter.glsl"
-#include "ray_march/list.glsl"
-
 #define NOISY_BINDING 5
 #define SURFACE_BINDING 6
-#include "ray_march/noisy.glsl"
+#include "ray_march/pixel.glsl"
+#include "common/lists.glsl"
 
 // The eye layer (Curtis 2009 section 3.4): what the eye sees through is empty.
 bool seen(vec2 t, float w)

@@ -9,14 +9,8 @@
 #ifndef SOFT_SHADOW_MAP_GATHER_GLSL
 #define SOFT_SHADOW_MAP_GATHER_GLSL
 
+#include "common/lists.glsl"
 #include "soft_shadow_map/node.glsl"
-
-// Where four receivers lie: least and largest t and w.
-struct Tile {
-    vec2 t_min;
-    vec2 t_max;
-    vec2 w;
-};
 
 // The map's nodes as they are gathered from.
 struct Map {
@@ -36,6 +30,7 @@ float most(vec4 a)
     return max(max(a.x, a.y), max(a.z, a.w));
 }
 
+// Where four receivers lie.
 Tile tile_of(Receivers r)
 {
     bvec4 nothing = equal(r.w, vec4(NOTHING));

@@ -8,12 +8,10 @@
 
 layout(local_size_x = 64) in;
 
-#include "common/light.glsl"
-#include "common/plane.glsl"
+#define GBUFFER
+#include "common/light_space.glsl"
 #include "soft_shadow_map/node.glsl"
 
-layout(set = 0, binding = 0) uniform texture2D gbuffer_depth;
-layout(set = 0, binding = 1) uniform texture2D gbuffer_mask;
 layout(set = 0, binding = 2, std430) readonly buffer Texels { float texels[]; };
 layout(set = 0, binding = 3, std430) readonly buffer Sums { vec4 sums[]; };
 layout(set = 0, binding = 4, std430) readonly buffer Nodes { uvec4 nodes[]; };
@@ -21,10 +19,9 @@ layout(set = 0, binding = 5, r32f) writeonly uniform image2D visibility;
 
 #ifdef LISTED
 layout(set = 0, binding = 6, std430) readonly buffer Tiles { uint count; uint tiles[]; };
-#include "visibility/tile_list.glsl"
+#include "common/lists.glsl"
 #endif
 
-#include "common/gbuffer.glsl"
 #include "soft_shadow_map/pixels.glsl"
 
 struct Receivers {
@@ -64,7 +61,6 @@ int plane_side(Node node, vec2 lo, float side, Receivers r)
 }
 
 #include "soft_shadow_map/gather.glsl"
-#include "common/merge.glsl"
 
 void main()
 {

@@ -1,7 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-#include "common/light.glsl"
+#include "common/light_space.glsl"
 
 // The fraction of the light that a micro-patch hides from one receiver texel (Atty 2006, section 3.4);
 // blending adds the patches up.

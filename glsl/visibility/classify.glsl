@@ -9,7 +9,7 @@
 #ifndef VISIBILITY_CLASSIFY_GLSL
 #define VISIBILITY_CLASSIFY_GLSL
 
-#include "visibility/tile.glsl"
+#include "common/lists.glsl"
 
 void classify_tile(ivec2 tile)
 {

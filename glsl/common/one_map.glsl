@@ -1,19 +1,39 @@
-// What the techniques with one occluder map have in common: their inputs, and comparisons with the map.
+// What the techniques with one occluder map share: their numbers and, without `#define NO_MAP`, their inputs and
+// comparisons with the map.
 
-#ifndef COMMON_PIXELS_GLSL
-#define COMMON_PIXELS_GLSL
+#ifndef COMMON_ONE_MAP_GLSL
+#define COMMON_ONE_MAP_GLSL
 
+#define GBUFFER
+#include "common/light_space.glsl"
+
+layout(push_constant) uniform Push {
+    mat4 light_from_ndc;
+    vec2 texels_per_uv; // map texels a unit of u and v
+    vec2 first;         // texel coordinates of u = v = 0
+    vec2 half_light;    // half the light's width and height, m
+    ivec2 extent;       // of the G-buffer
+    float background;
+    float inv_near;     // 1 over the map's near plane, 1/m; no occluder is nearer
+    float snap;         // how far a raster moves a vertex, in texels
+    float depth_error;  // how far off an occluder's w may be beyond its rounding, 1/m
+    int map;            // the map's side in texels
+    int masked;
+    int count;          // of taps or levels
+} push;
+
+GBuffer gbuffer()
+{
+    return GBuffer(push.light_from_ndc, push.extent, push.background, push.masked != 0);
+}
+
+#ifndef NO_MAP
 #include "common/compare.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0, binding = 0) uniform texture2D gbuffer_depth;
-layout(set = 0, binding = 1) uniform texture2D gbuffer_mask;
 layout(set = 0, binding = 2) uniform texture2D front_depth;
 layout(set = 0, binding = 3, r32f) writeonly uniform image2D visibility;
-
-#include "common/gbuffer.glsl"
-#include "common/push.glsl"
 
 Receiver pixel_receiver(ivec2 p)
 {
@@ -52,5 +72,6 @@ float hidden_at(MapPlane m, vec2 t)
     float bottom = mix(hides(m, texel + ivec2(0, 1)), hides(m, texel + ivec2(1, 1)), f.x);
     return mix(top, bottom, f.y);
 }
+#endif
 
 #endif
