@@ -1,11 +1,15 @@
-//! The committed SPIR-V is what the GLSL compiles to.
+//! The committed SPIR-V is what the GLSL compiles to, and a reader finds the way through the GLSL: each file says where
+//! it is entered, and no module is made of more than a few files.
 //!
 //! `ANTUMBRA_WRITE_SPIRV=1 cargo test --test freshness` writes it anew.
 
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
-use antumbra_tests::compile::{committed, glsl_root, spirv_root, to_bytes, try_compile};
+use antumbra_tests::compile::{
+    committed, glsl_names, glsl_root, spirv_root, to_bytes, try_compile,
+};
+use antumbra_tests::headers;
 use antumbra_tests::permutations::{modules, modules_by};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -115,6 +119,54 @@ fn the_same_text_gives_the_same_words_without_paths() {
     assert_eq!(words[1], 0x0001_0000, "SPIR-V 1.0");
     let text = String::from_utf8_lossy(&to_bytes(&words)).into_owned();
     assert!(!text.contains("light_space.glsl") && !text.contains(".comp"), "a path in the module");
+}
+
+/// GLSL files that a module is made of, at most: with two Rust files, of its room, a pass is nine.
+const MOST_FILES: usize = 7;
+
+#[test]
+fn no_module_is_made_of_many_files() {
+    let mut table: Vec<(usize, String, Vec<String>)> = Vec::new();
+    for module in modules() {
+        let included = module.compile().included;
+        table.push((1 + included.len(), module.name, included));
+    }
+    table.sort_by(|a, b| b.0.cmp(&a.0).then_with(|| a.1.cmp(&b.1)));
+    for (count, name, included) in &table {
+        println!("{count}  {name:<60}{}", included.join(" "));
+    }
+    let many: Vec<_> = table.iter().filter(|(count, ..)| *count > MOST_FILES).collect();
+    assert!(many.is_empty(), "more than {MOST_FILES} files: {many:?}");
+}
+
+/// The harness's shaders are entered from no pass of the node.
+fn is_the_nodes(name: &str) -> bool {
+    !name.starts_with("headless/")
+}
+
+#[test]
+fn every_file_says_where_it_is_entered() {
+    let names = glsl_names().into_iter().filter(|name| is_the_nodes(name));
+    let problems: Vec<String> = names.flat_map(|name| headers::problems(&name)).collect();
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+}
+
+#[test]
+fn a_header_that_is_wrong_is_named() {
+    let includes = |from: &str, to: &str| from == "a/one.comp" && to == "a/two.glsl";
+    let problems = |file, header| headers::problems_of(file, header, includes).join("\n");
+    let entry = "// Entry of the passes a.one, a.two and a.three (src/a.rs); skip two.glsl.";
+    assert_eq!(problems("a/one.comp", entry), "");
+    assert_eq!(problems("a/two.glsl", "// Entered from one.comp; skip what is below."), "");
+    assert_eq!(problems("b/one.comp", "// Entry of the pass b.one (src/b.rs)."), "");
+    assert!(problems("a/one.comp", "#version 450").contains("does not begin with `// Entry of"));
+    assert!(problems("a/one.comp", "// Entry of the pass a.one.").contains("does not begin"));
+    assert!(problems("a/two.glsl", "// Two.").contains("does not begin with `// Entered from`"));
+    assert!(problems("a/two.glsl", "// Entered from everywhere.").contains("does not say which"));
+    let other = problems("a/two.glsl", "// Entered from one.comp and b/three.comp.");
+    assert_eq!(other, "glsl/a/two.glsl says that it is entered from glsl/b/three.comp; it is not");
+    let skips = "// Entry of the pass a.one (src/a.rs); skip b/four.glsl.";
+    assert!(problems("a/one.comp", skips).contains("skip glsl/b/four.glsl, which it does not"));
 }
 
 #[test]

@@ -1,3 +1,4 @@
+// Entry of the pass baseline.back_projection (src/techniques/back_projection/mod.rs); at first skip filled.glsl and levels.glsl.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -60,7 +61,7 @@ float hidden_of(MapPlane m)
 {
     vec2 texels = push.half_light * push.texels_per_uv;
     vec2 scale = 0.5 / texels;
-    // The window that the nearest occluder could be felt from, and again for the nearest within it.
+    // The window within which the nearest occluder could hide light, and again for the nearest within it.
     float w_max = push.inv_near;
     vec2 range = vec2(0.0);
     ivec2 lo = ivec2(0);

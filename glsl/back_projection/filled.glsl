@@ -1,3 +1,5 @@
+// Entered from back_projection.comp.
+//
 // Back-projection without gaps.
 
 #ifndef BACK_PROJECTION_FILLED_GLSL

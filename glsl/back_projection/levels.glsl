@@ -1,3 +1,5 @@
+// Entered from back_projection.comp, finest_level.comp and next_level.comp.
+//
 // The levels of a map: level k holds a pair for each 2^k x 2^k texels, from k = 1 on, one behind the other.
 
 #ifndef BACK_PROJECTION_LEVELS_GLSL

@@ -1,3 +1,5 @@
+// Entered from one_map.glsl, many_lights/add_point.comp and linear_light/visibility.comp.
+//
 // A receiver's plane over an occluder map, and which of the map's texels lie in front of it.
 
 #ifndef COMMON_COMPARE_GLSL
@@ -44,7 +46,7 @@ bool in_front(MapPlane m, vec2 at, float w_o)
     return w_o > m.w && clearance(m, at, w_o, 0.0) > m.rounding;
 }
 
-// The same where the texel is one of a filter around the receiver and stands for all of it: the receiver's
+// As `in_front`, where the texel is one of a filter around the receiver and stands for all of it: the receiver's
 // own surface must not, however far away it is within the filter.
 bool in_front_of_filter(MapPlane m, vec2 at, float w_o)
 {

@@ -1,3 +1,5 @@
+// Entered from one_map.glsl, soft_shadow_map/gather_pixels.comp, ray_march/pixel.glsl and others; at first skip what is behind GBUFFER.
+//
 // Light space: the light's own coordinates, receivers there, their planes, and what hides how much of the light.
 //
 // A point of light space at distance d is kept as (u, v, w) = (x/d, y/d, 1/d). A texel of a light-space
@@ -9,6 +11,7 @@
 #ifndef COMMON_LIGHT_SPACE_GLSL
 #define COMMON_LIGHT_SPACE_GLSL
 
+// ---------------------------------------------------------------------------------------------
 // Receivers from the host's G-buffer: depth alone gives the position and the geometric plane.
 
 struct Receiver {
@@ -198,6 +201,7 @@ float fraction_above(vec2 slope, float c)
     return c > 0.0 ? corner : 1.0 - corner;
 }
 
+// ---------------------------------------------------------------------------------------------
 // Above or below a receiver's own plane, and what that may be off by.
 //
 // The plane {p : dot(n, p) = c} of light space is linear in (u, v, w): a point of a light-space map with
@@ -227,6 +231,7 @@ float plane_rounding(vec2 n, float n_0, float c, vec2 t, float w, float snap, fl
            ROUNDING * (dot(abs(n), abs(t)) + abs(n_0) + abs(c) * w);
 }
 
+// ---------------------------------------------------------------------------------------------
 // The occlusion by both sides of an occluder, from that by either.
 
 // Where either side hides all of the light it is umbra: a depth step inside a silhouette leaves a gap in

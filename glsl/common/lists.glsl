@@ -1,8 +1,11 @@
+// Entered from visibility/classify.glsl, pcss/pcss.comp, ray_march/trace.comp and others.
+//
 // Lists of tiles of pixels and of pixels, and the workgroups of the passes over them.
 
 #ifndef COMMON_LISTS_GLSL
 #define COMMON_LISTS_GLSL
 
+// ---------------------------------------------------------------------------------------------
 // Workgroups of an indirect dispatch whose number a shader counts. They stand in rows, because not every device
 // takes more than 65,535 in x.
 
@@ -20,6 +23,7 @@ uvec2 groups_as_far_as(uint nth)
     return uvec2(min(nth + 1u, GROUPS_A_ROW), nth / GROUPS_A_ROW + 1u);
 }
 
+// ---------------------------------------------------------------------------------------------
 // Pixels a side.
 const int TILE = 8;
 // Listed tiles a workgroup of 64 invocations: of four pixels each, unless the including shader says one.
@@ -27,7 +31,7 @@ const int TILE = 8;
 #define TILES_A_GROUP uint(256 / (TILE * TILE))
 #endif
 
-// A listed tile is one word: x, y, and whether any occluder may be felt there. Where none is, what its pixels'
+// A listed tile is one word: x, y, and whether any occluder may hide light there. Where none is, what its pixels'
 // own surfaces hide is all there is to tell.
 uint tile_word(ivec2 tile, bool felt)
 {
@@ -69,6 +73,7 @@ uvec2 groups_with(uint at)
     return groups_as_far_as(at / TILES_A_GROUP);
 }
 
+// ---------------------------------------------------------------------------------------------
 // Where the receivers of a tile lie in light space: least and largest t and w.
 struct Tile {
     vec2 t_min;
@@ -76,7 +81,7 @@ struct Tile {
     vec2 w;
 };
 
-// Of no receiver.
+// The bounds of no receiver.
 Tile empty_tile()
 {
     return Tile(vec2(3.0e38), vec2(-3.0e38), vec2(3.0e38, -3.0e38));
@@ -104,6 +109,7 @@ Tile rounded_tile(Tile tile)
                 vec2(tile.w.x * (1.0 - TILE_ROUNDING), tile.w.y * (1.0 + TILE_ROUNDING)));
 }
 
+// ---------------------------------------------------------------------------------------------
 // Pixels a workgroup of the passes over the list, one an invocation.
 const uint PIXELS_A_GROUP = 64u;
 

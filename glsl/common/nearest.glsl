@@ -1,3 +1,5 @@
+// Entered from nearest.comp, pcss/tiles.comp, occlusion_textures/squares.comp and occlusion_textures/tiles.comp.
+//
 // The nearest occluder of each node of the map: a square of its texels.
 
 #ifndef COMMON_NEAREST_GLSL

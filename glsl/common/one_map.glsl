@@ -1,3 +1,5 @@
+// Entered from hard/hard.comp, pcss/pcss.comp, pcss/tiles.comp and back_projection/back_projection.comp.
+//
 // What the techniques with one occluder map share: their numbers and, without `#define NO_MAP`, their inputs and
 // comparisons with the map.
 

@@ -1,8 +1,11 @@
+// Entered from start.comp, keep.comp, visibility.comp, view.glsl and others.
+//
 // A line of the light: its samples, its segments, and how images and buffers hold them.
 
 #ifndef LINEAR_LIGHT_LINE_GLSL
 #define LINEAR_LIGHT_LINE_GLSL
 
+// ---------------------------------------------------------------------------------------------
 // The image of a light's lines and their samples, a row a line, as pixels ask for them:
 //   0     the line's x along the light's x and y; its middle, m
 //   1     least and largest u at its first end, at its last
@@ -12,6 +15,7 @@
 
 const int SAMPLES_AT = 4;
 
+// ---------------------------------------------------------------------------------------------
 // Where the samples of a line are, in their order, 0 at its first end and 1 at its last.
 
 const int MOST_SAMPLES = 16;
@@ -21,6 +25,7 @@ struct Samples {
     float at[MOST_SAMPLES];
 };
 
+// ---------------------------------------------------------------------------------------------
 // Two neighbouring samples of a line, the segment between them, and the maps' windows.
 
 struct Segment {
@@ -36,9 +41,10 @@ vec2 window_at(vec4 u_window, float along)
     return mix(u_window.xy, u_window.zw, along);
 }
 
+// ---------------------------------------------------------------------------------------------
 // The channels of a sample's two segments in one float.
 
-// Of what is seen of a segment. Two channels are a whole number below 2^24, which a float holds.
+// Steps of the part of a segment that is seen. Two channels are a whole number below 2^24, which a float holds.
 const float STEPS = 2047.0;
 
 // Where no skin was drawn.

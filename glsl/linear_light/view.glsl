@@ -1,3 +1,5 @@
+// Entered from middle.vert and sample.vert.
+//
 // A mesh's vertices to the clip space of a map on a line, whose eye moves along x alone.
 
 #ifndef LINEAR_LIGHT_VIEW_GLSL

@@ -1,3 +1,5 @@
+// Entered from ray_march/level.comp, ray_march/column.glsl and occlusion_textures/levels.glsl; at first skip what is behind VALUE.
+//
 // The levels of a map: what windows of its texels hold, for a window at every texel or at few.
 //
 //     kind      a window of level k    one begins at every

@@ -1,3 +1,5 @@
+// Entered from first_level.comp, next_level.comp and visibility.comp.
+//
 // Where the levels of a tile are kept: from the first one on, as those of any map, in the layers of an image
 // array, tile behind tile. The map itself is in the mask.
 
@@ -47,7 +49,7 @@ bool is_empty(vec2 lo, vec2 hi)
     return false;
 }
 
-// What of a part of the map, `lo` to `hi` in texels, a slice blocks, those above it, and both: windows as wide
+// The share of a part of the map, `lo` to `hi` in texels, that a slice blocks, those above it, and both: windows as wide
 // as its shorter side, side by side along the longer one.
 vec3 mean_of(int slice, vec2 lo, vec2 hi)
 {

@@ -1,9 +1,11 @@
+// Entry of the passes occlusion_textures.slices, occlusion_textures.front_slices and others (src/techniques/occlusion_textures/passes.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
 // Counts faces in the channel of their slice, up to 255; blending adds. No order of the faces and no
-// optional feature is needed: every device blends into four images of four times eight bits at once.
+// optional feature is needed: every device blends into four images of four times eight bits at once. `FIRST` is the
+// slice of the first channel.
 
 #include "occlusion_textures/slices.glsl"
 

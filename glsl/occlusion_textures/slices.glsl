@@ -1,3 +1,5 @@
+// Entered from visibility.comp, tiles.comp, place.comp, histogram.comp, slice.frag and others.
+//
 // Slices: where they lie, the part of one that the light's rays come through, and what they hide together.
 //
 // With `#define PIXELS` also the numbers of the passes over the pixels.
@@ -7,6 +9,7 @@
 
 #include "common/lists.glsl"
 
+// ---------------------------------------------------------------------------------------------
 // Where slices begin and end, and which of them a distance lies in.
 //
 // The distances that the occluders reach are cut into BINS equal parts; a slice is a run of these. The
@@ -31,6 +34,7 @@ int equal_bin(int slice, int slices)
     return (slice * BINS + slices / 2) / slices;
 }
 
+// ---------------------------------------------------------------------------------------------
 // The part of a slice that the light's rays to a point come through (Eisemann and Decoret 2008, eq. 4).
 
 // Texels of a map seen from `eye` metres behind the light.
@@ -64,6 +68,7 @@ float slice_weight(float z, float upper, float lower, bool blocks)
     return clamp(into / thickness, 0.0, 1.0);
 }
 
+// ---------------------------------------------------------------------------------------------
 // The parts of slices that the light's rays to a tile's points come through.
 
 // t of a point, at w: its place in the map if the eye were at the light's centre, from that of u = v = 0.
@@ -91,12 +96,13 @@ vec4 tile_kernel(MapWindow m, Tile tile, float plane, vec2 half_light)
 
 // How far from a kernel its means from levels reach, at most, by its shorter side in texels: windows are less than
 // twice as wide as that, or two texels; four side by side are interpolated between, of which those that are not at
-// every texel begin up to a window and a half before what is asked for.
+// every texel begin up to a window and a half before the kernel.
 float level_reach(float shorter)
 {
     return 3.0 * max(shorter, 1.0) + 1.0;
 }
 
+// ---------------------------------------------------------------------------------------------
 // From what slices hide each to what they hide together.
 
 const int PRODUCT = 0;
@@ -115,7 +121,7 @@ float hidden_with(int combine, float hidden, float more)
 
 const float FEW = 1.0e-3;
 
-// The same where the slice's window says what its blocking texels (x) have in common with those of all
+// As `hidden_with`, where the slice's window says what its blocking texels (x) have in common with those of all
 // slices above it (y): z are both. `before` is what the slice right above hides of its own window.
 float hidden_with_correlated(float hidden, float before, vec3 window)
 {
@@ -138,6 +144,7 @@ float hidden_with_correlated(float hidden, float before, vec3 window)
     return clamp(hidden + own - both, 0.0, 1.0);
 }
 
+// ---------------------------------------------------------------------------------------------
 #ifdef PIXELS
 // The numbers of the passes over the pixels.
 

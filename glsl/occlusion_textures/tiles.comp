@@ -1,3 +1,4 @@
+// Entry of the pass visibility.tiles (src/techniques/occlusion_textures/pixels.rs); at first skip tile.glsl.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -20,7 +21,7 @@ layout(set = 0, binding = 7, std430) buffer Met { uint met[]; }; // slices, a bi
 #define PIXELS
 #include "occlusion_textures/slices.glsl"
 
-// No limit: which slices a point is behind is asked slice by slice.
+// No limit: which slices a point is behind is tested slice by slice.
 float nearest_w()
 {
     return 3.0e38;
@@ -44,7 +45,7 @@ bool is_below(vec4 planes, Tile tile)
 
 // Slices that something in a tile may meet, with a bit each.
 #ifdef LEVELS
-// By squares of the mask, where means come from levels: from windows that are larger than the kernels, and from those
+// The squares of the mask say so, where means come from levels: windows that are larger than the kernels, and those
 // beside them.
 #include "common/nearest.glsl"
 
@@ -76,12 +77,11 @@ uint met_by(Tile tile)
     return found & counts;
 }
 #else
-// By summed-area tables, slice by slice.
-#include "occlusion_textures/tile.glsl"
-
+// Summed-area tables say so, slice by slice.
 layout(set = 0, binding = 2) uniform utexture2D filtered;
 
-#include "occlusion_textures/sat.glsl"
+#define SUMMED
+#include "occlusion_textures/tile.glsl"
 
 uint met_by(Tile tile)
 {

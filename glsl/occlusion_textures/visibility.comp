@@ -1,11 +1,11 @@
+// Entry of the pass occlusion_textures.visibility (src/techniques/occlusion_textures/pixels.rs); at first skip tile.glsl.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
 // The visible fraction: kernels of slices from summed-area tables, combined (Eisemann and Decoret 2008,
-// sections 3.3 and 3.5).
-
-#include "occlusion_textures/tile.glsl"
+// sections 3.3 and 3.5); with `#define LEVELS` from levels of means. With `#define LISTED` the pixels of the listed
+// tiles alone.
 
 #ifdef CORRELATED
 const bool IS_CORRELATED = true;
@@ -33,18 +33,20 @@ layout(set = 0, binding = 7, std430) readonly buffer Met { uint met[]; }; // sli
 layout(set = 0, binding = 3) uniform texture2DArray filtered;
 layout(set = 0, binding = 5) uniform utexture2D mask;
 
+#include "occlusion_textures/tile.glsl"
 #define RECTANGLES
 #include "occlusion_textures/levels.glsl"
 #else
 layout(set = 0, binding = 3) uniform utexture2D filtered;
 
-#include "occlusion_textures/sat.glsl"
+#define SUMMED
+#include "occlusion_textures/tile.glsl"
 #endif
 
 // What is hidden only grows: from here on the slices that are left change nothing that an eye sees.
 const float OPAQUE = 1.0 - 1.0 / 1024.0;
 
-// What of a kernel a slice blocks, those above it, and both. Outside the map nothing does.
+// The parts of a kernel that a slice blocks, those above it, and both. Outside the map nothing does.
 vec3 window_of(int slice, vec4 kernel)
 {
     vec2 lo = max(kernel.xy, vec2(0.0));

@@ -1,3 +1,5 @@
+// Entered from pcss.comp.
+//
 // Places on the light, or around a place on a map.
 
 #ifndef PCSS_DISC_GLSL

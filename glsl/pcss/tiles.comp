@@ -1,3 +1,4 @@
+// Entry of the pass visibility.tiles (src/techniques/pcss/mod.rs); at first skip common/nearest.glsl.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require

@@ -1,3 +1,5 @@
+// Entered from columns.comp, level.comp and pixel.glsl; at first skip what is behind SEARCH.
+//
 // What the layers say is solid over a texel, and whether a ray meets it.
 //
 // A column is (top, bottom, second top, second bottom): heights above the furthest, growing towards the

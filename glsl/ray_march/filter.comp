@@ -1,8 +1,9 @@
+// Entry of the passes ray_march.filter_columns and ray_march.filter_rows (src/techniques/ray_march/passes.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// The listed pixels, filtered along their rows.
+// The listed pixels, filtered along their rows, or with `#define COLUMNS` along their columns.
 
 layout(local_size_x = 64) in;
 

@@ -1,8 +1,9 @@
+// Entry of the pass ray_march.level (src/techniques/ray_march/passes.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 
 // The bounds of a level's windows, from those of the level before it, the first from the columns.
-// This is an N-buffer's.
+// With `#define USUAL` they are an N-buffer's.
 
 #include "ray_march/column.glsl"
 

@@ -1,3 +1,5 @@
+// Entered from filter.comp and pixel.glsl; at first skip md5, pcg and sobol.
+//
 // Where a pixel's rays go, how noisy that makes its visible fraction, and how that is kept and filtered.
 
 #ifndef RAY_MARCH_NOISE_GLSL
@@ -5,6 +7,7 @@
 
 #include "common/light_space.glsl"
 
+// ---------------------------------------------------------------------------------------------
 // What a visible fraction is: of all the light, or with `#define COLOR` of its red, green and blue.
 
 #ifdef COLOR
@@ -25,6 +28,7 @@ vec4 stored_fraction(FRACTION v)
 #endif
 }
 
+// ---------------------------------------------------------------------------------------------
 // Random numbers as hashes of where and which they are (Tzeng and Wei 2008): the same each time, in any
 // order.
 
@@ -85,6 +89,7 @@ uvec4 pcg(uvec4 v)
     return v;
 }
 
+// ---------------------------------------------------------------------------------------------
 // Where on the light the rays of a pixel go.
 
 const int JITTERED = 0;
@@ -141,6 +146,7 @@ vec2 light_sample(int sampling, bool modern, int n, int count, int rows, uvec2 p
     return cell.xy + cell.zw * unit(random.xy);
 }
 
+// ---------------------------------------------------------------------------------------------
 // How noisy pixels are filtered: a Gaussian over their own surface, along rows and then along columns
 // (Curtis 2009 section 3, with normals as proposed there).
 //
@@ -193,6 +199,7 @@ float filter_weight(vec3 apart, vec3 normal, vec3 its_normal, float width)
     return exp(-0.5 * squares / (width * width)) * pow(turned, 16.0);
 }
 
+// ---------------------------------------------------------------------------------------------
 // Unit vectors as two numbers: the octahedron's surface, unfolded into [-1, 1]^2 (Meyer et al. 2010).
 
 vec2 over_the_edge(vec2 flat_n)
@@ -212,6 +219,7 @@ vec3 unfolded(vec2 flat_n)
     return normalize(vec3(z < 0.0 ? over_the_edge(flat_n) : flat_n, z));
 }
 
+// ---------------------------------------------------------------------------------------------
 #ifdef NOISY_BINDING
 // The visible fraction by rays alone, how widely it is to be filtered, and the surface it is of. The including shader
 // says at which bindings the images are: NOISY_BINDING, and SURFACE_BINDING with COLOR.

@@ -1,3 +1,5 @@
+// Entered from classify.comp, trace.comp and headless/forward.frag.
+//
 // What the passes over the pixels have in common: their inputs, and where a pixel lies in the map.
 //
 // With `#define FORWARD` the pixels are fragments, whose place and plane the including shader knows without
@@ -198,8 +200,9 @@ Reach reach_of(Place p, float distance_from_light)
     return reach;
 }
 
-// Whether a pixel's visible fraction takes rays to tell. Where it does not, `v` is the fraction; where it does, `reach` has the heights that its rays need look
-// at. The receiver has a normal where that matters.
+// ---------------------------------------------------------------------------------------------
+// Whether a pixel's visible fraction takes rays to tell. Where it does not, `v` is the fraction; where it does,
+// `reach` has the heights that its rays need look at. The receiver has a normal where that matters.
 bool is_open(ivec2 p, inout Receiver r, out float v, out Reach reach)
 {
     v = 1.0;
@@ -288,7 +291,7 @@ Found found_by_rays(ivec2 p, Receiver r, float start, float end)
 #endif
     }
 #ifdef TEXTURED
-    // Of what the rays' points send out; all of it where that is nothing.
+    // The share of what the rays' points send out; all of it where that is nothing.
     FRACTION nothing = FRACTION(1.0e-30);
     found.visible = (arrived + nothing) / (emitted + nothing);
 #else

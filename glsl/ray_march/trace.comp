@@ -1,8 +1,9 @@
+// Entry of the pass ray_march.trace (src/techniques/ray_march/passes.rs); at first skip noise.glsl and column.glsl.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// The rays of the listed pixels.
+// The rays of the listed pixels, with `#define TEXTURED` each weighed by what the light emits where it goes.
 
 layout(local_size_x = 64) in;
 

@@ -1,10 +1,11 @@
+// Entry of the pass soft_shadow_map.gather_pixels (src/techniques/soft_shadow_map/pixels.rs); at first skip node.glsl.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
 // The gather at the G-buffer's own pixels: no receiver map, no resampling, and no split into occluders
 // and receivers, because a texel counts only where it lies above the pixel's own plane. One invocation
-// 2x2 pixels, one lane of each vec4 a pixel.
+// 2x2 pixels, one lane of each vec4 a pixel; with `#define LISTED` those of the listed tiles alone.
 
 layout(local_size_x = 64) in;
 
@@ -110,7 +111,7 @@ void main()
     vec4 hidden = below;
     bool mean = (push.flags & 4) != 0;
     for (int side = 0; side <= ((push.flags >> 1) & 1); ++side) {
-        // Where nothing of the light is left to hide, another side need not be asked.
+        // Where nothing of the light is left to hide, another side need not be gathered.
         r.w = mix(r.w, vec4(NOTHING), greaterThanEqual(hidden, vec4(1.0)));
         vec4 sum = below + gather(map, side == 1 && mean ? BACK_OR_FRONT : side, r);
         hidden = side == 1 && mean ? merged_sides(hidden, sum) : max(hidden, sum);

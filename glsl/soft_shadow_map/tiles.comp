@@ -1,9 +1,10 @@
+// Entry of the pass visibility.tiles (src/techniques/soft_shadow_map/pixels.rs); at first skip node.glsl.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "soft_shadow_map/node.glsl"
 
-// Which tiles of pixels feel no occluder: no node within the light's window, as they see it, lies before any of
+// Which tiles of pixels no occluder affects: no node within the light's window, as they see it, lies before any of
 // their receivers. One invocation a tile.
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -18,11 +19,11 @@ layout(set = 0, binding = 5, r32f) writeonly uniform image2D visibility;
 #include "common/lists.glsl"
 #include "soft_shadow_map/pixels.glsl"
 
-// Nodes that are looked at before a tile is taken to feel something: a walk that takes longer is not worth its
+// Nodes that are looked at before a tile counts as affected: a walk that takes longer is not worth its
 // while, and Mesa's CPU driver would cut it off.
 const int MOST_NODES = 4096;
 
-// The same walk as the gather's, but by all of a tile's receivers at once: false only where the gather of each
+// The walk of the gather, but by all of a tile's receivers at once: false only where the gather of each
 // of them adds nothing.
 bool is_felt_by(Tile tile, int row, int sides, float w_max, vec2 scale)
 {

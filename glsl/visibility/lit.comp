@@ -1,6 +1,7 @@
+// Entry of the pass visibility.lit (src/stages/visibility/mod.rs).
 #version 450
 
-// No occluder can be felt: every pixel sees the whole light.
+// No occluder affects anything: every pixel sees the whole light.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

@@ -43,7 +43,7 @@ pub const HARD_PIXELS: f64 = 1.0;
 /// Why nothing need be cut.
 const UNCUT: &str = "no occluder is cut out by a texture, or drawn by the host";
 
-/// The Gaussian below which the noise filter changes nothing, pixels (`ray_march/filter.glsl`).
+/// The Gaussian below which the noise filter changes nothing, pixels (`ray_march/noise.glsl`).
 const LEAST_FILTER: f64 = 0.4;
 
 impl Verdicts {
@@ -229,7 +229,7 @@ impl fmt::Display for Verdicts {
 }
 
 /// The width of penumbra from which the noise filter does anything, pixels: its Gaussian's standard deviation a is
-/// given by a³ = N W² / (4 √π), `ray_march/filter.glsl`.
+/// given by a³ = N W² / (4 √π), `ray_march/noise.glsl`.
 fn filtered_from(settings: &ray_march::Settings) -> f64 {
     let random = settings.sampling == ray_march::Sampling::Random;
     let noise = 0.33 * f64::from(settings.rays).powf(if random { -0.5 } else { -0.75 });

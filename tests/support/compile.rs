@@ -93,8 +93,18 @@ pub fn compile_file(name: &str, defines: &Defines) -> Compiled {
 
 /// The names of all whole shaders, relative to [`glsl_root`] with forward slashes, sorted.
 pub fn shader_names() -> Vec<String> {
-    let is_shader = |name: &str| STAGES.iter().any(|(e, _)| name.ends_with(&format!(".{e}")));
     files(&glsl_root()).into_iter().filter(|name| is_shader(name)).collect()
+}
+
+/// The names of all GLSL files, whole shaders and others, in the same way.
+pub fn glsl_names() -> Vec<String> {
+    let all = files(&glsl_root()).into_iter();
+    all.filter(|name| is_shader(name) || name.ends_with(".glsl")).collect()
+}
+
+/// Whether a file is a whole shader, by its extension.
+pub fn is_shader(name: &str) -> bool {
+    STAGES.iter().any(|(extension, _)| name.ends_with(&format!(".{extension}")))
 }
 
 /// Every committed module by its shader's name.

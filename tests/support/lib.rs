@@ -10,6 +10,7 @@ pub mod compile;
 pub mod device;
 pub mod example;
 pub mod function;
+pub mod headers;
 pub mod layer;
 pub mod measure;
 pub mod permutations;

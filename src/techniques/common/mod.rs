@@ -14,7 +14,7 @@
 //! plane, which the G-buffer's depth gives: the receiver-plane bias, exact for flat receivers at any
 //! slope and filter width. It may be off by the rounding of that test and by how far the raster moves a
 //! vertex, and a bent surface of the pixel's own rises above its plane by up to 0.3 of the distance
-//! within the map (`glsl/common/plane.glsl`); that much higher a texel must lie. The distance is half a
+//! within the map (`glsl/common/light_space.glsl`); that much higher a texel must lie. The distance is half a
 //! texel's diagonal where a texel stands for itself, and how far away it is where it stands for a whole
 //! filter. Nothing is to be tuned.
 //!
@@ -50,7 +50,7 @@ pub struct Inputs<'a> {
     pub need: &'a Need,
 }
 
-/// What `push.glsl` says; `count` is the technique's own.
+/// What `one_map.glsl` says; `count` is the technique's own.
 pub(crate) fn pixel_push(count: u32, inputs: &Inputs) -> Push {
     let Inputs { occluders, gbuffer, .. } = inputs;
     Push::new(&push::Pixels {
@@ -69,7 +69,7 @@ pub(crate) fn pixel_push(count: u32, inputs: &Inputs) -> Push {
     })
 }
 
-/// What the passes over the pixels read: `pixels.glsl`, but for the image that they write.
+/// What the passes over the pixels read: `one_map.glsl`, but for the image that they write.
 pub(crate) fn pixel_uses(front: ResourceId, gbuffer: &GBuffer) -> Uses {
     smallvec![
         Use::bound(0, gbuffer.depth, Access::SampledCompute),
@@ -78,7 +78,7 @@ pub(crate) fn pixel_uses(front: ResourceId, gbuffer: &GBuffer) -> Uses {
     ]
 }
 
-/// Adds the row that turns the map from the light's centre into visibility, as `pixels.glsl` has it;
+/// Adds the row that turns the map from the light's centre into visibility, as `one_map.glsl` has it;
 /// `count` and the uses beyond the common ones are the technique's own.
 pub(crate) fn one_map(
     graph: &mut Graph,

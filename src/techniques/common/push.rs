@@ -2,7 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-/// `push.glsl`, for every technique with one occluder map.
+/// `one_map.glsl`, for every technique with one occluder map.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Pixels {

@@ -18,7 +18,7 @@ use smallvec::{SmallVec, smallvec};
 /// The width of the image of filtered tiles: the largest that every device has (maxImageDimension2D).
 pub(super) const IMAGE_WIDTH: u32 = 4096;
 
-/// Bins of distances, as in `placement.glsl`.
+/// Bins of distances, as in `slices.glsl`.
 const BINS: u32 = 960;
 
 /// Bins and planes of slices.

@@ -94,7 +94,7 @@ pub struct Squares {
     pub map: i32,
 }
 
-/// `visibility_*.comp`, `tiles_*.comp` and `listed_*.comp`
+/// `visibility.comp` and `tiles.comp`
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Visibility {
@@ -114,6 +114,6 @@ pub struct Visibility {
     pub eye: f32,
     /// The map's side in texels.
     pub map: i32,
-    /// Slices and what is switched on, see `visibility.glsl`.
+    /// Slices and what is switched on, see `slices.glsl`.
     pub flags: i32,
 }

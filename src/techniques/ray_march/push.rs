@@ -34,7 +34,7 @@ pub struct Start {
     pub ndc_from_light: [f32; 16],
 }
 
-/// `filter_rows.comp` and `filter_columns.comp`
+/// `filter.comp`
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Filter {
