@@ -72,7 +72,7 @@ fn a_stale_a_missing_and_a_left_over_module_are_each_named() {
     assert!(differences(&compiled, &compiled).is_empty());
     let found = differences(&compiled, &modules(&[("a.comp", 1), ("b.comp", 9), ("d.comp", 4)]));
     assert_eq!(found.len(), 3, "{found:?}");
-    assert!(found[0].contains("d.comp.spv has no"));
+    assert!(found[0].contains("d.comp.spv has no glsl/d.comp, and no line in"));
     assert!(found[1].contains("b.comp.spv is not"));
     assert!(found[2].contains("c.comp.spv is missing"));
 }
