@@ -21,7 +21,7 @@ fn a_disc_as_a_square() {
     let prototype = "vec2 square_of(float radius, float turn)";
     let glue = "vec2 square_of(float radius, float turn) \
                 { return disc_to_square(vec2(radius, turn)); }";
-    Function::new("baseline/disc.glsl", prototype)
+    Function::new("pcss/disc.glsl", prototype)
         .glue(glue)
         .case((1.0, 0.0))
         .case((0.5, 0.125))
@@ -37,7 +37,7 @@ fn a_disc_as_a_square() {
 #[test]
 fn turns_of_pixels() {
     let glue = "uint turn_of(uint x, uint y) { return floatBitsToUint(pixel_turn(x, y)); }";
-    Function::new("baseline/disc.glsl", "uint turn_of(uint x, uint y)")
+    Function::new("pcss/disc.glsl", "uint turn_of(uint x, uint y)")
         .glue(glue)
         .case((0, 0))
         .random(5_000, (0..16384_u32, 0..16384_u32))
@@ -64,7 +64,7 @@ fn clearance_above_a_receivers_plane() {
     let normal = (-0.6..0.6_f32, -0.6..0.6_f32, -0.8..-0.5_f32);
     let map = (100.0..400.0_f32, 100.0..400.0_f32);
     let place = || (0.0..256.0_f32, 0.0..256.0_f32);
-    Function::new("baseline/compare.glsl", prototype)
+    Function::new("common/compare.glsl", prototype)
         .glue(glue)
         .random(10_000, (position, normal, map, place(), place(), 0.2..1.5_f32, 0.0..0.1_f32))
         // Sums of terms of a few units, each with the rounding of two products.
@@ -89,7 +89,7 @@ fn occlusion_without_gaps() {
             (lo, (lo.0 + d.0, lo.1 + d.1), k, some(left), some(above), (scale, scale))
         },
     );
-    Function::new("baseline/filled.glsl", prototype)
+    Function::new("back_projection/filled.glsl", prototype)
         .case(((0.0, 0.0), (0.5, 0.5), 0.0, 1.0, 1.0, (0.1, 0.1)))
         .random(20_000, cases)
         // Edges within ±½ of the light, each with the rounding of a difference of texels times three.
@@ -102,7 +102,7 @@ fn occlusion_without_gaps() {
 fn levels_of_a_map() {
     let glue = "uvec3 levels_of(uint map, uint level) { return uvec3(level_side(int(map), \
                 int(level)), level_start(int(map), int(level)), level_of(int(map))); }";
-    Function::new("baseline/levels.glsl", "uvec3 levels_of(uint map, uint level)")
+    Function::new("back_projection/levels.glsl", "uvec3 levels_of(uint map, uint level)")
         .glue(glue)
         .case((16, 1))
         .case((4096, 13))

@@ -167,7 +167,7 @@ fn edges_and_transitions() {
 /// Two channels come back from one float, and two samples' tell of a segment no more than there is.
 #[test]
 fn channels_and_what_they_tell_together() {
-    let file = "linear_light/channels.glsl";
+    let file = "linear_light/line.glsl";
     let part = || 0.0..=1.0f32;
     Function::new(file, "vec4 both(float before, float behind)")
         .glue("vec4 both(float before, float behind) { return unpacked(packed(vec2(before, behind))); }")

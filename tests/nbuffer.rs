@@ -78,8 +78,7 @@ impl<'a> Machine<'a> {
              int index_of(Levels l, int level, ivec2 node)\n\
              {{ ivec3 p = place_of(l, level, node); return (p.z * l.map + p.y) * l.map + p.x; }}\n\
              VALUE value_at(Levels l, int level, ivec2 node)\n\
-             {{ return level == 0 ? map_values[node.y * l.map + node.x] : made[index_of(l, level, node)]; }}\n\
-             #include \"nbuffer/values.glsl\"\n",
+             {{ return level == 0 ? map_values[node.y * l.map + node.x] : made[index_of(l, level, node)]; }}\n",
             if way.mean { "#define MEAN\n" } else { "" },
             way.combine
         );

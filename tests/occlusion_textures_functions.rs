@@ -16,7 +16,7 @@ use proptest::prelude::{Just, Strategy, any};
 #[test]
 fn distances_lie_in_bins() {
     Function::new(
-        "occlusion_textures/placement.glsl",
+        "occlusion_textures/slices.glsl",
         "int bin_of(float stored, float near, float span)",
     )
     // The near plane, the far one, and what lies in front and behind.
@@ -43,7 +43,7 @@ fn kernels_and_weights() {
     let point = (-2.0..2.0f32, -2.0..2.0f32, 0.5..5.0f32);
     let all = (map, point, 0.2..5.0f32, (0.0..1.0f32, 0.0..1.0f32));
     Function::new(
-        "occlusion_textures/kernel.glsl",
+        "occlusion_textures/slices.glsl",
         "vec4 kernel(vec2 per, vec2 first, float eye, vec3 p, float plane, vec2 light)",
     )
     .glue(glue)
@@ -57,7 +57,7 @@ fn kernels_and_weights() {
     let slices = (0.5..3.0f32, 0.02..0.5f32, 0.0..4.0f32, any::<bool>())
         .prop_map(|(upper, thick, z, blocks)| (z, upper, upper + thick, blocks));
     Function::new(
-        "occlusion_textures/kernel.glsl",
+        "occlusion_textures/slices.glsl",
         "float slice_weight(float z, float upper, float lower, bool blocks)",
     )
     .random(4_000, slices)
@@ -82,9 +82,8 @@ fn kernels_of_tiles_hold_those_of_their_points() {
     let map = ((50.0..300.0f32, 50.0..300.0f32), (0.0..256.0f32, 0.0..256.0f32), 0.0..2.0f32);
     let point = || (-2.0..2.0f32, -2.0..2.0f32, 2.0..5.0f32);
     let cases = (map, point(), point(), 0.2..5.0f32);
-    let test = Function::new("occlusion_textures/tile_kernel.glsl", prototype)
-        .glue(glue)
-        .random(4_000, cases);
+    let test =
+        Function::new("occlusion_textures/slices.glsl", prototype).glue(glue).random(4_000, cases);
     for case in test.outputs(&device()) {
         let (i, o) = (&case.input, &case.output);
         let map: [f64; 5] = std::array::from_fn(|k| i[k]);
@@ -111,7 +110,7 @@ fn levels_reach_no_further_than_tiles_look() {
         // a half before what is asked for.
         assert!(window + 1.0 <= reach && 1.5 * window <= reach, "{shorter}");
     }
-    Function::new("occlusion_textures/tile_kernel.glsl", "float level_reach(float shorter)")
+    Function::new("occlusion_textures/slices.glsl", "float level_reach(float shorter)")
         .random(1_000, 0.1..400.0f32)
         .f64(Tolerance::relative(3e-7), |x| vec![3.0 * x[0].max(1.0) + 1.0])
         .check(&device());
@@ -121,7 +120,7 @@ fn levels_reach_no_further_than_tiles_look() {
 fn combinations() {
     for (code, combine) in [(0, Combine::Product), (1, Combine::Sum), (2, Combine::Max)] {
         Function::new(
-            "occlusion_textures/combine.glsl",
+            "occlusion_textures/slices.glsl",
             "float hidden_with(int combine, float hidden, float more)",
         )
         .random(1_000, (Just(code), 0.0..=1.0f32, 0.0..=1.0f32))
@@ -140,7 +139,7 @@ fn combinations() {
         },
     );
     Function::new(
-        "occlusion_textures/combine.glsl",
+        "occlusion_textures/slices.glsl",
         "float hidden_with_correlated(float hidden, float before, vec3 window)",
     )
     .case((0.0, 0.0, (0.0, 0.0, 0.0)))

@@ -61,13 +61,13 @@ fn columns_of_layers() {
 #[test]
 fn hashes() {
     let words = || (any::<u32>(), any::<u32>(), any::<u32>(), any::<u32>());
-    Function::new("ray_march/hash.glsl", "uvec4 md5(uvec4 message, uint key)")
+    Function::new("ray_march/noise.glsl", "uvec4 md5(uvec4 message, uint key)")
         .case((0, 0, 0, 0, 0))
         .case((1, 2, 3, 4, 5))
         .random(4_000, (words(), any::<u32>()))
         .bits(|x| md5([x[0], x[1], x[2], x[3]], x[4]).to_vec())
         .check(&device());
-    Function::new("ray_march/hash.glsl", "uvec4 pcg(uvec4 v)")
+    Function::new("ray_march/noise.glsl", "uvec4 pcg(uvec4 v)")
         .case((0, 0, 0, 0))
         .random(4_000, words())
         .bits(|x| pcg([x[0], x[1], x[2], x[3]]).to_vec())
@@ -76,7 +76,7 @@ fn hashes() {
 
 #[test]
 fn points_of_a_sequence_and_cells_of_a_grid() {
-    Function::new("ray_march/sampling.glsl", "uvec2 sobol(uint n)")
+    Function::new("ray_march/noise.glsl", "uvec2 sobol(uint n)")
         .case(0)
         .case(u32::MAX)
         .random(4_000, any::<u32>())
@@ -87,7 +87,7 @@ fn points_of_a_sequence_and_cells_of_a_grid() {
         cell_of(whole(0), whole(1), whole(2)).to_vec()
     }
     let grids = (1..=256u32).prop_flat_map(|count| (0..count, Just(count), 1..=count));
-    Function::new("ray_march/sampling.glsl", "vec4 cell_of(int n, int count, int rows)")
+    Function::new("ray_march/noise.glsl", "vec4 cell_of(int n, int count, int rows)")
         .case((0, 1, 1))
         .case((255, 256, 16))
         .random(4_000, grids)
@@ -100,7 +100,7 @@ fn points_of_a_sequence_and_cells_of_a_grid() {
 fn the_filters_width_and_weights() {
     // The power's error grows with its logarithm: 3 + 2·|log₂| units in the last place.
     Function::new(
-        "ray_march/filter.glsl",
+        "ray_march/noise.glsl",
         "float filter_width(float penumbra, float pixel, float noise)",
     )
     .random(4_000, (0.001..2.0f32, 0.001..0.1f32, 0.001..0.4f32))
@@ -111,7 +111,7 @@ fn the_filters_width_and_weights() {
     }
     let vector = || (-1.0..1.0f32, -1.0..1.0f32, -1.0..1.0f32);
     Function::new(
-        "ray_march/filter.glsl",
+        "ray_march/noise.glsl",
         "float filter_weight(vec3 apart, vec3 normal, vec3 its_normal, float width)",
     )
     .random(4_000, (vector(), vector(), vector(), 0.3..2.0f32))
@@ -126,7 +126,7 @@ fn normals_fold_and_unfold() {
     let glue = "vec3 there_and_back(vec3 n) { return unfolded(folded(normalize(n))); }";
     let far = (-1.0..1.0f32, -1.0..1.0f32, -1.0..1.0f32)
         .prop_filter("a direction", |(x, y, z)| x * x + y * y + z * z > 0.01);
-    Function::new("ray_march/normal.glsl", "vec3 there_and_back(vec3 n)")
+    Function::new("ray_march/noise.glsl", "vec3 there_and_back(vec3 n)")
         .glue(glue)
         .case((0.0, 0.0, 1.0))
         .case((0.0, 0.0, -1.0))
@@ -208,7 +208,7 @@ fn the_list_reaches_every_pixel_of_the_largest_image() {
     // The list's words behind its head, three a pixel, in the largest buffer.
     let most = ((STORAGE_BYTES - 80) / 12) as u32;
     assert!(most > 3840 * 2160);
-    Function::new("ray_march/list.glsl", "uvec3 reached(uint at)")
+    Function::new("common/lists.glsl", "uvec3 reached(uint at)")
         .glue(glue)
         .case(0_u32)
         .case(most - 1)

@@ -114,7 +114,8 @@ impl Machine {
         let hits = buffer("hits", RAYS);
         let source = "#version 450\n#extension GL_GOOGLE_include_directive : require\n\
             layout(local_size_x = 64) in;\n\
-            #include \"nbuffer/levels.glsl\"\n\
+            #define SEARCH\n\
+            #include \"ray_march/column.glsl\"\n\
             layout(set = 0, binding = 0, std430) readonly buffer Windows { vec4 windows[]; };\n\
             layout(set = 0, binding = 1, std430) readonly buffer Rays { vec4 rays[]; };\n\
             layout(set = 0, binding = 2, std430) buffer Hits { uint hits[]; };\n\
@@ -124,7 +125,6 @@ impl Machine {
                 ivec3 p = place_of(l, level, node);\n\
                 return windows[(p.z * l.map + p.y) * l.map + p.x];\n\
             }\n\
-            #include \"ray_march/search.glsl\"\n\
             void main() {\n\
                 uint i = gl_GlobalInvocationID.x;\n\
                 vec4 a = rays[3u * i];\n\

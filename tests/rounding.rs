@@ -6,8 +6,8 @@
 use antumbra::FramePlan;
 use antumbra::graph::Pass;
 use antumbra::scene::{Scene, generate};
-use antumbra::techniques::soft_shadow_map::push::{Blocks, GatherMap, PatchDraw};
 use antumbra::techniques::soft_shadow_map::twin::{OccluderMap, occlusion};
+use antumbra::techniques::soft_shadow_map::{Blocks, GatherMap, PatchDraw};
 use antumbra_tests::measure::Setup;
 use antumbra_tests::{TestDevice, device};
 use ash::vk;

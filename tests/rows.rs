@@ -7,10 +7,13 @@ use antumbra::graph::{Draw, Graph, INVOCATIONS, PUSH_BYTES, Pass, Work};
 use antumbra::shaders::Module;
 use antumbra::stages::depth_layers::DepthPush;
 use antumbra::{Description, LightTexture, frame};
+use antumbra_tests::example::root;
+use antumbra_tests::headers;
 use antumbra_tests::measure::settings;
+use antumbra_tests::permutations;
 use antumbra_tests::reflect::{Interface, reflect};
 use ash::vk;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// One description for every set of rows there is.
 fn descriptions() -> Vec<(String, Description)> {
@@ -224,4 +227,54 @@ fn every_module_has_a_row() {
     let headless = |name: &String| name.starts_with("headless/");
     let listed: BTreeSet<String> = committed.into_iter().filter(|name| !headless(name)).collect();
     assert_eq!(listed, embedded.iter().map(ToString::to_string).collect());
+}
+
+/// Every whole shader's first line names the passes that run it, and a Rust file that names one of its modules.
+#[test]
+fn every_shader_names_its_passes() {
+    let mut passes: BTreeMap<&str, BTreeSet<String>> = BTreeMap::new();
+    for (_, graph) in graphs() {
+        for pass in graph.passes() {
+            for module in modules(pass) {
+                passes.entry(module.path).or_default().insert(pass.name.to_owned());
+            }
+        }
+    }
+    let mut files: BTreeMap<String, (BTreeSet<String>, Vec<String>)> = BTreeMap::new();
+    for module in permutations::modules() {
+        if let Some(passes) = passes.get(module.name.as_str()) {
+            let (of_file, names) = files.entry(module.file).or_default();
+            of_file.extend(passes.iter().cloned());
+            names.push(module.name);
+        }
+    }
+    assert!(files.len() > 50, "{} shaders", files.len());
+    let constants = std::fs::read_to_string(root().join("src/shaders.rs")).unwrap();
+    let constant = |module: &str| {
+        let line = constants.lines().find(|line| line.ends_with(&format!(" = \"{module}\";")));
+        line.unwrap().split_whitespace().next().unwrap().to_owned()
+    };
+    let mut found = Vec::new();
+    for (file, (passes, names)) in files {
+        let names: Vec<String> = names.iter().map(|module| constant(module)).collect();
+        match headers::entry(&file) {
+            Err(problem) => found.push(format!("{problem}, is {passes:?}")),
+            Ok(entry) => {
+                let more = passes.difference(&entry.passes).count() > 0;
+                if !entry.passes.is_subset(&passes) || more != entry.and_others {
+                    let named = &entry.passes;
+                    found.push(format!("glsl/{file} names the passes {named:?}, is {passes:?}"));
+                }
+                let text = std::fs::read_to_string(root().join(&entry.declared_in));
+                let text = text.unwrap_or_default();
+                let words: BTreeSet<&str> =
+                    text.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
+                if !names.iter().any(|name| words.contains(name.as_str())) {
+                    let declared_in = &entry.declared_in;
+                    found.push(format!("glsl/{file}: {declared_in} has none of {names:?}"));
+                }
+            }
+        }
+    }
+    assert!(found.is_empty(), "{}", found.join("\n"));
 }

@@ -29,7 +29,7 @@ fn patches() -> impl Strategy<Value = (Pair, f32, Pair, f32, Pair)> {
 
 #[test]
 fn magnification_of_a_patch() {
-    Function::new("common/light.glsl", "float magnification(float w_o, float w_r)")
+    Function::new("common/light_space.glsl", "float magnification(float w_o, float w_r)")
         .case((1.0, 0.5))
         .random(5_000, (1.0..4.0, 0.01..0.99))
         // A division may be off by 2.5 units in the last place (Vulkan, precision of operations).
@@ -39,7 +39,7 @@ fn magnification_of_a_patch() {
 
 #[test]
 fn overlap_with_the_light() {
-    Function::new("common/light.glsl", "float overlap(float a, float b)")
+    Function::new("common/light_space.glsl", "float overlap(float a, float b)")
         .case((-0.25, 0.25))
         .case((f32::MIN, f32::MAX))
         .random(10_000, (-2.0..3.0, -2.0..3.0))
@@ -59,7 +59,7 @@ fn occlusion_by_a_patch() {
     fn twin<T: Float>(x: &[T]) -> Vec<T> {
         vec![patch_occlusion([x[0], x[1]], [x[2], x[3]], x[4], [x[5], x[6]], x[7], [x[8], x[9]])]
     }
-    Function::new("common/light.glsl", prototype)
+    Function::new("common/light_space.glsl", prototype)
         .case(((0.0, 0.0), (1.0, 1.0), 1.0, (0.5, 0.5), 0.5, (0.1, 0.1)))
         .random(20_000, cases)
         // An edge at the light's rim, ±½, carries the rounding of three factors: a few 2^-24 of ½,
@@ -76,7 +76,7 @@ fn both_sides_merged() {
         (0..4).map(|i| merged_sides(x[i], x[4 + i])).collect()
     }
     // The mean; umbra by either; half way between; a sum above 1.
-    Function::new("soft_shadow_map/merge.glsl", "vec4 merged_sides(vec4 front, vec4 back)")
+    Function::new("common/light_space.glsl", "vec4 merged_sides(vec4 front, vec4 back)")
         .case(((0.2, 1.0, 0.95, 1.2), (0.4, 0.5, 0.55, 1.0)))
         .random(10_000, (any.clone(), any))
         .f32(Tolerance::absolute(2e-6), twin::<f32>)
@@ -92,7 +92,7 @@ fn part_of_the_light_above_a_plane() {
     let flat = (-1.0..1.0_f32, -1e-6..1e-6_f32);
     let any = (-1.0..1.0_f32, -1.0..1.0_f32);
     for slope in [any, flat] {
-        Function::new("common/light.glsl", "float fraction_above(vec2 slope, float c)")
+        Function::new("common/light_space.glsl", "float fraction_above(vec2 slope, float c)")
             .case(((0.0, 0.0), -1.0))
             .case(((0.0, 0.0), 1.0))
             .case(((1.0, 1.0), 0.0))
@@ -109,7 +109,7 @@ fn pixels_to_light_space() {
         unproject(&x[..16], [x[16], x[17]], [x[18], x[19]], x[20]).to_vec()
     }
     Function::new(
-        "common/receiver.glsl",
+        "common/light_space.glsl",
         "vec4 unproject(mat4 light_from_ndc, vec2 pixel, vec2 extent, float depth)",
     )
     .random(
@@ -147,7 +147,7 @@ fn normals_face_the_viewer() {
         (scale(a), scale(b), c)
     });
     Function::new(
-        "common/receiver.glsl",
+        "common/light_space.glsl",
         "vec3 plane_normal(vec3 along_x, vec3 along_y, vec3 to_viewer)",
     )
     .case(((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, -1.0)))
@@ -160,7 +160,7 @@ fn normals_face_the_viewer() {
 
 #[test]
 fn homogeneous_points_and_the_eye() {
-    Function::new("common/receiver.glsl", "vec3 dehomogenize(vec4 p)")
+    Function::new("common/light_space.glsl", "vec3 dehomogenize(vec4 p)")
         .random(2_000, (-9.0..9.0_f32, -9.0..9.0_f32, -9.0..9.0_f32, 0.1..9.0_f32))
         .f32(Tolerance::ulps(3), |x| dehomogenize([x[0], x[1], x[2], x[3]]).to_vec())
         .check(&device());
@@ -174,7 +174,7 @@ fn homogeneous_points_and_the_eye() {
     };
     let p = (0.25, -0.5, 4.0);
     Function::new(
-        "common/receiver.glsl",
+        "common/light_space.glsl",
         "vec3 towards_viewer(mat4 light_from_ndc, vec3 p, float background)",
     )
     .case((matrix(2.0), p, 0.0))
@@ -263,7 +263,7 @@ fn how_a_node_lies_to_its_receivers() {
 #[test]
 fn a_wrong_twin_is_caught_with_a_case_that_shows_it() {
     let wrong = |x: &[f32]| vec![if x[0] > 2.9 { 0.125 } else { x[0].abs() }];
-    let problem = Function::new("common/light.glsl", "float abs(float x)")
+    let problem = Function::new("common/light_space.glsl", "float abs(float x)")
         .random(10_000, -3.0..3.0)
         .f32(Tolerance::ulps(4), wrong)
         .try_check(&device())
@@ -278,10 +278,10 @@ fn a_wrong_twin_is_caught_with_a_case_that_shows_it() {
 #[test]
 fn a_twin_off_by_one_ulp_is_caught() {
     let off = |x: &[f32]| vec![x[0].abs().next_up()];
-    let function = Function::new("common/light.glsl", "float abs(float x)").case(0.5);
+    let function = Function::new("common/light_space.glsl", "float abs(float x)").case(0.5);
     let device = device();
     assert!(function.f32(Tolerance::exact(), off).try_check(&device).is_err());
-    let function = Function::new("common/light.glsl", "float abs(float x)").case(0.5);
+    let function = Function::new("common/light_space.glsl", "float abs(float x)").case(0.5);
     assert!(function.f32(Tolerance::ulps(1), off).try_check(&device).is_ok());
 }
 
@@ -289,7 +289,7 @@ fn a_twin_off_by_one_ulp_is_caught() {
 #[test]
 fn every_kind_of_parameter_and_result_goes_through() {
     let device = device();
-    let builtin = |prototype| Function::new("common/light.glsl", prototype);
+    let builtin = |prototype| Function::new("common/light_space.glsl", prototype);
     builtin("vec3 cross(vec3 a, vec3 b)")
         .case(([1.0, 0.0, 0.0], [0.0, 1.0, 0.0]))
         .f32(Tolerance::exact(), |_| vec![0.0, 0.0, 1.0])

@@ -172,7 +172,7 @@ fn bounds_are_rounded_outwards() {
         "void rounded(vec2 t_min, vec2 t_max, vec2 w, out vec2 a, out vec2 b, out vec2 c)";
     let at = || (-500.0..900.0_f32, -500.0..900.0_f32);
     let cases = (at(), at(), (0.0..4.0_f32, 0.0..4.0_f32));
-    let test = Function::new("visibility/tile.glsl", prototype).glue(glue).random(5_000, cases);
+    let test = Function::new("common/lists.glsl", prototype).glue(glue).random(5_000, cases);
     let device = device();
     for case in test.outputs(&device) {
         let (i, o) = (&case.input, &case.output);
@@ -194,7 +194,7 @@ fn receivers_widen_bounds() {
                 ? t.w : vec2(0.0); }";
     let prototype = "void widened(vec3 a, vec3 b, out vec2 t_min, out vec2 t_max, out vec2 w)";
     let receiver = || (-300.0..600.0_f32, -300.0..600.0_f32, 0.01..5.0_f32);
-    Function::new("visibility/tile.glsl", prototype)
+    Function::new("common/lists.glsl", prototype)
         .glue(glue)
         .random(2_000, (receiver(), receiver()))
         .f32(Tolerance::exact(), |x| {
@@ -251,7 +251,7 @@ fn nodes_that_are_felt() {
 fn nodes_of_a_searched_part_of_the_map() {
     let part = (-500.0..1500.0_f32, -500.0..1500.0_f32, 0.0..400.0_f32, 0.0..400.0_f32)
         .prop_map(|(x, y, width, height)| ([x, y], [x + width, y + height]));
-    Function::new("baseline/nearest.glsl", "ivec4 nodes_around(int map, vec2 lo, vec2 hi)")
+    Function::new("common/nearest.glsl", "ivec4 nodes_around(int map, vec2 lo, vec2 hi)")
         .random(20_000, (16..4097_i32, part))
         // No case lies within the rounding of a division of the edge of a node.
         .f32(Tolerance::exact(), |x| {
@@ -266,7 +266,7 @@ fn nodes_of_a_searched_part_of_the_map() {
 fn the_list_holds_every_tile_of_the_largest_image() {
     let device = device();
     let glue = "uint word(int x, int y, bool felt) { return tile_word(ivec2(x, y), felt); }";
-    Function::new("visibility/tile_list.glsl", "uint word(int x, int y, bool felt)")
+    Function::new("common/lists.glsl", "uint word(int x, int y, bool felt)")
         .glue(glue)
         .case((4095, 4095, true))
         .random(2_000, (0..4096_i32, 0..4096_i32, proptest::bool::ANY))
@@ -274,7 +274,7 @@ fn the_list_holds_every_tile_of_the_largest_image() {
         .check(&device);
     // What is kept of every tile is in rows as long as the image, its last tile a part of one.
     let glue = "int nth(int x, int y, int width) { return nth_tile(tile_word(ivec2(x, y), true), ivec2(width, 1)); }";
-    Function::new("visibility/tile_list.glsl", "int nth(int x, int y, int width)")
+    Function::new("common/lists.glsl", "int nth(int x, int y, int width)")
         .glue(glue)
         .random(2_000, (0..512_i32, 0..512_i32, 1..4096_i32))
         .bits(|x| vec![x[1] * x[2].div_ceil(8) + x[0]])
@@ -286,7 +286,7 @@ fn the_list_holds_every_tile_of_the_largest_image() {
                 uvec2 id = uvec2(group % GROUPS_A_ROW, group / GROUPS_A_ROW); \
                 return uvec3(tile_in_list(id, at % TILES_A_GROUP), n); }";
     let largest = 4096 * 4096_u32;
-    Function::new("visibility/tile_list.glsl", "uvec3 reached(uint at)")
+    Function::new("common/lists.glsl", "uvec3 reached(uint at)")
         .glue(glue)
         .case(0_u32)
         .case(largest - 1)

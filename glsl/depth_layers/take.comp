@@ -1,3 +1,4 @@
+// Entry of the passes depth_layers.take_back and depth_layers.take_front (src/stages/depth_layers/mod.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require

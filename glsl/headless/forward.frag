@@ -24,9 +24,6 @@ vec3 pixel_normal(ivec2 p, Receiver r)
     return !r.blocks && dot(fragment_normal, r.position) > 0.0 ? -fragment_normal : fragment_normal;
 }
 
-#include "ray_march/open.glsl"
-#include "ray_march/rays.glsl"
-
 void main()
 {
     ivec2 p = ivec2(gl_FragCoord.xy);

@@ -1,8 +1,9 @@
+// Entry of the passes linear_light.left_edges and linear_light.right_edges (src/techniques/linear_light/segments.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "linear_light/skin.glsl"
-#include "linear_light/segment.glsl"
+#include "linear_light/line.glsl"
 
 // Where occluders end in a sample's map, on the side of its neighbour, to skins. Their order differs from frame to
 // frame; what is drawn of them does not.
@@ -20,7 +21,7 @@ layout(push_constant) uniform Push {
     int side;      // -1: occluders that end towards -x; 1: towards +x
 } push;
 
-// Of the nearest occluder, and of the nearest surface of any kind.
+// w of the nearest occluder, and of the nearest surface of any kind.
 vec2 at(int layer, int x, int y)
 {
     if (x < 0 || x >= push.map) {

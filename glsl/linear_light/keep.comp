@@ -1,8 +1,8 @@
+// Entry of the passes linear_light.keep and linear_light.keep_first (src/techniques/linear_light/segments.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-#include "linear_light/segment.glsl"
-#include "linear_light/channels.glsl"
+#include "linear_light/line.glsl"
 
 // A sample's map as pixels ask for it: w of the nearest occluder, and how much of its two segments is seen by what the
 // sample sees past it; of a texel and of the next one in its row.

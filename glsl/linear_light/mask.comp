@@ -1,3 +1,4 @@
+// Entry of the pass linear_light.mask (src/techniques/linear_light/samples.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require

@@ -1,3 +1,5 @@
+// Entered from mask.comp and place.comp.
+//
 // What a receiver sees of a line, a bit for every 32nd of it, the first end's the lowest.
 //
 // Samples see runs of it: a sample that the receiver is not hidden from tells, by its skins, how far the line goes on

@@ -1,3 +1,4 @@
+// Entry of the passes linear_light.middle_occluders and linear_light.middle_receivers (src/techniques/linear_light/samples.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "linear_light/view.glsl"

@@ -1,10 +1,11 @@
+// Entry of the pass linear_light.place (src/techniques/linear_light/samples.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "linear_light/mask.glsl"
-#include "linear_light/samples.glsl"
+#include "linear_light/line.glsl"
 
 // Where a line's samples are (the paper's open problem, section 5): at its ends, and then where the most light is lost,
-// until what is lost is no more than the error asked for, or there are as many samples as may be.
+// until what is lost is no more than the error allowed, or there are as many samples as may be.
 
 layout(local_size_x = 128) in;
 
@@ -12,7 +13,7 @@ layout(set = 0, binding = 0, std430) readonly buffer Masks { uint masks[]; };
 layout(set = 0, binding = 1, std430) buffer Of { Samples of; };
 
 layout(push_constant) uniform Push {
-    float error; // asked for: a share of the line, in the mean over what is not wholly lit
+    float error; // allowed: a share of the line, in the mean over what is not wholly lit
     int most;    // samples
     int even;    // 1: as many as may be, evenly: the middle does not tell
 } push;

@@ -1,6 +1,7 @@
+// Entry of the passes linear_light.occluders and linear_light.receivers (src/techniques/linear_light/samples.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "linear_light/samples.glsl"
+#include "linear_light/line.glsl"
 #include "linear_light/view.glsl"
 
 // The meshes as a sample sees them; nothing where there is no such sample.

@@ -1,3 +1,5 @@
+// Entered from edges.comp, skins.vert and skins.frag.
+//
 // Skins: where one sample of the light sees an occluder end, and what the light that lies between it and its
 // neighbour sees of what is behind (Heidrich, Brabec and Seidel 2000, sections 3.1 and 3.2).
 //
@@ -17,7 +19,7 @@ struct Skin {
 
 // Whether an occluder ends between two texels that lie side by side: by a step that is no plane's, whichever way it
 // leans, because a plane's w falls by as much from each texel to the next. A step that goes the other way says nothing
-// of this one. A surface that bends away by more than a fifth is taken for one that ends. It hides as one does, so that
+// of this one. A surface that bends away by more than a fifth counts as one that ends. It hides as one does, so that
 // its skin is not wrong; one that is missed lets light through. (Missed in the bunny's shadow: 15 spots with a step of
 // twice as much, 2 with a fifth more, 2 with none, which takes twice as many skins.)
 bool is_edge(float w_before, float w_near, float w_seen, float w_behind)

@@ -1,3 +1,5 @@
+// Entered from skins.vert and skins.frag.
+//
 // What a draw of skins knows of the maps.
 
 #ifndef LINEAR_LIGHT_SKIN_PUSH_GLSL

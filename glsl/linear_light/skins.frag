@@ -1,3 +1,4 @@
+// Entry of the passes linear_light.left_skins and linear_light.right_skins (src/techniques/linear_light/segments.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require

@@ -1,7 +1,8 @@
+// Entry of the passes linear_light.left_skins and linear_light.right_skins (src/techniques/linear_light/segments.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "linear_light/skin.glsl"
-#include "linear_light/segment.glsl"
+#include "linear_light/line.glsl"
 
 // A skin as the sample's neighbour sees it: a row of texels from the occluder to the receiver, by pulling it from a
 // buffer: six vertices a skin, no instancing.

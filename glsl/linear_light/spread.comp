@@ -1,6 +1,7 @@
+// Entry of the pass linear_light.spread (src/techniques/linear_light/samples.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "linear_light/samples.glsl"
+#include "linear_light/line.glsl"
 
 // Samples evenly along a line, ends included.
 

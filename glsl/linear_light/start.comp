@@ -1,8 +1,7 @@
+// Entry of the pass linear_light.start (src/techniques/linear_light/segments.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "linear_light/places.glsl"
-#include "linear_light/samples.glsl"
-#include "linear_light/segment.glsl"
+#include "linear_light/line.glsl"
 
 // The nth sample of a line and the segment before it: what the passes that follow and the pixels must know of them,
 // and which of those passes there are. No skins yet: the arguments of two draws.

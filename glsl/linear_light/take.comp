@@ -1,3 +1,4 @@
+// Entry of the passes linear_light.middle_take and linear_light.take (src/techniques/linear_light/samples.rs).
 #version 450
 #extension GL_EXT_samplerless_texture_functions : require
 

@@ -1,9 +1,11 @@
+// Entered from middle.vert and sample.vert.
+//
 // A mesh's vertices to the clip space of a map on a line, whose eye moves along x alone.
 
 #ifndef LINEAR_LIGHT_VIEW_GLSL
 #define LINEAR_LIGHT_VIEW_GLSL
 
-#include "linear_light/segment.glsl"
+#include "linear_light/line.glsl"
 
 layout(location = 0) in vec3 position;
 

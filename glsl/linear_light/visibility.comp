@@ -1,3 +1,4 @@
+// Entry of the pass linear_light.visibility (src/techniques/linear_light/passes.rs); at first skip common/light_space.glsl.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -6,18 +7,13 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0, binding = 0) uniform texture2D gbuffer_depth;
-layout(set = 0, binding = 1) uniform texture2D gbuffer_mask;
 layout(set = 0, binding = 2) uniform texture2DArray maps;
 layout(set = 0, binding = 3) uniform texture2D places;
 layout(set = 0, binding = 4, r32f) writeonly uniform image2D visibility;
 
-#include "common/gbuffer.glsl"
-#include "common/light.glsl"
-#include "baseline/compare.glsl"
-#include "linear_light/channels.glsl"
-#include "linear_light/places.glsl"
-#include "linear_light/segment.glsl"
+#define GBUFFER
+#include "common/compare.glsl"
+#include "linear_light/line.glsl"
 
 layout(push_constant) uniform Push {
     mat4 light_from_ndc;

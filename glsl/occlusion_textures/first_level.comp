@@ -1,8 +1,9 @@
+// Entry of the pass occlusion_textures.first_level (src/techniques/occlusion_textures/passes.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "occlusion_textures/tile.glsl"
-#include "occlusion_textures/tile_levels.glsl"
+#include "occlusion_textures/levels.glsl"
 
 // Means of windows of 2 x 2 texels, from the mask. One tile each z.
 

@@ -1,7 +1,8 @@
+// Entry of the pass occlusion_textures.histogram (src/techniques/occlusion_textures/passes.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-#include "occlusion_textures/placement.glsl"
+#include "occlusion_textures/slices.glsl"
 
 // How many texels have their nearest or their furthest face in each bin of distances.
 

@@ -1,10 +1,22 @@
-// Means of any rectangle from levels: windows of 2^k x 2^k texels, between which is interpolated
-// (Eisemann and Decoret 2008, section 3.2).
+// Entered from first_level.comp, next_level.comp and visibility.comp.
+//
+// Where the levels of a tile are kept: from the first one on, as those of any map, in the layers of an image
+// array, tile behind tile. The map itself is in the mask.
 
 #ifndef OCCLUSION_TEXTURES_LEVELS_GLSL
 #define OCCLUSION_TEXTURES_LEVELS_GLSL
 
-#include "occlusion_textures/tile_levels.glsl"
+#include "nbuffer/levels.glsl"
+
+ivec3 place_of_tile(Levels l, int tile, int level, ivec2 node)
+{
+    int layers = l.kind == MIP ? 1 : top_of(l);
+    return place_of(l, level, node) + ivec3(0, 0, tile * layers - 1);
+}
+
+#ifdef RECTANGLES
+// Means of any rectangle from levels: windows of 2^k x 2^k texels, between which is interpolated
+// (Eisemann and Decoret 2008, section 3.2).
 
 // A rectangle is covered by no more windows side by side than this; a longer one is sampled.
 const int MOST_WINDOWS = 8;
@@ -37,7 +49,7 @@ bool is_empty(vec2 lo, vec2 hi)
     return false;
 }
 
-// What of a part of the map, `lo` to `hi` in texels, a slice blocks, those above it, and both: windows as wide
+// The share of a part of the map, `lo` to `hi` in texels, that a slice blocks, those above it, and both: windows as wide
 // as its shorter side, side by side along the longer one.
 vec3 mean_of(int slice, vec2 lo, vec2 hi)
 {
@@ -61,5 +73,6 @@ vec3 mean_of(int slice, vec2 lo, vec2 hi)
     sum = min(sum / float(count), 1.0);
     return IS_CORRELATED ? sum.xyz : vec3(sum[slice & 3]);
 }
+#endif
 
 #endif

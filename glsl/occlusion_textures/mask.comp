@@ -1,3 +1,4 @@
+// Entry of the pass occlusion_textures.mask (src/techniques/occlusion_textures/passes.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -32,7 +33,7 @@ layout(push_constant) uniform Push {
     int fill;   // 1: a slice blocks in the next one too
 } push;
 
-// Of four slices at a texel.
+// Counted faces of four slices at a texel.
 ivec4 counts(texture2D faces, ivec2 p)
 {
     return ivec4(texelFetch(faces, p, 0) * 255.0 + 0.5);

@@ -1,6 +1,7 @@
+// Entry of the pass occlusion_textures.next_level (src/techniques/occlusion_textures/passes.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "occlusion_textures/tile_levels.glsl"
+#include "occlusion_textures/levels.glsl"
 
 // Means of a level's windows, from four of the level before it (Decoret 2005). One tile each z.
 

@@ -1,6 +1,7 @@
+// Entry of the pass occlusion_textures.place (src/techniques/occlusion_textures/passes.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "occlusion_textures/placement.glsl"
+#include "occlusion_textures/slices.glsl"
 
 // Slices of equal thickness (Eisemann and Decoret 2008, section 3.4).
 

@@ -1,6 +1,7 @@
+// Entry of the pass occlusion_textures.place_fitted (src/techniques/occlusion_textures/passes.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "occlusion_textures/placement.glsl"
+#include "occlusion_textures/slices.glsl"
 
 // Slices that are thin where there is much in them, and a texture where most of a slice is: placement by
 // the scene's depth histogram, which the authors leave to be done (Eisemann and Decoret 2008, section 5).

@@ -1,9 +1,32 @@
+// Entry of the passes occlusion_textures.slices, occlusion_textures.front_slices and others (src/techniques/occlusion_textures/passes.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
 // Counts faces in the channel of their slice, up to 255; blending adds. No order of the faces and no
-// optional feature is needed: every device blends into four images of four times eight bits at once.
+// optional feature is needed: every device blends into four images of four times eight bits at once. `FIRST` is the
+// slice of the first channel.
 
-#define FIRST 0
-#include "occlusion_textures/slice.glsl"
+#include "occlusion_textures/slices.glsl"
+
+layout(set = 0, binding = 0) uniform texture2D placement;
+
+layout(location = 0) out vec4 slices_0;
+layout(location = 1) out vec4 slices_1;
+layout(location = 2) out vec4 slices_2;
+layout(location = 3) out vec4 slices_3;
+
+// One step of eight bits.
+const float ONE = 1.0 / 255.0;
+
+void main()
+{
+    vec4 known = texelFetch(placement, ivec2(0, 0), 0);
+    int bin = bin_of(gl_FragCoord.z, known.y, known.z);
+    int slice = int(texelFetch(placement, ivec2(bin, 0), 0).x) - FIRST;
+    ivec4 channel = ivec4(0, 1, 2, 3);
+    slices_0 = ONE * vec4(equal(channel, ivec4(slice)));
+    slices_1 = ONE * vec4(equal(channel + 4, ivec4(slice)));
+    slices_2 = ONE * vec4(equal(channel + 8, ivec4(slice)));
+    slices_3 = ONE * vec4(equal(channel + 12, ivec4(slice)));
+}

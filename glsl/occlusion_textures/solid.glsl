@@ -1,4 +1,6 @@
-// What of a column is solid: faces that bound it, and slices that lie inside.
+// Entered from mask.comp.
+//
+// The solid part of a column: faces that bound it, and slices that lie inside.
 
 #ifndef OCCLUSION_TEXTURES_SOLID_GLSL
 #define OCCLUSION_TEXTURES_SOLID_GLSL

@@ -1,7 +1,8 @@
+// Entry of the pass occlusion_textures.squares (src/techniques/occlusion_textures/pixels.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-#include "baseline/nearest.glsl"
+#include "common/nearest.glsl"
 
 // What blocks in any texel of each square of the mask. One invocation a square.
 

@@ -1,7 +1,11 @@
+// Entered from sum_rows.comp, sum_columns.comp, first_level.comp, visibility.comp and tiles.comp.
+//
 // What is filtered: tiles of numbers that are 0 or 1 at a texel, made from its mask.
 //
 // Independent slices are packed by four (section 3.6). Correlated ones come in pairs, 2t and 2t + 1, with three
 // numbers more: whether any slice above the pair blocks; any above its second; any above what follows it.
+//
+// With `#define SUMMED` also means of any rectangle, from summed-area tables.
 
 #ifndef OCCLUSION_TEXTURES_TILE_GLSL
 #define OCCLUSION_TEXTURES_TILE_GLSL
@@ -43,7 +47,7 @@ Sums tile_sums(uint mask, int tile, bool correlated)
     return Sums(uvec4(own, covered, covered | own.x), covered | own.x | own.y);
 }
 
-// The same for levels of means, whose texels hold four numbers: of a correlated slice whether it blocks,
+// The numbers for levels of means, whose texels hold four numbers: of a correlated slice whether it blocks,
 // whether any slice nearer the light does, and whether both do.
 uvec4 tile_means(uint mask, int tile, bool correlated)
 {
@@ -63,5 +67,107 @@ ivec2 place_in_image(int index)
 {
     return ivec2(index & (IMAGE_WIDTH - 1), index >> 12);
 }
+
+#ifdef SUMMED
+// Means of any rectangle from summed-area tables (Crow 1984), exact for every part of a texel.
+// The including shader declares `filtered` and `push`.
+
+// Texels before (x, y) in both directions, summed.
+uvec4 words_at(int tile, ivec2 p)
+{
+    bool none = p.x <= 0 || p.y <= 0;
+    ivec2 q = clamp(p, ivec2(1), ivec2(push.map)) - 1;
+    uvec4 words = texelFetch(filtered, place_in_image((tile * push.map + q.y) * push.map + q.x), 0);
+    return none ? uvec4(0u) : words;
+}
+
+// The sums of a slice; correlated also those of all above it, and of all above the next one.
+uvec3 sum_at(int slice, ivec2 p)
+{
+#ifdef CORRELATED
+    Sums s = unpacked(words_at(slice >> 1, p));
+    return (slice & 1) == 0 ? s.four.xzw : uvec3(s.four.yw, s.fifth);
+#else
+    return uvec3(words_at(slice >> 2, p)[slice & 3], 0u, 0u);
+#endif
+}
+
+// Part of a rectangle of texels, from the sums at its corners.
+uvec3 inside(uvec3 upper_left, uvec3 upper_right, uvec3 lower_left, uvec3 lower_right)
+{
+    return lower_right - lower_left - upper_right + upper_left;
+}
+
+// Whether no slice has anything in any texel that a part of the map touches.
+bool is_empty(vec2 lo, vec2 hi)
+{
+    ivec2 a = ivec2(floor(lo));
+    ivec2 b = ivec2(ceil(hi));
+#ifdef CORRELATED
+    // What the last slice and those above it block is what any does.
+    int last = slices() - 1;
+    return inside(sum_at(last, a), sum_at(last, ivec2(b.x, a.y)), sum_at(last, ivec2(a.x, b.y)),
+                  sum_at(last, b)).z == 0u;
+#else
+    bool empty = true;
+    for (int tile = 0; empty && 4 * tile < slices(); ++tile) {
+        empty = words_at(tile, b) - words_at(tile, ivec2(a.x, b.y)) - words_at(tile, ivec2(b.x, a.y)) +
+                    words_at(tile, a) == uvec4(0u);
+    }
+    return empty;
+#endif
+}
+
+// The share of a part of the map, `lo` to `hi` in texels, that a slice blocks, those above it, and both; the first alone
+// where it is nothing or everything. Of the texels at the rim the rectangle has a part, so the columns a,
+// a + 1, b, b + 1 and as many rows cut it into nine pieces, of which each counts in proportion. Sums are taken
+// apart before they become real numbers, so that small rectangles far from the map's first texel are exact as
+// well.
+vec3 mean_of(int slice, vec2 lo, vec2 hi)
+{
+    ivec2 a = ivec2(floor(lo));
+    ivec2 b = ivec2(ceil(hi)) - 1;
+    // The outermost corners hold all: where that is nothing or everything of the slice, as it mostly is, the
+    // rest is not needed.
+    uvec3 s00 = sum_at(slice, a);
+    uvec3 s30 = sum_at(slice, ivec2(b.x + 1, a.y));
+    uvec3 s03 = sum_at(slice, ivec2(a.x, b.y + 1));
+    uvec3 s33 = sum_at(slice, b + 1);
+    uvec3 all_of_it = inside(s00, s30, s03, s33);
+    ivec2 texels = b + 1 - a;
+    if (all_of_it.x == 0u || all_of_it.x == uint(texels.x * texels.y)) {
+        return vec3(all_of_it.x == 0u ? 0.0 : 1.0);
+    }
+    uvec3 s10 = sum_at(slice, ivec2(a.x + 1, a.y));
+    uvec3 s20 = sum_at(slice, ivec2(b.x, a.y));
+    uvec3 s01 = sum_at(slice, ivec2(a.x, a.y + 1));
+    uvec3 s11 = sum_at(slice, a + 1);
+    uvec3 s21 = sum_at(slice, ivec2(b.x, a.y + 1));
+    uvec3 s31 = sum_at(slice, ivec2(b.x + 1, a.y + 1));
+    uvec3 s02 = sum_at(slice, ivec2(a.x, b.y));
+    uvec3 s12 = sum_at(slice, ivec2(a.x + 1, b.y));
+    uvec3 s22 = sum_at(slice, b);
+    uvec3 s32 = sum_at(slice, ivec2(b.x + 1, b.y));
+    uvec3 s13 = sum_at(slice, ivec2(a.x + 1, b.y + 1));
+    uvec3 s23 = sum_at(slice, ivec2(b.x, b.y + 1));
+    // What is left out of the first and of the last row and column.
+    vec2 before = lo - vec2(a);
+    vec2 after = vec2(b + 1) - hi;
+    vec3 left = vec3(inside(s00, s10, s03, s13));
+    vec3 right = vec3(inside(s20, s30, s23, s33));
+    vec3 upper = vec3(inside(s00, s30, s01, s31));
+    vec3 lower = vec3(inside(s02, s32, s03, s33));
+    vec3 corners = before.y * (before.x * vec3(inside(s00, s10, s01, s11)) +
+                               after.x * vec3(inside(s20, s30, s21, s31))) +
+                   after.y * (before.x * vec3(inside(s02, s12, s03, s13)) +
+                              after.x * vec3(inside(s22, s32, s23, s33)));
+    vec3 sum = vec3(all_of_it) - before.x * left - after.x * right - before.y * upper - after.y * lower +
+               corners;
+    vec2 size = hi - lo;
+    vec3 mean = clamp(sum / (size.x * size.y), 0.0, 1.0);
+    // The next slice is covered by this one and by those above it, and by what both block once.
+    return vec3(mean.xy, max(mean.x + mean.y - mean.z, 0.0));
+}
+#endif
 
 #endif

@@ -1,3 +1,4 @@
+// Entry of the pass ray_march.classify (src/techniques/ray_march/passes.rs); at first skip noise.glsl and column.glsl.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -5,5 +6,45 @@
 // Which pixels are lit or in umbra for sure, and a list of the others: no ray is spent on the first, and no
 // invocation.
 
-#define USUAL
-#include "ray_march/classify.glsl"
+layout(local_size_x = 8, local_size_y = 8) in;
+
+#define NOISY_BINDING 7
+#define SURFACE_BINDING 8
+#include "ray_march/pixel.glsl"
+#include "common/lists.glsl"
+
+layout(set = 0, binding = 4, std430) buffer Arguments { uint groups[4]; };
+layout(set = 0, binding = 5, std430) buffer Pixels { uint count; uint none[3]; mat4 ndc_from_light; uint pixels[]; };
+
+layout(set = 0, binding = 6, FRACTION_FORMAT) writeonly uniform image2D halfway;
+
+void main()
+{
+    ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+    if (p.x >= push.extent.x || p.y >= push.extent.y) {
+        return;
+    }
+    Receiver r = receiver_without_normal(gbuffer(), p);
+    float v;
+    Reach reach;
+    bool open = is_open(p, r, v, reach);
+    if (open) {
+        uint at = atomicAdd(count, 1u);
+        if (at % PIXELS_A_GROUP == 0u) {
+            uvec2 reach = groups_up_to(at);
+            atomicMax(groups[0], reach.x);
+            atomicMax(groups[1], reach.y);
+        }
+        pixels[3u * at] = uint(p.x) | uint(p.y) << 16u;
+        pixels[3u * at + 1u] = floatBitsToUint(reach.start);
+        pixels[3u * at + 2u] = floatBitsToUint(reach.end);
+    } else {
+        imageStore(visibility, p, stored_fraction(FRACTION(v)));
+        if (filters()) {
+            // What is known for sure is not filtered, but neighbours are with it.
+            float known = r.receives && r.position.z > 0.0 ? v : NO_RECEIVER;
+            put_known(p, known);
+            imageStore(halfway, p, vec4(known));
+        }
+    }
+}

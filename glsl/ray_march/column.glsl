@@ -1,3 +1,5 @@
+// Entered from columns.comp, level.comp and pixel.glsl; at first skip what is behind SEARCH.
+//
 // What the layers say is solid over a texel, and whether a ray meets it.
 //
 // A column is (top, bottom, second top, second bottom): heights above the furthest, growing towards the
@@ -61,5 +63,255 @@ vec4 two_intervals(float top, float near_back, float far_front, float far_back)
     float second = far_back > 0.0 ? min(far_back, far_front) : far_front;
     return vec4(top, bottom, far_front, second);
 }
+
+#ifdef SEARCH
+#define VALUE vec4
+#include "nbuffer/levels.glsl"
+#include "common/light_space.glsl"
+
+// Whether a ray through the map meets a column.
+//
+// A ray is followed from its receiver towards the light by its height above it, `s`: over the receiver at
+// s = 0, over `t + s g` of the map at height `w + s`. It enters and leaves texels in that order, so that
+// the heights over one texel are an interval.
+//
+// The including shader says what the map's windows hold, and what the eye sees, if anything.
+
+// Bounds; at level 0 the texel's column.
+vec4 held_at(Levels l, int level, ivec2 node);
+
+// Whether a point of (texels, height) is known to be empty.
+bool seen(vec2 t, float w);
+
+vec4 combine(vec4 a, vec4 b)
+{
+    return max(a, b);
+}
+
+vec4 value_at(Levels l, int level, ivec2 node)
+{
+    vec4 held = held_at(l, level, node);
+    return level == 0 ? bounds_of(held) : held;
+}
+
+// A receiver in the map, and its own plane: a point (x, y) texels at height h lies n.x x + n.y y + n_0 - c h
+// above it (see light_space.glsl). No surface that is less than `margin` above the plane at a texel's centre
+// stops the receiver's rays: it may be the receiver's own.
+struct Place {
+    vec2 t;
+    float w;
+    vec2 n;
+    float n_0;
+    float c;
+    float margin;
+};
+
+struct Ray {
+    vec2 g;      // texels a unit of height
+    float start; // s where it begins and ends
+    float end;
+};
+
+// Turns that a search takes at most; a ray that is not done by then is stopped by nothing further. Mesa's
+// CPU driver cuts an invocation off, silently, after 65535 turns of all its loops together: 256 rays with
+// their searches stay below, as no loop is within a turn.
+const int TURNS = 250;
+
+// Steps of a linear search, with room for halvings; a pixel of 256 rays that often halve in vain may still
+// come to Mesa's limit.
+const int STEPS = 200;
+
+// Heights are compared with what they were made of by one addition; this is more than its rounding.
+const float SLACK = 1.0e-6;
+
+// What rays are cut to reaches further than what is compared, so that no cut changes what a ray meets.
+const float CUT_SLACK = 4.0 * SLACK;
+
+bool is_clear(Place p, vec2 centre, float top)
+{
+    return dot(centre, p.n) + p.n_0 - p.c * top > p.margin;
+}
+
+// Whether all columns of a window, of these bounds, stop a ray that is within it from height w0 to w1.
+bool stops_all(Place p, vec2 lo, float window, vec4 b, float w0, float w1)
+{
+    // The first top that is least clear of the plane, where the plane is highest.
+    vec2 highest = mix(lo + 0.5, lo + window - 0.5, lessThan(p.n, vec2(0.0)));
+    float top = p.c > 0.0 ? b.x : -b.z;
+    return max(w0, b.w) <= min(w1, -b.z) && is_clear(p, highest, top);
+}
+
+// Whether a ray that is over a texel from s0 to s1 meets one of its column's intervals (top, bottom).
+bool meets_interval(Place p, Ray ray, vec2 centre, vec2 interval, float s0, float s1)
+{
+    float lo = max(p.w + s0, interval.y * (1.0 - SLACK));
+    float hi = min(p.w + s1, interval.x * (1.0 + SLACK));
+    if (interval.x <= 0.0 || lo > hi || !is_clear(p, centre, interval.x)) {
+        return false;
+    }
+    // The nearest and the furthest faces are there, whoever looks; in between, what the layers take for
+    // solid may be what the eye looks through.
+    bool crosses = p.w + s0 < interval.y || p.w + s1 > interval.x;
+    float s = 0.5 * (lo + hi) - p.w;
+    return crosses || !seen(p.t + s * ray.g, p.w + s);
+}
+
+// The hit test: whether a ray that is over a texel from s0 to s1 meets its column.
+bool meets(Place p, Ray ray, ivec2 texel, vec4 column, float s0, float s1)
+{
+    vec2 centre = vec2(texel) + 0.5;
+    return meets_interval(p, ray, centre, column.xy, s0, s1) ||
+           meets_interval(p, ray, centre, column.zw, s0, s1);
+}
+
+// The heights above a receiver between which bounds have matter.
+vec2 matter_above(Place p, vec4 b)
+{
+    return vec2(-b.y * (1.0 - CUT_SLACK), b.x * (1.0 + CUT_SLACK)) - p.w;
+}
+
+vec2 inverse_of(vec2 g)
+{
+    // A ray that stays over one row never leaves it.
+    return vec2(abs(g.x) < 1.0e-30 ? 1.0e30 : 1.0 / g.x, abs(g.y) < 1.0e-30 ? 1.0e30 : 1.0 / g.y);
+}
+
+// Cuts a ray to what lies over the map.
+Ray over_map(Place p, Ray ray, int map)
+{
+    vec2 inverse = inverse_of(ray.g);
+    vec2 a = -p.t * inverse;
+    vec2 b = (float(map) - p.t) * inverse;
+    vec2 from = min(a, b);
+    vec2 to = max(a, b);
+    return Ray(ray.g, max(ray.start, max(from.x, from.y)), min(ray.end, min(to.x, to.y)));
+}
+
+// Where rays cross the lines between texels: at (line - t) * inverse, for every x and y.
+struct Lines {
+    vec2 t;
+    vec2 g;
+    vec2 inverse;
+    bvec2 up; // whether x and y grow along the ray
+};
+
+Lines lines_of(Place p, Ray ray)
+{
+    return Lines(p.t, ray.g, inverse_of(ray.g), greaterThanEqual(ray.g, vec2(0.0)));
+}
+
+// Where a ray crosses the lines at which it leaves a square window.
+vec2 leaves_at(Lines l, vec2 lo, float window)
+{
+    return (mix(lo, lo + window, l.up) - l.t) * l.inverse;
+}
+
+// The texel that a ray is over at s: beyond each line that it has crossed by then, and no other. Rounding
+// alone might say otherwise, and which texels a ray visits would depend on the windows that it came through.
+ivec2 texel_under(Lines l, float s)
+{
+    vec2 at = floor(l.t + s * l.g);
+    vec2 ahead = mix(vec2(-1.0), vec2(1.0), l.up);
+    vec2 enters = (mix(at + 1.0, at, l.up) - l.t) * l.inverse;
+    vec2 leaves = leaves_at(l, at, 1.0);
+    at += mix(vec2(0.0), ahead, greaterThanEqual(vec2(s), leaves));
+    at -= mix(vec2(0.0), ahead, lessThan(vec2(s), enters));
+    return ivec2(at);
+}
+
+// Algorithm 2 of Curtis 2009: windows that cannot stop the ray are passed at once, and larger ones tried;
+// in others smaller ones. Two departures: the window lies ahead of the ray instead of around it, and one
+// whose columns have a height in common that the ray passes stops it, whatever is in its texels.
+// `s` is where the ray is stopped.
+bool search_hierarchical(Place p, Ray ray, Levels l, bool eye, out float s)
+{
+    Lines lines = lines_of(p, ray);
+    s = ray.start;
+    vec2 extent = abs((ray.end - ray.start) * ray.g);
+    int top = top_of(l);
+    int level = clamp(l.kind == THIRDS ? log_three(int(max(extent.x, extent.y)) + 1)
+                                       : log_above(int(max(extent.x, extent.y)) + 1), 0, top);
+    for (int turn = 0; turn < TURNS; ++turn) {
+        ivec2 texel = clamp(texel_under(lines, s), ivec2(0), ivec2(l.map - 1));
+        int window = window_of(l, level);
+        ivec2 node = node_at(l, level, l.kind == MIP ? texel : mix(texel - window + 1, texel, lines.up));
+        vec2 lo = vec2(l.kind == MIP ? node << level : node);
+        vec2 leaves = leaves_at(lines, lo, float(window));
+        float next = min(min(leaves.x, leaves.y), ray.end);
+        vec4 held = held_at(l, level, node);
+        vec4 b = level == 0 ? bounds_of(held) : held;
+        vec2 matter = matter_above(p, b);
+        bool passes = next < matter.x || s > matter.y;
+        if (!passes && level > 0) {
+            if (!eye && stops_all(p, lo, float(window), b, p.w + s, p.w + next)) {
+                return true;
+            }
+            // Below everything in the window there is nothing to meet.
+            s = max(s, matter.x);
+            --level;
+        } else {
+            if (!passes && meets(p, ray, node, held, s, next)) {
+                return true;
+            }
+            if (next >= ray.end) {
+                return false;
+            }
+            s = next;
+            level = passes ? min(level + 1, top) : level;
+        }
+    }
+    return false;
+}
+
+// The column over which a ray is.
+vec4 column_under(Place p, Ray ray, float s, Levels l, out ivec2 texel)
+{
+    texel = clamp(ivec2(floor(p.t + s * ray.g)), ivec2(0), ivec2(l.map - 1));
+    return held_at(l, 0, texel);
+}
+
+bool meets_either(Place p, Ray ray, float s0, float s1, Levels l)
+{
+    ivec2 texel;
+    vec4 column = column_under(p, ray, s0, l, texel);
+    if (meets(p, ray, texel, column, s0, s1)) {
+        return true;
+    }
+    column = column_under(p, ray, s1, l, texel);
+    return meets(p, ray, texel, column, s0, s1);
+}
+
+// Linear search with binary refinement (section 3.3). A step covers a texel at most, unless the ray is
+// longer than STEPS texels, and is looked at from both its ends over all the heights between them, so that
+// nothing between two steps is lost, however thin; halving the step then says whether what was found is
+// really where the ray is.
+bool search_linear(Place p, Ray ray, Levels l, out float s)
+{
+    s = ray.start;
+    vec2 extent = abs((ray.end - ray.start) * ray.g);
+    int steps = clamp(int(ceil(max(extent.x, extent.y))), 1, STEPS);
+    float width = (ray.end - ray.start) / float(steps);
+    for (int i = 0; i < steps; ++i) {
+        float s0 = ray.start + float(i) * width;
+        float s1 = i + 1 < steps ? s0 + width : ray.end;
+        bool met = meets_either(p, ray, s0, s1, l);
+        // Three halvings are an eighth of a texel.
+        for (int halving = 0; met && halving < 3; ++halving) {
+            float middle = 0.5 * (s0 + s1);
+            if (meets_either(p, ray, s0, middle, l)) {
+                s1 = middle;
+            } else {
+                met = meets_either(p, ray, middle, s1, l);
+                s0 = middle;
+            }
+        }
+        if (met) {
+            s = s0;
+            return true;
+        }
+    }
+    return false;
+}
+#endif
 
 #endif

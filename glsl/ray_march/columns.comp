@@ -1,3 +1,4 @@
+// Entry of the pass ray_march.columns (src/techniques/ray_march/passes.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require

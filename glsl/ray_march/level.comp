@@ -1,8 +1,53 @@
+// Entry of the pass ray_march.level (src/techniques/ray_march/passes.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 
 // The bounds of a level's windows, from those of the level before it, the first from the columns.
-// This is an N-buffer's.
+// With `#define USUAL` they are an N-buffer's.
 
-#define USUAL
-#include "ray_march/level.glsl"
+#include "ray_march/column.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, binding = 0, rgba32f) uniform image2DArray windows;
+
+layout(push_constant) uniform Push {
+    int map;   // the map's side in texels
+    int kind;  // of levels
+    int level; // the one to make
+} push;
+
+#define VALUE vec4
+#include "nbuffer/levels.glsl"
+
+// Lanes of a processor that stands in for a GPU run through the branches of every kind that there could be:
+// with `#define USUAL` a level takes half of the time.
+int level_kind()
+{
+#ifdef USUAL
+    return N_BUFFER;
+#else
+    return push.kind;
+#endif
+}
+
+vec4 combine(vec4 a, vec4 b)
+{
+    return max(a, b);
+}
+
+vec4 value_at(Levels l, int level, ivec2 node)
+{
+    vec4 v = imageLoad(windows, place_of(l, level, node));
+    return level == 0 ? bounds_of(v) : v;
+}
+
+void main()
+{
+    ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+    Levels l = Levels(push.map, level_kind());
+    int side = side_of(l, push.level);
+    if (p.x < side && p.y < side) {
+        imageStore(windows, place_of(l, push.level, p), combined(l, push.level, p));
+    }
+}

@@ -1,27 +1,26 @@
+// Entered from classify.comp, trace.comp and headless/forward.frag.
+//
 // What the passes over the pixels have in common: their inputs, and where a pixel lies in the map.
 //
 // With `#define FORWARD` the pixels are fragments, whose place and plane the including shader knows without
-// a G-buffer: it declares `vec3 pixel_normal(ivec2 p, Receiver r)`.
+// a G-buffer: it defines `vec3 pixel_normal(ivec2 p, Receiver r)`.
 
 #ifndef RAY_MARCH_PIXEL_GLSL
 #define RAY_MARCH_PIXEL_GLSL
 
-#include "ray_march/fraction.glsl"
-
 #ifndef FORWARD
-layout(set = 0, binding = 0) uniform texture2D gbuffer_depth;
-layout(set = 0, binding = 1) uniform texture2D gbuffer_mask;
+#define GBUFFER
 #endif
-layout(set = 0, binding = 2) uniform texture2DArray windows;
-#ifdef FORWARD
-#include "common/receiver.glsl"
-#else
-layout(set = 0, binding = 3, FRACTION_FORMAT) writeonly uniform image2D visibility;
+#include "common/light_space.glsl"
+#include "ray_march/noise.glsl"
 
-#include "common/gbuffer.glsl"
+#define SEARCH
+#include "ray_march/column.glsl"
+
+layout(set = 0, binding = 2) uniform texture2DArray windows;
+#ifndef FORWARD
+layout(set = 0, binding = 3, FRACTION_FORMAT) writeonly uniform image2D visibility;
 #endif
-#include "common/light.glsl"
-#include "nbuffer/levels.glsl"
 
 vec4 held_at(Levels l, int level, ivec2 node)
 {
@@ -35,8 +34,6 @@ bool seen(vec2 t, float w)
     return false;
 }
 #endif
-
-#include "ray_march/search.glsl"
 
 #ifdef FORWARD
 // The push constants are the drawn mesh's.
@@ -88,7 +85,9 @@ Levels levels()
     return Levels(push.map, level_kind());
 }
 
-#ifndef FORWARD
+#ifdef FORWARD
+vec3 pixel_normal(ivec2 p, Receiver r);
+#else
 GBuffer gbuffer()
 {
     return GBuffer(push.light_from_ndc, push.extent, push.background, is_masked());
@@ -199,6 +198,106 @@ Reach reach_of(Place p, float distance_from_light)
         reach.end = min(reach.end, matter.y);
     }
     return reach;
+}
+
+// ---------------------------------------------------------------------------------------------
+// Whether a pixel's visible fraction takes rays to tell. Where it does not, `v` is the fraction; where it does,
+// `reach` has the heights that its rays need look at. The receiver has a normal where that matters.
+bool is_open(ivec2 p, inout Receiver r, out float v, out Reach reach)
+{
+    v = 1.0;
+    reach = Reach(0.0, -1.0, false, vec2(0.0), 0.0, vec4(0.0));
+    // Behind the light's plane there is nothing to hide.
+    if (!r.receives || r.position.z <= 0.0) {
+        return false;
+    }
+    reach = reach_of(place_of(r), r.position.z);
+    bool open = reach.start <= reach.end;
+    // Most pixels do without a normal.
+    if (open || r.blocks) {
+        r.normal = pixel_normal(p, r);
+        v = part_above(r);
+        // Which part of a texture is above the plane only rays tell.
+        open = v > 0.0 && (open || (is_textured() && v < 1.0));
+    }
+    if (open && v == 1.0 && reach.whole && !looks_from_eye()) {
+        Place place = place_of(r);
+        if (stops_all(place, reach.from, reach.side, reach.bounds, place.w + reach.start,
+                      place.w + reach.end)) {
+            open = false;
+            v = 0.0;
+        }
+    }
+    return open;
+}
+
+#ifdef TEXTURED
+layout(set = 0, binding = 7) uniform texture2D light_texture;
+
+// What the light sends out at a point of [0, 1]^2. Light space has y against the light's second half-axis,
+// so that the texture's first row is where that points.
+FRACTION emitted_at(vec2 s)
+{
+    ivec2 size = textureSize(light_texture, 0);
+    ivec2 texel = clamp(ivec2(s * vec2(size)), ivec2(0), size - 1);
+    vec3 color = max(texelFetch(light_texture, texel, 0).rgb, vec3(0.0));
+#ifdef COLOR
+    return color;
+#else
+    // Luminance of linear sRGB.
+    return dot(color, vec3(0.2126, 0.7152, 0.0722));
+#endif
+}
+#endif
+
+struct Found {
+    FRACTION visible;
+    int hidden;    // how many rays are stopped
+    float heights; // the sum of where
+};
+
+// All rays of a receiver with its normal, between two heights above it.
+Found found_by_rays(ivec2 p, Receiver r, float start, float end)
+{
+    Place place = place_of(r);
+    float above = part_above(r);
+    Found found = Found(FRACTION(0.0), 0, 0.0);
+#ifdef TEXTURED
+    FRACTION emitted = FRACTION(0.0);
+    FRACTION arrived = FRACTION(0.0);
+#endif
+    for (int i = 0; i < rays(); ++i) {
+        vec2 s = light_sample(sampling(), is_modern(), i, rays(), cell_rows(), uvec2(p), push.seed);
+        vec2 point = (2.0 * s - 1.0) * push.half_light;
+#ifdef TEXTURED
+        FRACTION weight = emitted_at(s);
+        emitted += weight;
+#endif
+        // What the pixel's own surface hides is known without a ray.
+        if (r.blocks && dot(r.normal, vec3(point, 0.0) - r.position) <= 0.0) {
+            continue;
+        }
+        Ray ray = over_map(place, Ray(slope_to(place, r.position.z, point), start, end), push.map);
+        bool hit = false;
+        if (ray.start <= ray.end) {
+            float height;
+            hit = is_linear() ? search_linear(place, ray, levels(), height)
+                              : search_hierarchical(place, ray, levels(), looks_from_eye(), height);
+            found.hidden += int(hit);
+            found.heights += hit ? height : 0.0;
+        }
+#ifdef TEXTURED
+        arrived += hit ? FRACTION(0.0) : weight;
+#endif
+    }
+#ifdef TEXTURED
+    // The share of what the rays' points send out; all of it where that is nothing.
+    FRACTION nothing = FRACTION(1.0e-30);
+    found.visible = (arrived + nothing) / (emitted + nothing);
+#else
+    found.visible = FRACTION(max(above - float(found.hidden) / float(rays()), 0.0));
+#endif
+    return found;
 }
 
 #endif

@@ -1,3 +1,4 @@
+// Entry of the pass ray_march.start (src/techniques/ray_march/passes.rs).
 #version 450
 
 // An empty list of pixels, and what the passes over it need to know that a push constant cannot hold.

@@ -1,3 +1,4 @@
+// Entry of the pass soft_shadow_map.blocks (src/techniques/soft_shadow_map/passes.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -118,7 +119,7 @@ void main()
     for (int x = 0; x < BLOCK; ++x) {
         columns[x] = vec4(0.0);
     }
-    // Of maps above 2048 texels a side not all blocks have room; see GUARANTEED_RANGE.
+    // Where maps are above 2048 texels a side, not all blocks have room; see GUARANTEED_RANGE.
     bool room = (index + 1) * BLOCK_TEXELS <= sums.length();
     for (int y = 0; y < BLOCK; ++y) {
         vec4 row = vec4(0.0);

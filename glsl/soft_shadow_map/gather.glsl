@@ -1,3 +1,5 @@
+// Entered from gather_map.comp and gather_pixels.comp.
+//
 // The hierarchical gather at four receivers at once, one lane of each vec4 a receiver.
 //
 // The including shader declares the buffers `texels`, `sums` and `nodes`, and what it knows of the
@@ -9,14 +11,8 @@
 #ifndef SOFT_SHADOW_MAP_GATHER_GLSL
 #define SOFT_SHADOW_MAP_GATHER_GLSL
 
+#include "common/lists.glsl"
 #include "soft_shadow_map/node.glsl"
-
-// Where four receivers lie: least and largest t and w.
-struct Tile {
-    vec2 t_min;
-    vec2 t_max;
-    vec2 w;
-};
 
 // The map's nodes as they are gathered from.
 struct Map {
@@ -36,6 +32,7 @@ float most(vec4 a)
     return max(max(a.x, a.y), max(a.z, a.w));
 }
 
+// Where four receivers lie.
 Tile tile_of(Receivers r)
 {
     bvec4 nothing = equal(r.w, vec4(NOTHING));
@@ -81,7 +78,7 @@ vec4 sums_within(int block, ivec2 lo, ivec2 hi)
     return s;
 }
 
-// Takes the first texel out of a mask that has one. Whether it has is asked outside: asked within, with
+// Takes the first texel out of a mask that has one. Whether it has is tested outside: tested within, with
 // `?:`, in code that stands eight times in a row, SwiftShader's compiler needs over 24 GB.
 int take_texel(inout uvec2 todo)
 {
@@ -103,7 +100,8 @@ vec4 next_texel(inout uvec2 todo, int block, vec2 lo, Receivers r, vec2 scale)
     return texel_occlusion(lo + vec2(n % BLOCK, n / BLOCK), texels[block * BLOCK_TEXELS + n], r, scale);
 }
 
-// The same by its back face, or by its front face where the back face does not lie before the receiver.
+// The occlusion of the first texel of a mask by its back face, or by its front face where the back face does not lie
+// before the receiver.
 vec4 next_pair(inout uvec2 todo, int block, int backs, vec2 lo, Receivers r, vec2 scale)
 {
     if ((todo.x | todo.y) == 0u) {
@@ -138,7 +136,7 @@ vec4 gather(Map map, int side, Receivers r)
 {
     Tile tile = tile_of(r);
     vec4 sum = vec4(0.0);
-    // By superblock, by row and at last: thousands of equal numbers added to one round the same way each time
+    // Sums by superblock, by row and at last: thousands of equal numbers added to one round the same way each time
     // (docs/rounding.md).
     vec4 sum_of_row = vec4(0.0);
     vec4 sum_of_superblock = vec4(0.0);
@@ -146,7 +144,7 @@ vec4 gather(Map map, int side, Receivers r)
         return sum;
     }
     float cell = map.scale.x * map.scale.y;
-    // The widest window of occluder texels that any occluder could be felt from.
+    // The widest window of occluder texels from which any could hide light.
     vec2 widest = 0.5 * (map.w_max - tile.w.x) / map.scale;
     float end = float(map.row - 1);
     ivec2 from = ivec2(clamp(floor((tile.t_min - widest) / float(SUPERBLOCK)), 0.0, end));
@@ -212,7 +210,7 @@ vec4 gather(Map map, int side, Receivers r)
             break;
         }
 
-        // Its texels from `outer` may be felt; those from `core` wholly, by all receivers.
+        // Its texels from `outer` may hide light; those from `core` wholly, by all receivers.
         vec2 reach = 0.5 * (node.w_max - tile.w.x) / map.scale;
         vec2 inner = 0.5 * (node.w_min - tile.w.y) / map.scale;
         ivec2 outer_lo = ivec2(clamp(floor(tile.t_min - reach - lo), 0.0, float(BLOCK)));

@@ -1,7 +1,7 @@
+// Entry of the passes soft_shadow_map.gather_back and soft_shadow_map.gather_front (src/techniques/soft_shadow_map/passes.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-#include "common/light.glsl"
 
 // The soft shadow map by gathering: what all occluder-map texels hide of the light from the texels of
 // the receiver map. One invocation 2x2 texels. Same sum as blending every micro-patch (Atty 2006,

@@ -1,9 +1,126 @@
+// Entry of the pass soft_shadow_map.gather_pixels (src/techniques/soft_shadow_map/pixels.rs); at first skip node.glsl.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
 // The gather at the G-buffer's own pixels: no receiver map, no resampling, and no split into occluders
 // and receivers, because a texel counts only where it lies above the pixel's own plane. One invocation
-// 2x2 pixels, one lane of each vec4 a pixel.
+// 2x2 pixels, one lane of each vec4 a pixel; with `#define LISTED` those of the listed tiles alone.
 
-#include "soft_shadow_map/gather_pixels.glsl"
+layout(local_size_x = 64) in;
+
+#define GBUFFER
+#include "common/light_space.glsl"
+#include "soft_shadow_map/node.glsl"
+
+layout(set = 0, binding = 2, std430) readonly buffer Texels { float texels[]; };
+layout(set = 0, binding = 3, std430) readonly buffer Sums { vec4 sums[]; };
+layout(set = 0, binding = 4, std430) readonly buffer Nodes { uvec4 nodes[]; };
+layout(set = 0, binding = 5, r32f) writeonly uniform image2D visibility;
+
+#ifdef LISTED
+layout(set = 0, binding = 6, std430) readonly buffer Tiles { uint count; uint tiles[]; };
+#include "common/lists.glsl"
+#endif
+
+#include "soft_shadow_map/pixels.glsl"
+
+struct Receivers {
+    vec4 t_x;
+    vec4 t_y;
+    vec4 w;
+    // A texel's centre (x, y) at w lies n.x x + n.y y + n_0 - c w above the plane, in units of 1/w.
+    vec4 n_x;
+    vec4 n_y;
+    vec4 n_0;
+    vec4 c;
+    vec4 bias; // what that may be off by
+};
+
+bvec4 is_above(vec2 lo, float w_o, Receivers r)
+{
+    vec4 above = (lo.x + 0.5) * r.n_x + (lo.y + 0.5) * r.n_y + r.n_0 - r.c * w_o;
+    return greaterThan(above, r.bias);
+}
+
+// 1 where every texel of a node is above the plane for sure, -1 where none is, 0 otherwise.
+int plane_side(Node node, vec2 lo, float side, Receivers r)
+{
+    vec2 mid = lo + 0.5 * side;
+    float half_side = 0.5 * side - 0.5;
+    vec4 centre = mid.x * r.n_x + mid.y * r.n_y + r.n_0;
+    vec4 reach = half_side * (abs(r.n_x) + abs(r.n_y));
+    vec4 c_near = r.c * node.w_max;
+    vec4 c_far = r.c * node.w_min;
+    vec4 least = centre - reach - max(c_near, c_far);
+    vec4 most = centre + reach - min(c_near, c_far);
+    bvec4 nothing = equal(r.w, vec4(NOTHING));
+    if (all(lessThanEqual(mix(most, vec4(-NOTHING), nothing), r.bias))) {
+        return -1;
+    }
+    return all(greaterThan(mix(least, vec4(NOTHING), nothing), r.bias)) ? 1 : 0;
+}
+
+#include "soft_shadow_map/gather.glsl"
+
+void main()
+{
+    uint l = gl_LocalInvocationIndex;
+    uvec2 within = uvec2((l & 1u) | ((l >> 1) & 2u) | ((l >> 2) & 4u),
+                         ((l >> 1) & 1u) | ((l >> 2) & 2u) | ((l >> 3) & 4u));
+#ifdef LISTED
+    uint at = tile_in_list(gl_WorkGroupID.xy, l * TILES_A_GROUP / 64u);
+    if (at >= count) {
+        return;
+    }
+    uint tile = tiles[at];
+    bool felt = is_felt_tile(tile);
+    ivec2 quad = first_pixel(tile) + ivec2(within & uint(TILE / 2 - 1)) * 2;
+#else
+    bool felt = true;
+    ivec2 quad = ivec2(gl_WorkGroupID.xy * 8u + within) * 2;
+#endif
+    if (quad.x >= push.extent.x || quad.y >= push.extent.y) {
+        return;
+    }
+    GBuffer g = gbuffer();
+    vec2 half_light = 0.5 / (push.scale * push.texels_per_uv);
+    Receivers r;
+    vec4 below; // the part of the light under the pixel's own surface, where that blocks
+    for (int i = 0; i < 4; ++i) {
+        Receiver p = receiver_at(g, quad + ivec2(i & 1, i >> 1));
+        bool there = p.receives && p.position.z > 0.0; // behind the light's plane nothing is to hide
+        float w = there ? 1.0 / p.position.z : 0.0;
+        vec2 t = place_of(p.position, w);
+        vec2 n = p.normal.xy / push.texels_per_uv;
+        float c = dot(p.normal, p.position);
+        r.t_x[i] = t.x;
+        r.t_y[i] = t.y;
+        r.n_x[i] = n.x;
+        r.n_y[i] = n.y;
+        r.n_0[i] = p.normal.z - dot(n, push.first);
+        r.c[i] = c;
+        // A patch stands for the surface within half a texel's diagonal of its centre.
+        r.bias[i] = own_slope(p.blocks) * 0.5 * length(1.0 / push.texels_per_uv) +
+                    plane_rounding(n, r.n_0[i], c, t, w, push.snap, push.depth_error);
+        below[i] = there && p.blocks ? 1.0 - fraction_above(p.normal.xy * half_light, c) : 0.0;
+        // From a tile without occluders nothing is hidden but by its own surfaces.
+        r.w[i] = there && felt ? w : NOTHING;
+    }
+    Map map = Map(push.scale, push.w_max, push.spread, push.row);
+    vec4 hidden = below;
+    bool mean = (push.flags & 4) != 0;
+    for (int side = 0; side <= ((push.flags >> 1) & 1); ++side) {
+        // Where nothing of the light is left to hide, another side need not be gathered.
+        r.w = mix(r.w, vec4(NOTHING), greaterThanEqual(hidden, vec4(1.0)));
+        vec4 sum = below + gather(map, side == 1 && mean ? BACK_OR_FRONT : side, r);
+        hidden = side == 1 && mean ? merged_sides(hidden, sum) : max(hidden, sum);
+    }
+    vec4 v = 1.0 - min(hidden, vec4(1.0));
+    for (int i = 0; i < 4; ++i) {
+        ivec2 p = quad + ivec2(i & 1, i >> 1);
+        if (p.x < push.extent.x && p.y < push.extent.y) {
+            imageStore(visibility, p, vec4(v[i]));
+        }
+    }
+}

@@ -1,3 +1,5 @@
+// Entered from blocks.comp, superblocks.comp, patch_emit.comp, tiles.comp and gather.glsl.
+//
 // Nodes: square groups of occluder-map texels with the moments of w over the occupied ones.
 
 #ifndef SOFT_SHADOW_MAP_NODE_GLSL
@@ -66,7 +68,7 @@ bool is_felt(Node node, vec2 lo, float side, vec2 t_min, vec2 t_max, float w_r, 
 }
 
 // The first superblock and, behind it, the last that receivers with t in [t_min, t_max] and w of w_r or more could
-// feel an occluder in; none is nearer than 1/w_max, and a row has `row` superblocks.
+// be affected by an occluder in; none is nearer than 1/w_max, and a row has `row` superblocks.
 ivec4 superblocks_around(vec2 t_min, vec2 t_max, float w_r, int row, float w_max, vec2 scale)
 {
     vec2 widest = 0.5 * (w_max - w_r) / scale;

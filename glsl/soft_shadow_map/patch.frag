@@ -1,7 +1,8 @@
+// Entry of the passes soft_shadow_map.blend_back and soft_shadow_map.blend_front (src/techniques/soft_shadow_map/passes.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-#include "common/light.glsl"
+#include "common/light_space.glsl"
 
 // The fraction of the light that a micro-patch hides from one receiver texel (Atty 2006, section 3.4);
 // blending adds the patches up.

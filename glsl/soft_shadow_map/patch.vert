@@ -1,3 +1,4 @@
+// Entry of the passes soft_shadow_map.blend_back and soft_shadow_map.blend_front (src/techniques/soft_shadow_map/passes.rs).
 #version 450
 
 // A micro-patch to its penumbra rectangle on the receiver map (Atty 2006, section 3.3), by pulling the
@@ -33,7 +34,7 @@ void main()
     uint spread = (p.x & 0xffffu) * 3242174889u + (p.x >> 16) * 2447445414u;
     threshold = float(spread >> 16) / 65536.0;
 
-    // The patch is felt up to half the light's size, as seen through the patch from the furthest
+    // The patch hides light up to half the light's size, as seen through the patch from the furthest
     // receiver there is.
     vec2 reach = 0.5 * max(w_o - push.w_far, 0.0) / push.scale;
     vec2 lo = (texel - reach - push.t_first) / push.t_step + 0.5 - MARGIN;

@@ -1,3 +1,5 @@
+// Entered from tiles.comp and gather_pixels.comp.
+//
 // What the passes over the pixels have in common: their numbers.
 
 #ifndef SOFT_SHADOW_MAP_PIXELS_GLSL

@@ -1,23 +1,63 @@
+// Entry of the pass visibility.tiles (src/techniques/soft_shadow_map/pixels.rs); at first skip node.glsl.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "soft_shadow_map/node.glsl"
 
-// Which tiles of pixels feel no occluder: no node within the light's window, as they see it, lies before any of
+// Which tiles of pixels no occluder affects: no node within the light's window, as they see it, lies before any of
 // their receivers. One invocation a tile.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0, binding = 0) uniform texture2D gbuffer_depth;
-layout(set = 0, binding = 1) uniform texture2D gbuffer_mask;
 layout(set = 0, binding = 2, std430) readonly buffer Nodes { uvec4 nodes[]; };
 layout(set = 0, binding = 3, std430) buffer Arguments { uint groups[4]; };
 layout(set = 0, binding = 4, std430) buffer Tiles { uint count; uint tiles[]; };
 layout(set = 0, binding = 5, r32f) writeonly uniform image2D visibility;
 
-#include "common/gbuffer.glsl"
+#define GBUFFER
+#include "common/light_space.glsl"
+#include "common/lists.glsl"
 #include "soft_shadow_map/pixels.glsl"
-#include "soft_shadow_map/felt.glsl"
+
+// Nodes that are looked at before a tile counts as affected: a walk that takes longer is not worth its
+// while, and Mesa's CPU driver would cut it off.
+const int MOST_NODES = 4096;
+
+// The walk of the gather, but by all of a tile's receivers at once: false only where the gather of each
+// of them adds nothing.
+bool is_felt_by(Tile tile, int row, int sides, float w_max, vec2 scale)
+{
+    ivec4 around = superblocks_around(tile.t_min, tile.t_max, tile.w.x, row, w_max, scale);
+    int left = MOST_NODES - sides * (around.z - around.x + 1) * (around.w - around.y + 1);
+    if (left < 0) {
+        return true;
+    }
+    for (int side = 0; side < sides; ++side) {
+        for (int y = around.y; y <= around.w; ++y) {
+            for (int x = around.x; x <= around.z; ++x) {
+                int index = ((side * row + y) * row + x) * FAMILY;
+                ivec2 first = ivec2(x, y) * FAN;
+                Node whole = unpack_node(nodes[2 * index], nodes[2 * index + 1]);
+                bool felt = is_felt(whole, vec2(first * BLOCK), float(SUPERBLOCK), tile.t_min, tile.t_max,
+                                    tile.w.x, scale);
+                uint children = felt ? whole.mask.x : 0u;
+                while (children != 0u) {
+                    int child = findLSB(int(children));
+                    children &= children - 1u;
+                    left -= 1;
+                    int at = index + 1 + child;
+                    Node block = unpack_node(nodes[2 * at], uvec4(0u));
+                    vec2 lo = vec2((first + ivec2(child % FAN, child / FAN)) * BLOCK);
+                    if (left < 0 || is_felt(block, lo, float(BLOCK), tile.t_min, tile.t_max, tile.w.x,
+                                            scale)) {
+                        return true;
+                    }
+                }
+            }
+        }
+    }
+    return false;
+}
 
 float nearest_w()
 {

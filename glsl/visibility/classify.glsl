@@ -1,15 +1,17 @@
+// Entered from pcss/tiles.comp, soft_shadow_map/tiles.comp and occlusion_textures/tiles.comp.
+//
 // Sorts tiles of pixels: those that are lit are done here, the others are listed. One invocation a tile.
 //
 // The including shader declares `gbuffer_depth`, `gbuffer_mask`, `visibility`, `push` with `extent`, and
 //     GBuffer gbuffer();
 //     vec2 place_of(vec3 position, float w);
 //     float nearest_w();           no occluder is nearer than 1/nearest_w
-//     bool is_felt_in(Tile tile);  whether any occluder may be felt by any of its receivers
+//     bool is_felt_in(Tile tile);  whether any occluder may affect any of its receivers
 
 #ifndef VISIBILITY_CLASSIFY_GLSL
 #define VISIBILITY_CLASSIFY_GLSL
 
-#include "visibility/tile.glsl"
+#include "common/lists.glsl"
 
 void classify_tile(ivec2 tile)
 {

@@ -1,10 +1,16 @@
+// Entry of the pass visibility.lit (src/stages/visibility/mod.rs).
 #version 450
 
-// No occluder can be felt: every pixel sees the whole light.
+// No occluder affects anything: every pixel sees the whole light.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0, binding = 0, r32f) writeonly uniform image2D visibility;
+#ifdef COLOR
+#define FORMAT rgba32f
+#else
+#define FORMAT r32f
+#endif
+layout(set = 0, binding = 0, FORMAT) writeonly uniform image2D visibility;
 
 layout(push_constant) uniform Push {
     ivec2 extent;

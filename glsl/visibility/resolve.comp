@@ -1,3 +1,4 @@
+// Entry of the pass visibility.resolve (src/stages/visibility/mod.rs); at first skip common/light_space.glsl.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -8,15 +9,13 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0, binding = 0) uniform texture2D gbuffer_depth;
-layout(set = 0, binding = 1) uniform texture2D gbuffer_mask;
 layout(set = 0, binding = 2) uniform texture2D receiver_depth;
 layout(set = 0, binding = 3) uniform texture2D front_map;
 layout(set = 0, binding = 4) uniform texture2D back_map;
 layout(set = 0, binding = 5, r32f) writeonly uniform image2D visibility;
 
-#include "common/gbuffer.glsl"
-#include "soft_shadow_map/merge.glsl"
+#define GBUFFER
+#include "common/light_space.glsl"
 
 layout(push_constant) uniform Push {
     mat4 light_from_ndc;
@@ -40,7 +39,7 @@ float occlusion_at(ivec2 texel)
 // each axis, where its centre is, and as much again for the raster that sampled it.
 const float SLOPE = 1.0;
 // The map's depth holds 24 bits, the G-buffer's position about 22.
-const float ROUNDING = 1.0 / 1048576.0;
+const float MAP_ROUNDING = 1.0 / 1048576.0;
 
 float filtered(vec3 position, vec3 normal)
 {
@@ -68,7 +67,7 @@ float filtered(vec3 position, vec3 normal)
         plain += bilinear * v;
         float w_texel = texelFetch(receiver_depth, texel, 0).x * push.receiver_inv_near;
         float w_plane = w + dot(slope, vec2(texel) + 0.5 - at);
-        float allowed = SLOPE * (abs(slope.x) + abs(slope.y)) + ROUNDING * w;
+        float allowed = SLOPE * (abs(slope.x) + abs(slope.y)) + MAP_ROUNDING * w;
         if (abs(w_texel - w_plane) <= allowed) {
             sum += bilinear * v;
             weight += bilinear;

@@ -1,3 +1,4 @@
+// Entry of the pass visibility.tiles_start (src/stages/tiles.rs).
 #version 450
 
 // An empty list of tiles.

@@ -17,7 +17,7 @@ use antumbra::graph::Scope;
 use antumbra::scene::{Role, Scene};
 use antumbra::stages::depth_layers::{self, DepthPush, MapView};
 use antumbra::stages::visibility;
-use antumbra::techniques::soft_shadow_map::{BLEND_STEPS, push::PatchDraw, receiver_grid};
+use antumbra::techniques::soft_shadow_map::{BLEND_STEPS, PatchDraw, receiver_grid};
 use antumbra::{Error, Geometry, MeshInstance, RectangleLight, shaders};
 use ash::vk;
 use std::time::{Duration, Instant};

@@ -17,7 +17,8 @@ pub fn glsl_root() -> PathBuf {
     repository().join("glsl")
 }
 
-/// The folder of the committed modules: `spirv/a/b.comp.spv` comes from `glsl/a/b.comp`.
+/// The folder of the committed modules: `spirv/a/b.comp.spv` comes from `glsl/a/b.comp`, or as
+/// [`crate::permutations`] has it.
 pub fn spirv_root() -> PathBuf {
     repository().join("spirv")
 }
@@ -25,6 +26,17 @@ pub fn spirv_root() -> PathBuf {
 fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("tests/ is in the repository").into()
 }
+
+/// A module and the files that it was made of.
+pub struct Compiled {
+    /// SPIR-V 1.0.
+    pub words: Vec<u32>,
+    /// Every file that was included, in the order in which they were read.
+    pub included: Vec<String>,
+}
+
+/// What is defined before a text: names, with a value where they have one.
+pub type Defines<'a> = [(&'a str, Option<&'a str>)];
 
 /// Compiles source text to SPIR-V 1.0 for Vulkan 1.0.
 ///
@@ -34,6 +46,14 @@ fn repository() -> PathBuf {
 /// # Errors
 /// The compiler's log, with `name`.
 pub fn try_compile(name: &str, source: &str) -> Result<Vec<u32>, String> {
+    Ok(try_compile_with(name, source, &[])?.words)
+}
+
+/// As [`try_compile`], with names defined as `#define` does.
+///
+/// # Errors
+/// The compiler's log, with `name`.
+pub fn try_compile_with(name: &str, source: &str, defines: &Defines) -> Result<Compiled, String> {
     let extension = name.rsplit('.').next().unwrap_or_default();
     let stage =
         STAGES.iter().find(|(known, _)| *known == extension).map(|(_, stage)| *stage).ok_or_else(
@@ -41,37 +61,50 @@ pub fn try_compile(name: &str, source: &str) -> Result<Vec<u32>, String> {
         )?;
     let compiler = Compiler::acquire().ok_or("glslang does not start")?;
     let source = ShaderSource::from(source);
-    let mut includes = Includes { problem: None };
+    let mut includes = Includes { problem: None, files: Vec::new() };
     let compiled = ShaderInput::new(
         &source,
         stage,
         &CompilerOptions::default(), // GLSL, Vulkan 1.0, SPIR-V 1.0
-        None::<&[(&str, Option<&str>)]>,
+        Some(defines),
         Some(&mut includes),
     )
     .and_then(|input| compiler.create_shader(input))
     .and_then(|shader| shader.compile());
-    compiled.map_err(|error| {
-        let include = includes.problem.map(|p| format!("\n{p}")).unwrap_or_default();
-        format!("{name}: {error}{include}")
-    })
+    match compiled {
+        Ok(words) => Ok(Compiled { words, included: includes.files }),
+        Err(error) => {
+            let include = includes.problem.map(|p| format!("\n{p}")).unwrap_or_default();
+            Err(format!("{name}: {error}{include}"))
+        }
+    }
 }
 
 /// Compiles one file under [`glsl_root`], named relative to it.
 ///
 /// # Panics
 /// With the file and the compiler's log, if it does not compile.
-pub fn compile(name: &str) -> Vec<u32> {
+pub fn compile_file(name: &str, defines: &Defines) -> Compiled {
     let path = glsl_root().join(name);
     let source =
         std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("glsl/{name}: {error}"));
-    try_compile(name, &source).unwrap_or_else(|log| panic!("glsl/{log}"))
+    try_compile_with(name, &source, defines).unwrap_or_else(|log| panic!("glsl/{log}"))
 }
 
 /// The names of all whole shaders, relative to [`glsl_root`] with forward slashes, sorted.
 pub fn shader_names() -> Vec<String> {
-    let is_shader = |name: &str| STAGES.iter().any(|(e, _)| name.ends_with(&format!(".{e}")));
     files(&glsl_root()).into_iter().filter(|name| is_shader(name)).collect()
+}
+
+/// The names of all GLSL files, whole shaders and others, in the same way.
+pub fn glsl_names() -> Vec<String> {
+    let all = files(&glsl_root()).into_iter();
+    all.filter(|name| is_shader(name) || name.ends_with(".glsl")).collect()
+}
+
+/// Whether a file is a whole shader, by its extension.
+pub fn is_shader(name: &str) -> bool {
+    STAGES.iter().any(|(extension, _)| name.ends_with(&format!(".{extension}")))
 }
 
 /// Every committed module by its shader's name.
@@ -116,10 +149,11 @@ fn files(root: &Path) -> Vec<String> {
     found
 }
 
-/// Reads includes, and remembers the first that could not be read: glslang's own message for it
-/// does not say why.
+/// Reads includes, and remembers which, and the first that could not be read: glslang's own message
+/// for it does not say why.
 struct Includes {
     problem: Option<String>,
+    files: Vec<String>,
 }
 
 impl IncludeHandler for Includes {
@@ -131,7 +165,12 @@ impl IncludeHandler for Includes {
         _depth: usize,
     ) -> Option<IncludeResult> {
         match std::fs::read_to_string(glsl_root().join(name)) {
-            Ok(data) => Some(IncludeResult { name: name.into(), data }),
+            Ok(data) => {
+                if !self.files.iter().any(|file| file == name) {
+                    self.files.push(name.into());
+                }
+                Some(IncludeResult { name: name.into(), data })
+            }
             Err(error) => {
                 let by = if includer.is_empty() { "the shader" } else { includer };
                 let problem = format!("glsl/{name}, included by {by}: {error}");

@@ -1,7 +1,7 @@
 //! Runs one GLSL function on the device, alone, beside its twins on the CPU.
 //!
 //! ```ignore
-//! Function::new("common/light.glsl", "float overlap(float a, float b)")
+//! Function::new("common/light_space.glsl", "float overlap(float a, float b)")
 //!     .case((0.2, 0.7))
 //!     .random(10_000, (-2.0..3.0, -2.0..3.0))
 //!     .f32(Tolerance::ulps(1), |x| vec![overlap(x[0], x[1])])

@@ -26,7 +26,7 @@
 //! reads and a write take 57 ns from buffers and 8.5 ns from an image, and making the levels 11 to 18 ns a
 //! value. A shader that only copies a texel takes 6 to 7.5 ns there; memory, 1.6 to 2.6.
 //!
-//! `glsl/nbuffer/values.glsl` leaves open what a value is. The least of a channel is the largest of its
+//! `glsl/nbuffer/levels.glsl` leaves open what a value is. The least of a channel is the largest of its
 //! negative, so that one `max` of a `vec4` makes all four of a technique's bounds.
 
 pub mod twin;

@@ -1,4 +1,4 @@
-//! The CPU twin of `glsl/nbuffer/values.glsl`, for any value and any way to combine two.
+//! The CPU twin of `glsl/nbuffer/levels.glsl`, for any value and any way to combine two.
 
 use super::{Kind, Levels};
 

@@ -31,7 +31,7 @@ use crate::graph::{Access, Graph, Need, Pass, Push, ResourceId, Use, Uses, Work}
 use crate::shaders::{self, Module};
 use smallvec::smallvec;
 
-/// Pixels a side of a tile, as in `tile_list.glsl`.
+/// Pixels a side of a tile, as in `lists.glsl`.
 pub(crate) const TILE: u32 = 8;
 /// A word a tile behind their number.
 const HEAD: u64 = 4;

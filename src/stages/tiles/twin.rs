@@ -2,7 +2,7 @@
 
 use num_traits::Float;
 
-/// Where some receivers lie: least and largest t and w, as in `visibility/tile.glsl`.
+/// Where some receivers lie: least and largest t and w, as in `common/lists.glsl`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds<T> {
     /// Least t.

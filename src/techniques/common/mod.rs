@@ -4,7 +4,7 @@
 //! plane, which the G-buffer's depth gives: the receiver-plane bias, exact for flat receivers at any
 //! slope and filter width. It may be off by the rounding of that test and by how far the raster moves a
 //! vertex, and a bent surface of the pixel's own rises above its plane by up to 0.3 of the distance
-//! within the map (`glsl/common/plane.glsl`); that much higher a texel must lie. The distance is half a
+//! within the map (`glsl/common/light_space.glsl`); that much higher a texel must lie. The distance is half a
 //! texel's diagonal where a texel stands for itself, and how far away it is where it stands for a whole
 //! filter. Nothing is to be tuned.
 //!
@@ -18,7 +18,7 @@ use crate::shaders::Module;
 use crate::stages::visibility::{GBuffer, grid};
 use bytemuck::{Pod, Zeroable};
 
-/// What passes over the pixels with one occluder map are given (`push.glsl`).
+/// What passes over the pixels with one occluder map are given (`one_map.glsl`).
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Pixels {
@@ -77,14 +77,14 @@ pub(crate) fn pixel_push(count: u32, inputs: &PassInputs) -> Push {
     })
 }
 
-/// What a pass over the pixels reads, as `pixels.glsl` binds it; the image that it writes comes behind.
+/// What a pass over the pixels reads, as `one_map.glsl` binds it; the image that it writes comes behind.
 pub(crate) fn pixel_uses(front: ResourceId, gbuffer: &GBuffer) -> Uses {
     let mut uses = Uses::from_slice(&gbuffer.bound());
     uses.push(Use::bound(2, front, Access::SampledCompute));
     uses
 }
 
-/// Adds the pass that turns the map from the light's centre into the visible fraction, as `pixels.glsl` has it;
+/// Adds the pass that turns the map from the light's centre into the visible fraction, as `one_map.glsl` has it;
 /// `count` and the uses in `more` are the technique's own.
 pub(crate) fn one_map(
     graph: &mut Graph,

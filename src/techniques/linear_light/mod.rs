@@ -139,13 +139,12 @@ mod tests {
     /// What the shaders declare for themselves.
     #[test]
     fn the_shaders_sizes_are_these() {
-        let places = include_str!("../../../glsl/linear_light/places.glsl");
-        assert!(places.contains(&format!("SAMPLES_AT = {};", passes::SAMPLES_AT)));
+        let line = include_str!("../../../glsl/linear_light/line.glsl");
+        assert!(line.contains(&format!("SAMPLES_AT = {};", passes::SAMPLES_AT)));
         let [x, y] = samples::RECEIVERS;
         let mask = include_str!("../../../glsl/linear_light/mask.glsl");
         assert!(mask.contains(&format!("RECEIVERS = ivec2({x}, {y});")));
-        let of = include_str!("../../../glsl/linear_light/samples.glsl");
-        assert!(of.contains(&format!("MOST_SAMPLES = {};", settings::MOST_SAMPLES)));
+        assert!(line.contains(&format!("MOST_SAMPLES = {};", settings::MOST_SAMPLES)));
     }
 
     /// An outline in a corner of its rectangle has lines all the same, within it, and they weigh 1 together.

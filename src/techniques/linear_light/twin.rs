@@ -55,7 +55,7 @@ pub fn run_at(mask: u32, at: i32) -> u32 {
 }
 
 /// The part of a segment that a receiver sees: `[skin, none]` of its first and of its last sample, and how far either
-/// sees the receiver (`glsl/linear_light/channels.glsl`).
+/// sees the receiver (`glsl/linear_light/line.glsl`).
 pub fn part_of_segment<T: Float>(first: [T; 2], last: [T; 2], see: [T; 2]) -> T {
     let half = T::from(0.5).unwrap_or_else(T::nan);
     let clear = |none: T, other: T| none * (T::one() - half * other);

@@ -1,9 +1,7 @@
 //! Means over the slices: summed-area tables, or levels of a mip pyramid or an N-buffer.
 
 use super::settings::{IMAGE_WIDTH, Settings};
-use crate::graph::{
-    Access, Graph, Owner, Pass, Push, ResourceId, Use,
-};
+use crate::graph::{Access, Graph, Owner, Pass, Push, ResourceId, Use};
 use crate::shaders::{self, Module};
 use crate::stages::nbuffer::Levels;
 use crate::stages::visibility::grid;

@@ -12,7 +12,7 @@ use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use smallvec::{SmallVec, smallvec};
 
-/// Bins of distances, as in `placement.glsl`.
+/// Bins of distances, as in `slices.glsl`.
 const BINS: u32 = 960;
 
 /// Bins and planes of slices.

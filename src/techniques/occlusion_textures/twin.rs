@@ -7,7 +7,7 @@ use crate::stages::depth_layers::{Eye, MapView};
 use glam::{DVec2, DVec3};
 use num_traits::Float;
 
-/// Bins of distances, as in `placement.glsl`.
+/// Bins of distances, as in `slices.glsl`.
 pub const BINS: i32 = 960;
 
 /// The bin of what a projection from behind the light stores.
@@ -40,7 +40,7 @@ pub fn kernel_of<T: Float>(
 }
 
 /// A rectangle that holds the kernels of a tile's points in a plane, by `[least t, largest t]` of where they are seen
-/// from the light's centre, in texels from that of u = v = 0, and their least w (`tile_kernel.glsl`).
+/// from the light's centre, in texels from that of u = v = 0, and their least w (`slices.glsl`).
 pub fn tile_kernel_of<T: Float>(
     [per_x, per_y, first_x, first_y, eye]: [T; 5],
     [min_x, min_y, max_x, max_y]: [T; 4],

@@ -46,7 +46,7 @@
 //!
 //! **Noise.** Rays go to Sobol's points, scrambled for each pixel by a hash, to jittered cells (section 3.1)
 //! or anywhere. The filter is a separable Gaussian over the pixel's own surface (section 3), whose width
-//! follows from the penumbra's width and the noise of so many rays: see `filter.glsl`.
+//! follows from the penumbra's width and the noise of so many rays: see `noise.glsl`.
 //!
 //! **Textured and coloured lights** (section 5.1): each ray is weighed by what the light emits where it goes,
 //! and the visible fraction is that of the emission: of its luminance, or of red, green and blue each

@@ -146,7 +146,7 @@ pub fn cell_of<T: Float>(n: u32, count: u32, rows: u32) -> [T; 4] {
     ]
 }
 
-/// The standard deviation of the Gaussian in metres; see `filter.glsl`.
+/// The standard deviation of the Gaussian in metres; see `noise.glsl`.
 pub fn filter_width<T: Float>(penumbra: T, pixel: T, noise: T) -> T {
     let number = |x: f64| T::from(x).unwrap_or_else(T::nan);
     let w = penumbra / pixel;
@@ -164,18 +164,18 @@ pub fn filter_weight<T: Float>(apart: [T; 3], normal: [T; 3], its: [T; 3], width
     (-squares / (width * width + width * width)).exp() * turned.powi(16)
 }
 
-/// A receiver in the map and its plane, as `search.glsl` has it.
+/// A receiver in the map and its plane, as `column.glsl` has it.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
     /// Texels.
     pub t: [f64; 2],
     /// Height.
     pub w: f64,
-    /// See `plane.glsl`.
+    /// See `light_space.glsl`.
     pub n: [f64; 2],
-    /// See `plane.glsl`.
+    /// See `light_space.glsl`.
     pub n_0: f64,
-    /// See `plane.glsl`.
+    /// See `light_space.glsl`.
     pub c: f64,
     /// A column no less than this above the plane stops rays.
     pub margin: f64,

@@ -1,9 +1,7 @@
 //! The nodes of the occluder map: blocks of 8×8 texels and superblocks of 32×32, with their moments.
 
 use super::settings::{Accumulate, Settings, Sides};
-use crate::graph::{
-    Access, Graph, Pass, Push, ResourceId, STORAGE_BYTES, Use,
-};
+use crate::graph::{Access, Graph, Pass, Push, ResourceId, STORAGE_BYTES, Use};
 use crate::shaders;
 use crate::stages::depth_layers::DepthLayers;
 use crate::techniques::room::PassInputs;

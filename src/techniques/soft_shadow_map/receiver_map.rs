@@ -2,9 +2,7 @@
 
 use super::nodes::{Nodes, scale_of};
 use super::settings::{Accumulate, Settings, Sides, spread_of};
-use crate::graph::{
-    Access, Draw, Graph, Owner, Pass, Push, ResourceId, Target, Use, Work,
-};
+use crate::graph::{Access, Draw, Graph, Owner, Pass, Push, ResourceId, Target, Use, Work};
 use crate::shaders;
 use crate::stages::depth_layers::MapView;
 use crate::techniques::room::PassInputs;

@@ -65,7 +65,7 @@ pub fn back_or_front(front: &[f32], back: &[f32], w_r: f32) -> Vec<f32> {
     front.iter().zip(back).map(|(&f, &b)| if b > 0.0 && b > w_r { b } else { f }).collect()
 }
 
-/// The occlusion by both sides from that by either, as in `merge.glsl`.
+/// The occlusion by both sides from that by either, as in `light_space.glsl`.
 pub fn merged_sides<T: Float>(front: T, back: T) -> T {
     let tenth = T::one() / (half::<T>() * T::from(20.0).unwrap_or_else(T::nan));
     let larger = front.max(back);

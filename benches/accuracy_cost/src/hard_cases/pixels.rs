@@ -11,7 +11,7 @@ use glam::{DMat4, DVec2, DVec3};
 use rayon::prelude::*;
 
 /// How steeply a receiver's own surface may rise above its plane: what the node allows it
-/// (`glsl/common/plane.glsl`).
+/// (`glsl/common/light_space.glsl`).
 const OWN_SLOPE: f64 = 0.3;
 
 /// The side of the soft shadow map, texels.

@@ -1,0 +1,56 @@
+// Entered from one_map.glsl, many_lights/add_point.comp and linear_light/visibility.comp.
+//
+// A receiver's plane over an occluder map, and which of the map's texels lie in front of it.
+
+#ifndef COMMON_COMPARE_GLSL
+#define COMMON_COMPARE_GLSL
+
+#include "common/light_space.glsl"
+
+struct MapPlane {
+    vec2 t;        // the receiver, in texels
+    float w;
+    vec2 n;        // see light_space.glsl
+    float n_0;
+    float c;       // above 0 where the map's eye is below the plane
+    float rounding;
+    vec2 texel;    // a texel's size in u and v
+    float slope;   // how steeply the receiver's own surface may rise above its plane
+};
+
+// `position` and `normal` as the map's eye has them: its own place is the origin.
+MapPlane map_plane(vec3 position, vec3 normal, bool blocks, vec2 texels_per_uv, vec2 first,
+                   float snap, float depth_error)
+{
+    float w = 1.0 / position.z;
+    vec2 t = position.xy * w * texels_per_uv + first;
+    vec2 n = normal.xy / texels_per_uv;
+    float n_0 = normal.z - dot(n, first);
+    float c = dot(normal, position);
+    float rounding = plane_rounding(n, n_0, c, t, w, snap, depth_error);
+    return MapPlane(t, w, n, n_0, c, rounding, 1.0 / texels_per_uv, own_slope(blocks));
+}
+
+// How far a texel's surface, w_o at its centre `at`, lies above the receiver's plane beyond what the
+// receiver's own surface may rise over a distance of `reach` in u and v; no texel is known better than to
+// half its diagonal.
+float clearance(MapPlane m, vec2 at, float w_o, float reach)
+{
+    float above = dot(at, m.n) + m.n_0 - m.c * w_o;
+    return above - m.slope * max(0.5 * length(m.texel), reach);
+}
+
+// Whether a texel's surface hides what lies behind the texel itself: the receiver-plane depth bias.
+bool in_front(MapPlane m, vec2 at, float w_o)
+{
+    return w_o > m.w && clearance(m, at, w_o, 0.0) > m.rounding;
+}
+
+// As `in_front`, where the texel is one of a filter around the receiver and stands for all of it: the receiver's
+// own surface must not, however far away it is within the filter.
+bool in_front_of_filter(MapPlane m, vec2 at, float w_o)
+{
+    return w_o > m.w && clearance(m, at, w_o, length((at - m.t) * m.texel)) > m.rounding;
+}
+
+#endif

@@ -1,0 +1,250 @@
+// Entered from one_map.glsl, soft_shadow_map/gather_pixels.comp, ray_march/pixel.glsl and others; at first skip what is behind GBUFFER.
+//
+// Light space: the light's own coordinates, receivers there, their planes, and what hides how much of the light.
+//
+// A point of light space at distance d is kept as (u, v, w) = (x/d, y/d, 1/d). A texel of a light-space
+// map covers one step of u and v. t is (u, v) in occluder-map texels: texel (i, j) covers
+// [i, i+1] x [j, j+1]. `scale` is the texel's size over the light's: (du/Lx, dv/Ly), in 1/m.
+//
+// With `#define GBUFFER` also what reads the G-buffer.
+
+#ifndef COMMON_LIGHT_SPACE_GLSL
+#define COMMON_LIGHT_SPACE_GLSL
+
+// ---------------------------------------------------------------------------------------------
+// Receivers from the host's G-buffer: depth alone gives the position and the geometric plane.
+
+struct Receiver {
+    bool receives;
+    bool blocks;   // its own surface blocks light
+    vec3 position; // light space, metres
+    vec3 normal;   // of the plane that what hides it lies above: the surface's own where that blocks, on the
+                   // viewer's side; where it does not, it is in no map, and whatever is nearer to the light hides it
+};
+
+const vec3 TOWARDS_LIGHT = vec3(0.0, 0.0, -1.0);
+
+// A pixel with depth `depth` to a homogeneous point of light space. `ndc` runs from -1 to 1.
+vec4 unproject(mat4 light_from_ndc, vec2 pixel, vec2 extent, float depth)
+{
+    vec2 ndc = (pixel + 0.5) * 2.0 / extent - 1.0;
+    return light_from_ndc * vec4(ndc, depth, 1.0);
+}
+
+vec3 dehomogenize(vec4 p)
+{
+    return p.xyz / p.w;
+}
+
+// The direction from `p` to the viewer, not normalized. Column 2 of light_from_ndc is the image of
+// the clip-space point (0, 0, 1, 0): the eye of a perspective camera; for an orthographic one the
+// direction of growing depth, which points at the viewer where depth is reversed.
+vec3 towards_viewer(mat4 light_from_ndc, vec3 p, float background)
+{
+    vec4 eye = light_from_ndc[2];
+    if (eye.w != 0.0) {
+        return eye.xyz / eye.w - p;
+    }
+    return background == 0.0 ? eye.xyz : -eye.xyz;
+}
+
+// A vector whose largest component is 1 or -1, or 0: products of four of them stay within a float, whatever the
+// scene's scale.
+vec3 of_unit_size(vec3 v)
+{
+    vec3 size = abs(v);
+    return v / max(max(size.x, size.y), max(size.z, 1.2e-38));
+}
+
+// The unit normal of the plane through p and its neighbours along x and y, on the viewer's side.
+vec3 plane_normal(vec3 along_x, vec3 along_y, vec3 to_viewer)
+{
+    vec3 n = cross(of_unit_size(along_x), of_unit_size(along_y));
+    n *= inversesqrt(max(dot(n, n), 1.0e-38));
+    return dot(n, to_viewer) < 0.0 ? -n : n;
+}
+
+#ifdef GBUFFER
+layout(set = 0, binding = 0) uniform texture2D gbuffer_depth;
+layout(set = 0, binding = 1) uniform texture2D gbuffer_mask;
+
+struct GBuffer {
+    mat4 light_from_ndc;
+    ivec2 extent;
+    float background; // the depth of a pixel that shows no surface
+    bool masked;      // gbuffer_mask holds the receivers' roles
+};
+
+float depth_at(ivec2 p)
+{
+    return texelFetch(gbuffer_depth, p, 0).x;
+}
+
+// A depth for the arithmetic below: background and pixels outside the image are far off any plane.
+float depth_or_far(GBuffer g, ivec2 p)
+{
+    bool outside = any(lessThan(p, ivec2(0))) || any(greaterThanEqual(p, g.extent));
+    float depth = outside ? g.background : depth_at(p);
+    return depth == g.background ? 1.0e30 : depth;
+}
+
+// The plane of the facet that a pixel shows. A plane's depth is linear over the image, so of the four
+// quadrants around the pixel the one is taken whose depths bend least: along both axes and across.
+vec3 facet_normal(GBuffer g, ivec2 p, float depth, vec3 position)
+{
+    // Neighbours along x and y, after and before; how much depth bends behind them.
+    vec4 near;
+    vec4 bend;
+    for (int i = 0; i < 4; ++i) {
+        ivec2 axis = (i < 2 ? ivec2(1, 0) : ivec2(0, 1)) * (1 - 2 * (i & 1));
+        near[i] = depth_or_far(g, p + axis);
+        bend[i] = abs(2.0 * near[i] - depth_or_far(g, p + 2 * axis) - depth);
+    }
+    ivec2 best = ivec2(0);
+    float least = 3.0e38;
+    for (int i = 0; i < 4; ++i) {
+        ivec2 q = ivec2(i & 1, i >> 1);
+        float corner = depth_or_far(g, p + 1 - 2 * q);
+        float twist = abs(near[q.x] + near[2 + q.y] - corner - depth);
+        float score = bend[q.x] + bend[2 + q.y] + twist;
+        if (score < least) {
+            least = score;
+            best = q;
+        }
+    }
+    ivec2 side = 1 - 2 * best;
+    // Alone, a pixel's plane faces the viewer.
+    float depth_x = near[best.x] > 1.0e29 ? depth : near[best.x];
+    float depth_y = near[2 + best.y] > 1.0e29 ? depth : near[2 + best.y];
+    vec2 extent = vec2(g.extent);
+    vec2 pixel = vec2(p);
+    vec3 x = dehomogenize(
+        unproject(g.light_from_ndc, pixel + vec2(side.x, 0.0), extent, depth_x));
+    vec3 y = dehomogenize(
+        unproject(g.light_from_ndc, pixel + vec2(0.0, side.y), extent, depth_y));
+    return plane_normal(x - position, y - position,
+                        towards_viewer(g.light_from_ndc, position, g.background));
+}
+
+// What a pixel shows, but for the normal.
+Receiver receiver_without_normal(GBuffer g, ivec2 p)
+{
+    Receiver r = Receiver(false, false, vec3(0.0), vec3(0.0));
+    if (p.x >= g.extent.x || p.y >= g.extent.y) {
+        return r;
+    }
+    float depth = depth_at(p);
+    if (depth == g.background) {
+        return r;
+    }
+    float role = g.masked ? texelFetch(gbuffer_mask, p, 0).x : 1.0;
+    r.receives = role > 0.25;
+    r.blocks = role > 0.75;
+    r.position = dehomogenize(unproject(g.light_from_ndc, vec2(p), vec2(g.extent), depth));
+    return r;
+}
+
+Receiver receiver_at(GBuffer g, ivec2 p)
+{
+    Receiver r = receiver_without_normal(g, p);
+    r.normal = r.blocks ? facet_normal(g, p, depth_at(p), r.position) : TOWARDS_LIGHT;
+    return r;
+}
+#endif
+
+// The magnification k = 1/(w_o - w_r), in metres: what a step of u at the occluder covers on the
+// light's plane, seen from a receiver at w_r. The caller sees to w_o > w_r.
+float magnification(float w_o, float w_r)
+{
+    return 1.0 / (w_o - w_r);
+}
+
+// The length of the part of [a, b] that lies within the light, which is [-1/2, 1/2] (Atty 2006,
+// section 4.2, with the light centred).
+float overlap(float a, float b)
+{
+    return clamp(b, -0.5, 0.5) - clamp(a, -0.5, 0.5);
+}
+
+// The fraction of the light that a micro-patch hides: the occluder-map texels from `lo` to `hi` at
+// w_o, back-projected from the receiver at t and w_r. 0 where the patch is not in front.
+float patch_occlusion(vec2 lo, vec2 hi, float w_o, vec2 t, float w_r, vec2 scale)
+{
+    if (w_o <= w_r) {
+        return 0.0;
+    }
+    vec2 m = scale * magnification(w_o, w_r);
+    vec2 a = (lo - t) * m;
+    vec2 b = (hi - t) * m;
+    return overlap(a.x, b.x) * overlap(a.y, b.y);
+}
+
+// The fraction of the light above the plane {p : dot(n, p) = c} of light space: `slope` is (n.x, n.y)
+// times the light's half-extents. The fraction of the unit square [-1, 1]^2 where
+// slope.x p + slope.y q > c, as three pieces that are each well conditioned.
+float fraction_above(vec2 slope, float c)
+{
+    float m = max(abs(slope.x), abs(slope.y));
+    float l = min(abs(slope.x), abs(slope.y));
+    if (c >= m + l) {
+        return 0.0;
+    }
+    if (c <= -(m + l)) {
+        return 1.0;
+    }
+    if (abs(c) <= m - l) {
+        return 0.5 - 0.5 * c / m;
+    }
+    // A corner triangle of the square: its legs are (m + l - |c|)/m and (m + l - |c|)/l.
+    float leg = m + l - abs(c);
+    float corner = leg * leg / (8.0 * m * l);
+    return c > 0.0 ? corner : 1.0 - corner;
+}
+
+// ---------------------------------------------------------------------------------------------
+// Above or below a receiver's own plane, and what that may be off by.
+//
+// The plane {p : dot(n, p) = c} of light space is linear in (u, v, w): a point of a light-space map with
+// its centre at (x, y) texels and at w lies n.x x + n.y y + n_0 - c w above it, in units of 1/w, with
+// n.xy over the texels a unit of u and v.
+
+// The pixel's own surface, bent by up to 17 degrees from facet to facet, rises above the pixel's plane by
+// at most this share (sin 17 degrees) of the distance within the map. (Mean error of the soft shadow map
+// on the bunny for 0, 0.2, 0.3, 0.5, 1: 4.0, 2.9, 2.9, 3.0, 3.2 %; on the bunny's lit pixels 6.4, 0.6,
+// 0.4, 0.3, 0.2 %.)
+const float OWN_SLOPE = 0.3;
+
+// What does not block is not in the maps, and has nothing of its own to rise.
+float own_slope(bool blocks)
+{
+    return blocks ? OWN_SLOPE : 0.0;
+}
+
+// Rounding of (u, v, w), of the sum that tells above from below, and of the G-buffer's position.
+const float ROUNDING = 1.0 / 2097152.0;
+
+// How far off the height may be by arithmetic: `snap` is how far the raster moves a vertex, in texels,
+// `depth_error` how far off an occluder's w may be beyond its rounding, 1/m; the receiver is at t and w.
+float plane_rounding(vec2 n, float n_0, float c, vec2 t, float w, float snap, float depth_error)
+{
+    return snap * (abs(n.x) + abs(n.y)) + depth_error * abs(c) +
+           ROUNDING * (dot(abs(n), abs(t)) + abs(n_0) + abs(c) * w);
+}
+
+// ---------------------------------------------------------------------------------------------
+// The occlusion by both sides of an occluder, from that by either.
+
+// Where either side hides all of the light it is umbra: a depth step inside a silhouette leaves a gap in
+// the sum of one side alone. From this occlusion on the larger takes over from the mean. (Mean error of
+// the bunny's image without, from 0.97, from 0.9: 2.9, 2.8, 2.6 %; Suzanne's 1.5, 1.4, 1.4 %.)
+const float ALMOST_ALL = 0.9;
+
+// The gaps of one side are overlaps of the other, and cancel in the mean.
+vec4 merged_sides(vec4 front, vec4 back)
+{
+    vec4 larger = max(front, back);
+    vec4 umbra = clamp((larger - ALMOST_ALL) / (1.0 - ALMOST_ALL), 0.0, 1.0);
+    return mix(0.5 * (front + back), larger, umbra);
+}
+
+#endif

@@ -1,0 +1,57 @@
+// Entry of the pass baseline.add_point (src/techniques/many_lights/mod.rs).
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "common/compare.glsl"
+
+// Whether one point of the light is hidden from each pixel: one comparison with the map drawn from there.
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, binding = 0) uniform texture2D positions;
+layout(set = 0, binding = 1) uniform texture2D normals;
+layout(set = 0, binding = 2) uniform texture2D point_depth;
+layout(set = 0, binding = 3, r32f) uniform image2D hidden_points;
+
+layout(push_constant) uniform Push {
+    vec2 point;         // on the light, m
+    vec2 texels_per_uv; // map texels a unit of u and v, as the point has them
+    vec2 first;         // texel coordinates of u = v = 0
+    ivec2 extent;       // of the G-buffer
+    float inv_near;     // 1 over the map's near plane, 1/m
+    float snap;         // how far a raster moves a vertex, in texels
+    int map;            // the map's side in texels
+} push;
+
+bool hidden(ivec2 pixel)
+{
+    vec4 position = texelFetch(positions, pixel, 0);
+    if (position.w == 0.0) {
+        return false;
+    }
+    vec3 normal = texelFetch(normals, pixel, 0).xyz;
+    vec3 p = position.xyz - vec3(push.point, 0.0);
+    // The point is below the pixel's own surface.
+    if (dot(normal, p) >= 0.0) {
+        return true;
+    }
+    MapPlane m = map_plane(p, normal, position.w == 2.0, push.texels_per_uv, push.first, push.snap, 0.0);
+    ivec2 texel = ivec2(floor(m.t));
+    if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(push.map)))) {
+        return false;
+    }
+    float w_o = texelFetch(point_depth, texel, 0).x * push.inv_near;
+    return in_front(m, vec2(texel) + 0.5, w_o);
+}
+
+void main()
+{
+    ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+    if (p.x >= push.extent.x || p.y >= push.extent.y) {
+        return;
+    }
+    // Whole numbers up to 4096: exact, whatever their order. Counting what is hidden leaves lit pixels alone.
+    if (hidden(p)) {
+        imageStore(hidden_points, p, vec4(imageLoad(hidden_points, p).x + 1.0));
+    }
+}

@@ -1,0 +1,23 @@
+// Entry of the pass baseline.average (src/techniques/many_lights/mod.rs).
+#version 450
+#extension GL_EXT_samplerless_texture_functions : require
+
+// The share of the points that each pixel sees.
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, binding = 0) uniform texture2D hidden_points;
+layout(set = 0, binding = 1, r32f) writeonly uniform image2D visibility;
+
+layout(push_constant) uniform Push {
+    ivec2 extent; // of the G-buffer
+    float points;
+} push;
+
+void main()
+{
+    ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+    if (p.x < push.extent.x && p.y < push.extent.y) {
+        imageStore(visibility, p, vec4(1.0 - texelFetch(hidden_points, p, 0).x / push.points));
+    }
+}

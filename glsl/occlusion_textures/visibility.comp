@@ -1,0 +1,140 @@
+// Entry of the pass occlusion_textures.visibility (src/techniques/occlusion_textures/pixels.rs); at first skip tile.glsl.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+
+// The visible fraction: kernels of slices from summed-area tables, combined (Eisemann and Decoret 2008,
+// sections 3.3 and 3.5); with `#define LEVELS` from levels of means. With `#define LISTED` the pixels of the listed
+// tiles alone.
+
+#ifdef CORRELATED
+const bool IS_CORRELATED = true;
+#else
+const bool IS_CORRELATED = false;
+#endif
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, binding = 2) uniform texture2D placement;
+layout(set = 0, binding = 4, r32f) writeonly uniform image2D visibility;
+
+#define GBUFFER
+#include "common/light_space.glsl"
+#define PIXELS
+#define TILES_A_GROUP 1u
+#include "occlusion_textures/slices.glsl"
+
+#ifdef LISTED
+layout(set = 0, binding = 6, std430) readonly buffer Tiles { uint count; uint tiles[]; };
+layout(set = 0, binding = 7, std430) readonly buffer Met { uint met[]; }; // slices, a bit each, tile by tile
+#endif
+
+#ifdef LEVELS
+layout(set = 0, binding = 3) uniform texture2DArray filtered;
+layout(set = 0, binding = 5) uniform utexture2D mask;
+
+#include "occlusion_textures/tile.glsl"
+#define RECTANGLES
+#include "occlusion_textures/levels.glsl"
+#else
+layout(set = 0, binding = 3) uniform utexture2D filtered;
+
+#define SUMMED
+#include "occlusion_textures/tile.glsl"
+#endif
+
+// What is hidden only grows: from here on the slices that are left change nothing that an eye sees.
+const float OPAQUE = 1.0 - 1.0 / 1024.0;
+
+// The parts of a kernel that a slice blocks, those above it, and both. Outside the map nothing does.
+vec3 window_of(int slice, vec4 kernel)
+{
+    vec2 lo = max(kernel.xy, vec2(0.0));
+    vec2 hi = min(kernel.zw, vec2(push.map));
+    if (any(lessThanEqual(hi, lo))) {
+        return vec3(0.0);
+    }
+    vec2 inside = (hi - lo) / (kernel.zw - kernel.xy);
+    return inside.x * inside.y * mean_of(slice, lo, hi);
+}
+
+// Whether none of the kernels of a point meets anything. Their rims go one way from slice to slice, so they
+// lie between the first one and the last.
+bool is_lit(MapWindow m, vec3 position)
+{
+    float first = texelFetch(placement, ivec2(BINS, 0), 0).z;
+    float last = texelFetch(placement, ivec2(BINS + slices() - 1, 0), 0).z;
+    vec4 a = kernel_of(m, position, first, push.half_light);
+    vec4 b = kernel_of(m, position, min(last, position.z), push.half_light);
+    vec2 lo = max(min(a.xy, b.xy), vec2(0.0));
+    vec2 hi = min(max(a.zw, b.zw), vec2(push.map));
+    return any(lessThanEqual(hi, lo)) || is_empty(lo, hi);
+}
+
+// `left`: slices that may block anything, with a bit each.
+float hidden_at(Receiver r, uint left)
+{
+    MapWindow m = map_window();
+    if (is_lit(m, r.position)) {
+        return 0.0;
+    }
+    float hidden = 0.0;
+    float before = 0.0;
+    int last = -1;
+    while (left != 0u && hidden < OPAQUE) {
+        int slice = findLSB(int(left));
+        left &= left - 1u;
+        vec4 planes = texelFetch(placement, ivec2(BINS + slice, 0), 0);
+        float weight = slice_weight(r.position.z, planes.x, planes.y, r.blocks || !IS_CORRELATED);
+        if (weight == 0.0) {
+            break;
+        }
+        vec3 window = window_of(slice, kernel_of(m, r.position, planes.z, push.half_light));
+        // What blocks nothing hides nothing more.
+        if (window.x == 0.0) {
+            continue;
+        }
+#ifdef CORRELATED
+        float right_above = last == slice - 1 ? before : 0.0;
+        hidden = mix(hidden, hidden_with_correlated(hidden, right_above, window), weight);
+        before = window.x;
+        last = slice;
+#else
+        hidden = hidden_with(combination(), hidden, weight * window.x);
+#endif
+    }
+    return hidden;
+}
+
+void main()
+{
+#ifdef LISTED
+    uint at = tile_in_list(gl_WorkGroupID.xy, 0u);
+    if (at >= count) {
+        return;
+    }
+    uint meets = is_felt_tile(tiles[at]) ? met[nth_tile(tiles[at], push.extent)] : 0u;
+    ivec2 p = first_pixel(tiles[at]) + ivec2(gl_LocalInvocationID.xy);
+#else
+    uint meets = all_slices();
+    ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+#endif
+    if (p.x >= push.extent.x || p.y >= push.extent.y) {
+        return;
+    }
+    GBuffer g = gbuffer();
+    Receiver r = receiver_without_normal(g, p);
+    float v = 1.0;
+    // Behind the light's plane there is nothing to hide.
+    if (r.receives && r.position.z > 0.0) {
+        if (r.blocks) {
+            // The part of the light above the pixel's own plane.
+            r.normal = facet_normal(g, p, depth_at(p), r.position);
+            v = fraction_above(r.normal.xy * push.half_light, dot(r.normal, r.position));
+        }
+        if (meets != 0u && v > 0.0) {
+            v = min(v, 1.0 - hidden_at(r, meets));
+        }
+    }
+    imageStore(visibility, p, vec4(v));
+}

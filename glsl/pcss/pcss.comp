@@ -1,0 +1,82 @@
+// Entry of the pass baseline.pcss (src/techniques/pcss/mod.rs); at first skip disc.glsl.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+
+// Percentage-closer soft shadows (Fernando 2005): the blockers around a pixel's place in the map say how
+// far away they are, and with that how wide the penumbra is that the comparisons are averaged over. With `#define
+// LISTED` the pixels of the listed tiles alone.
+
+#include "common/one_map.glsl"
+#include "pcss/disc.glsl"
+
+#ifdef LISTED
+#define TILES_A_GROUP 1u
+#include "common/lists.glsl"
+layout(set = 0, binding = 4, std430) readonly buffer Tiles { uint count; uint tiles[]; };
+#endif
+
+// The mean distance of the blockers within `reach` texels; 0 where there are none.
+float blocker_distance(MapPlane m, vec2 reach, float turn)
+{
+    float sum = 0.0;
+    float found = 0.0;
+    for (int i = 0; i < push.count; ++i) {
+        vec2 at = m.t + reach * disc_to_square(disc_point(i, push.count) + vec2(0.0, turn));
+        ivec2 texel = ivec2(floor(at));
+        float w_o = w_of(texel);
+        if (in_front_of_filter(m, vec2(texel) + 0.5, w_o)) {
+            sum += 1.0 / w_o;
+            found += 1.0;
+        }
+    }
+    return found > 0.0 ? sum / found : 0.0;
+}
+
+void main()
+{
+#ifdef LISTED
+    uint at = tile_in_list(gl_WorkGroupID.xy, 0u);
+    if (at >= count) {
+        return;
+    }
+    bool felt = is_felt_tile(tiles[at]);
+    ivec2 p = first_pixel(tiles[at]) + ivec2(gl_LocalInvocationID.xy);
+#else
+    bool felt = true;
+    ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+#endif
+    if (p.x >= push.extent.x || p.y >= push.extent.y) {
+        return;
+    }
+    Receiver r = pixel_receiver(p);
+    float v = 1.0;
+    if (r.receives) {
+        MapPlane m = pixel_plane(r);
+        float turn = pixel_turn(uint(p.x), uint(p.y));
+        // What a pixel's own surface hides of the light is known, and not left to the taps.
+        v = r.blocks ? fraction_above(r.normal.xy * push.half_light, m.c) : 1.0;
+        // The light seen through the near plane, and then through the blockers' mean distance: similar
+        // triangles, half_light (1/d - w) in u and v.
+        vec2 texels = push.half_light * push.texels_per_uv;
+        float blockers = 0.0;
+        if (felt && v > 0.0 && push.inv_near > m.w) {
+            blockers = blocker_distance(m, texels * (push.inv_near - m.w), turn);
+        }
+        if (blockers > 0.0) {
+            vec2 reach = texels * max(1.0 / blockers - m.w, 0.0);
+            float hidden = 0.0;
+            float taps = 0.0;
+            for (int i = 0; i < push.count; ++i) {
+                vec2 place = disc_to_square(disc_point(i, push.count) + vec2(0.0, turn));
+                // A tap stands for the part of the light behind it.
+                if (!r.blocks || dot(r.normal.xy, place * push.half_light) > m.c) {
+                    hidden += hidden_at(m, m.t + reach * place);
+                    taps += 1.0;
+                }
+            }
+            v *= 1.0 - hidden / max(taps, 1.0);
+        }
+    }
+    imageStore(visibility, p, vec4(clamp(v, 0.0, 1.0)));
+}

@@ -1,9 +1,0 @@
-#version 450
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
-
-// Which pixels are lit or in umbra for sure, and a list of the others: no ray is spent on the first, and no
-// invocation.
-// The same with any settings.
-
-#include "ray_march/classify.glsl"

@@ -1,7 +1,0 @@
-#version 450
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
-
-// The listed pixels, filtered along their rows.
-
-#include "ray_march/filter_pass.glsl"

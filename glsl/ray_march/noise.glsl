@@ -1,0 +1,252 @@
+// Entered from filter.comp and pixel.glsl; at first skip md5, pcg and sobol.
+//
+// Where a pixel's rays go, how noisy that makes its visible fraction, and how that is kept and filtered.
+
+#ifndef RAY_MARCH_NOISE_GLSL
+#define RAY_MARCH_NOISE_GLSL
+
+#include "common/light_space.glsl"
+
+// ---------------------------------------------------------------------------------------------
+// What a visible fraction is: of all the light, or with `#define COLOR` of its red, green and blue.
+
+#ifdef COLOR
+#define FRACTION vec3
+#define FRACTION_FORMAT rgba32f
+#else
+#define FRACTION float
+#define FRACTION_FORMAT r32f
+#endif
+
+// As an image holds it: alpha is 1, and so are green and blue where there is no color.
+vec4 stored_fraction(FRACTION v)
+{
+#ifdef COLOR
+    return vec4(v, 1.0);
+#else
+    return vec4(v);
+#endif
+}
+
+// ---------------------------------------------------------------------------------------------
+// Random numbers as hashes of where and which they are (Tzeng and Wei 2008): the same each time, in any
+// order.
+
+// One of the rounds of `md5`: `chosen` is the round's function of the digest, `added` its word and its
+// constant. As published the turned word is added in two parts, and every round is added to the digest.
+void md5_round(inout uvec4 turned, inout uvec4 digest, uint chosen, uint added, uint by)
+{
+    uint sum = turned.x + chosen + added;
+    turned.x = turned.y + (sum << by) + (sum >> (32u - by));
+    turned = turned.yzwx;
+    digest += turned;
+}
+
+uint md5_choose(uint if_set, uint b, uint c)
+{
+    return (if_set & b) | (~if_set & c);
+}
+
+// MD5 reduced to 16 rounds of 64, of a message of four words (Curtis 2009, appendix A). The words that the
+// rounds would take from beyond the message are 0.
+uvec4 md5(uvec4 message, uint key)
+{
+    uvec4 m = message ^ key;
+    uvec4 digest = uvec4(0x01234567u, 0x89abcdefu, 0xfedcba98u, 0x76543210u);
+    uvec4 t = digest;
+    md5_round(t, digest, md5_choose(t.x, t.y, t.z), m.x + 0xd76aa478u, 7u);
+    md5_round(t, digest, md5_choose(t.x, t.y, t.z), m.y + 0xe8c7b757u, 12u);
+    md5_round(t, digest, md5_choose(t.x, t.y, t.z), m.z + 0x242070dbu, 17u);
+    md5_round(t, digest, md5_choose(t.x, t.y, t.z), m.w + 0xc1bdceefu, 22u);
+    md5_round(t, digest, md5_choose(t.z, t.x, t.y), m.y + 0xf61e2562u, 5u);
+    md5_round(t, digest, md5_choose(t.z, t.x, t.y), 0xc040b341u, 9u);
+    md5_round(t, digest, md5_choose(t.z, t.x, t.y), 0x265e5a52u, 14u);
+    md5_round(t, digest, md5_choose(t.z, t.x, t.y), m.x + 0xe9b6c7abu, 20u);
+    md5_round(t, digest, t.x ^ t.y ^ t.z, 0xfffa3942u, 4u);
+    md5_round(t, digest, t.x ^ t.y ^ t.z, 0x8771f681u, 11u);
+    md5_round(t, digest, t.x ^ t.y ^ t.z, 0x6d9d6122u, 16u);
+    md5_round(t, digest, t.x ^ t.y ^ t.z, 0xfde5380cu, 23u);
+    md5_round(t, digest, t.y ^ (t.x | ~t.z), m.x + 0xf4292244u, 6u);
+    md5_round(t, digest, t.y ^ (t.x | ~t.z), 0x432aff98u, 10u); // MD5 has ...97
+    md5_round(t, digest, t.y ^ (t.x | ~t.z), 0xab9423a7u, 15u);
+    md5_round(t, digest, t.y ^ (t.x | ~t.z), 0xfc93a039u, 21u);
+    return digest;
+}
+
+// Four words to four (Jarzynski and Olano 2020, pcg4d).
+uvec4 pcg(uvec4 v)
+{
+    v = v * 1664525u + 1013904223u;
+    v.x += v.y * v.w;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v.w += v.y * v.z;
+    v ^= v >> 16u;
+    v.x += v.y * v.w;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v.w += v.y * v.z;
+    return v;
+}
+
+// ---------------------------------------------------------------------------------------------
+// Where on the light the rays of a pixel go.
+
+const int JITTERED = 0;
+const int RANDOM = 1;
+const int LOW_DISCREPANCY = 2;
+
+// [0, 1): no more bits than a float holds, so that it never rounds up to 1.
+vec2 unit(uvec2 word)
+{
+    return vec2(word >> 8u) / 16777216.0;
+}
+
+// The first two dimensions of Sobol's sequence, as fractions of 2^32: any 2^k points that follow a multiple
+// of 2^k lie one each in 2^k boxes of one area, whatever their shape.
+uvec2 sobol(uint n)
+{
+    uint x = bitfieldReverse(n);
+    // The second dimension's matrix is Pascal's triangle modulo 2, applied in five steps.
+    uint y = n;
+    y ^= (y & 0xaaaaaaaau) >> 1u;
+    y ^= (y & 0xccccccccu) >> 2u;
+    y ^= (y & 0xf0f0f0f0u) >> 4u;
+    y ^= (y & 0xff00ff00u) >> 8u;
+    y ^= (y & 0xffff0000u) >> 16u;
+    return uvec2(x, bitfieldReverse(y));
+}
+
+// The cell of [0, 1]^2 that is the nth of `count`, of one area each in as many rows: corner and size.
+vec4 cell_of(int n, int count, int rows)
+{
+    int row = ((n + 1) * rows - 1) / count;
+    int start = row * count / rows;
+    int end = (row + 1) * count / rows;
+    float across = 1.0 / float(end - start);
+    return vec4(float(n - start) * across, float(start) / float(count), across,
+                float(end - start) / float(count));
+}
+
+// A pixel's nth point of `count`, on a light that is [0, 1]^2. `rows` is for JITTERED: how many rows of
+// cells make them square on the light.
+vec2 light_sample(int sampling, bool modern, int n, int count, int rows, uvec2 pixel, uint seed)
+{
+    // A sequence is scrambled once a pixel, by an exclusive or of all its points' digits with the same.
+    uint which = sampling == LOW_DISCREPANCY ? 0u : uint(n);
+    uvec4 message = uvec4(pixel, which, 0u);
+    uvec4 random = modern ? pcg(uvec4(pixel, which, seed)) : md5(message, seed);
+    if (sampling == LOW_DISCREPANCY) {
+        return unit(sobol(uint(n)) ^ random.xy);
+    }
+    if (sampling == RANDOM) {
+        return unit(random.xy);
+    }
+    vec4 cell = cell_of(n, count, rows);
+    return cell.xy + cell.zw * unit(random.xy);
+}
+
+// ---------------------------------------------------------------------------------------------
+// How noisy pixels are filtered: a Gaussian over their own surface, along rows and then along columns
+// (Curtis 2009 section 3, with normals as proposed there).
+//
+// Its width is where what it takes from the noise is what it adds by blurring. The visible fraction goes from
+// 0 to 1 over the penumbra's width W; a Gaussian of standard deviation a spoils the two ends of the ramp,
+// by (a/W)^2 in the mean over the penumbra, and leaves 1/(2 a sqrt(pi)) of independent noise N a pixel, a in
+// pixels. Their sum is least at a^3 = N W^2 / (4 sqrt(pi)).
+
+// Pixels to either side, at most.
+const int REACH = 12;
+
+// The noise of this many rays in the mean over a penumbra: for one ray 2v(1 - v), whose mean is 1/3 where v
+// rises evenly; falling with the root of the rays where each goes anywhere, and with their 3/4th power where
+// each has a part of the light of its own and shadows have edges. (Measured on spheres: 0.30 for one ray,
+// exponents -0.51 for random, -0.73 for jittered and -0.77 for low-discrepancy points.)
+float noise_of(int rays, bool random)
+{
+    return 0.33 * pow(float(rays), random ? -0.5 : -0.75);
+}
+
+// The Gaussian's standard deviation in metres, by the penumbra's width and a pixel's; 0 where it is too
+// narrow to change anything.
+float filter_width(float penumbra, float pixel, float noise)
+{
+    float w = penumbra / pixel;
+    float a = pow(noise * w * w / 7.09, 1.0 / 3.0);
+    return a < 0.4 ? 0.0 : min(a, 0.5 * float(REACH)) * pixel;
+}
+
+vec3 position_of(mat4 light_from_ndc, vec2 pixel, ivec2 extent, float depth)
+{
+    return dehomogenize(unproject(light_from_ndc, pixel, vec2(extent), depth));
+}
+
+// How wide a pixel is at its own depth, m.
+float pixel_width(mat4 light_from_ndc, vec2 pixel, ivec2 extent, float depth)
+{
+    return distance(position_of(light_from_ndc, pixel + vec2(1.0, 0.0), extent, depth),
+                    position_of(light_from_ndc, pixel, extent, depth));
+}
+
+// How much a neighbour counts: by how far away it is, how far off the pixel's plane, and how its own surface
+// is turned. `width` is the Gaussian's.
+float filter_weight(vec3 apart, vec3 normal, vec3 its_normal, float width)
+{
+    float off_plane = dot(apart, normal);
+    float turned = max(dot(normal, its_normal), 0.0);
+    // Off the plane it falls four times as fast.
+    float squares = dot(apart, apart) + 15.0 * off_plane * off_plane;
+    return exp(-0.5 * squares / (width * width)) * pow(turned, 16.0);
+}
+
+// ---------------------------------------------------------------------------------------------
+// Unit vectors as two numbers: the octahedron's surface, unfolded into [-1, 1]^2 (Meyer et al. 2010).
+
+vec2 over_the_edge(vec2 flat_n)
+{
+    return (1.0 - abs(flat_n.yx)) * vec2(flat_n.x < 0.0 ? -1.0 : 1.0, flat_n.y < 0.0 ? -1.0 : 1.0);
+}
+
+vec2 folded(vec3 n)
+{
+    vec2 flat_n = n.xy / max(abs(n.x) + abs(n.y) + abs(n.z), 1.0e-30);
+    return n.z < 0.0 ? over_the_edge(flat_n) : flat_n;
+}
+
+vec3 unfolded(vec2 flat_n)
+{
+    float z = 1.0 - abs(flat_n.x) - abs(flat_n.y);
+    return normalize(vec3(z < 0.0 ? over_the_edge(flat_n) : flat_n, z));
+}
+
+// ---------------------------------------------------------------------------------------------
+#ifdef NOISY_BINDING
+// The visible fraction by rays alone, how widely it is to be filtered, and the surface it is of. The including shader
+// says at which bindings the images are: NOISY_BINDING, and SURFACE_BINDING with COLOR.
+
+// The fraction (NO_RECEIVER where there is nothing to filter), the filter's width in metres, the normal.
+// Where the fraction is known for sure the width is below 0, and there is no normal.
+layout(set = 0, binding = NOISY_BINDING, rgba32f) writeonly uniform image2D noisy;
+#ifdef COLOR
+layout(set = 0, binding = SURFACE_BINDING, rgba32f) writeonly uniform image2D surfaces;
+#endif
+
+const float NO_RECEIVER = -1.0;
+
+void put_noisy(ivec2 p, FRACTION v, float width, vec3 normal)
+{
+#ifdef COLOR
+    imageStore(noisy, p, vec4(v, width));
+    imageStore(surfaces, p, vec4(folded(normal), 0.0, 0.0));
+#else
+    imageStore(noisy, p, vec4(v, width, folded(normal)));
+#endif
+}
+
+void put_known(ivec2 p, float v)
+{
+    put_noisy(p, FRACTION(v), -1.0, vec3(0.0, 0.0, 1.0));
+}
+#endif
+
+#endif

@@ -1,9 +1,0 @@
-#version 450
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
-
-// The rays of the listed pixels, each weighed by the color that the light sends out where it goes.
-
-#define TEXTURED
-#define COLOR
-#include "ray_march/trace.glsl"
