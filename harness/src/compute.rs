@@ -1,5 +1,7 @@
 //! One compute dispatch from SPIR-V and buffers: what a shader's unit test needs.
 
+use crate::module::ShaderModule;
+use crate::set::{Bound, BoundSet};
 use crate::{HeadlessDevice, HostBuffer};
 use antumbra::Error;
 use ash::vk;
@@ -27,11 +29,8 @@ pub fn run_compute(
 #[derive(Debug)]
 pub struct ComputeProgram {
     device: HeadlessDevice,
-    module: vk::ShaderModule,
-    set_layout: vk::DescriptorSetLayout,
+    set: Option<BoundSet>,
     layout: vk::PipelineLayout,
-    pool: vk::DescriptorPool,
-    set: vk::DescriptorSet,
     pipeline: vk::Pipeline,
     push_bytes: usize,
 }
@@ -57,60 +56,34 @@ impl ComputeProgram {
                 "{push_bytes} bytes of push constants; they must be a multiple of 4 up to {most}"
             )));
         };
+        let bound: Vec<_> = (0..).zip(buffers.iter().map(|b| Bound::Storage(b))).collect();
+        let set = match bound.as_slice() {
+            [] => None,
+            bound => Some(BoundSet::new(device, vk::ShaderStageFlags::COMPUTE, bound)?),
+        };
         let mut new = Self {
             device: device.clone(),
-            module: vk::ShaderModule::null(),
-            set_layout: vk::DescriptorSetLayout::null(),
+            set,
             layout: vk::PipelineLayout::null(),
-            pool: vk::DescriptorPool::null(),
-            set: vk::DescriptorSet::null(),
             pipeline: vk::Pipeline::null(),
             push_bytes,
         };
-        let device = device.device();
-        let info = vk::ShaderModuleCreateInfo::default().code(spirv);
-        // SAFETY: the device lives; the words are the caller's to get right, as for any shader.
-        new.module = unsafe { device.create_shader_module(&info, None) }
-            .map_err(Error::vulkan("creating a shader module"))?;
-
-        let bindings: Vec<_> = (0u32..)
-            .zip(buffers)
-            .map(|(binding, _)| {
-                vk::DescriptorSetLayoutBinding::default()
-                    .binding(binding)
-                    .descriptor_type(vk::DescriptorType::STORAGE_BUFFER)
-                    .descriptor_count(1)
-                    .stage_flags(vk::ShaderStageFlags::COMPUTE)
-            })
-            .collect();
-        let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
-        // SAFETY: the device lives; the bindings are distinct.
-        new.set_layout = unsafe { device.create_descriptor_set_layout(&info, None) }
-            .map_err(Error::vulkan("creating a descriptor set layout"))?;
-
-        let set_layouts = [new.set_layout];
+        let raw = device.device();
+        let set_layouts: Vec<_> = new.set.iter().map(BoundSet::layout).collect();
         let ranges = [vk::PushConstantRange::default()
             .stage_flags(vk::ShaderStageFlags::COMPUTE)
             .size(range_bytes)];
         let info = vk::PipelineLayoutCreateInfo::default()
             .set_layouts(&set_layouts)
             .push_constant_ranges(if range_bytes == 0 { &[] } else { &ranges });
-        // SAFETY: the set layout was made above.
-        new.layout = unsafe { device.create_pipeline_layout(&info, None) }
+        // SAFETY: the set's layout was made above.
+        new.layout = unsafe { raw.create_pipeline_layout(&info, None) }
             .map_err(Error::vulkan("creating a pipeline layout"))?;
-
-        if !buffers.is_empty() {
-            new.write_set(buffers)?;
-        }
-
-        let stage = vk::PipelineShaderStageCreateInfo::default()
-            .stage(vk::ShaderStageFlags::COMPUTE)
-            .module(new.module)
-            .name(c"main");
+        let module = ShaderModule::new(device, spirv, "a compute shader")?;
+        let stage = module.stage(vk::ShaderStageFlags::COMPUTE);
         let info = [vk::ComputePipelineCreateInfo::default().stage(stage).layout(new.layout)];
         // SAFETY: module and layout were made above.
-        let made =
-            unsafe { device.create_compute_pipelines(vk::PipelineCache::null(), &info, None) };
+        let made = unsafe { raw.create_compute_pipelines(vk::PipelineCache::null(), &info, None) };
         new.pipeline =
             made.map_err(|(_, result)| Error::vulkan("creating a compute pipeline")(result))?[0];
         Ok(new)
@@ -157,11 +130,9 @@ impl ComputeProgram {
         let raw = self.device.device();
         // SAFETY: `cmd` is recording and the objects live, by contract.
         unsafe { raw.cmd_bind_pipeline(cmd, compute, self.pipeline) };
-        if self.set != vk::DescriptorSet::null() {
-            // SAFETY: as above; the set was written for this layout.
-            unsafe {
-                raw.cmd_bind_descriptor_sets(cmd, compute, self.layout, 0, &[self.set], &[]);
-            }
+        if let Some(set) = &self.set {
+            // SAFETY: as above; the layout was made for this set, and the buffers live by contract.
+            unsafe { set.bind(cmd, compute, self.layout) };
         }
         if !push.is_empty() {
             let stage = vk::ShaderStageFlags::COMPUTE;
@@ -172,57 +143,14 @@ impl ComputeProgram {
         unsafe { raw.cmd_dispatch(cmd, groups[0], groups[1], groups[2]) };
         Ok(())
     }
-
-    fn write_set(&mut self, buffers: &[&HostBuffer]) -> Result<(), Error> {
-        let sizes = [vk::DescriptorPoolSize::default()
-            .ty(vk::DescriptorType::STORAGE_BUFFER)
-            .descriptor_count(buffers.len() as u32)];
-        let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
-        // SAFETY: the device lives.
-        self.pool = unsafe { self.device.device().create_descriptor_pool(&info, None) }
-            .map_err(Error::vulkan("creating a descriptor pool"))?;
-        let set_layouts = [self.set_layout];
-        let info = vk::DescriptorSetAllocateInfo::default()
-            .descriptor_pool(self.pool)
-            .set_layouts(&set_layouts);
-        // SAFETY: the pool has room for just this set.
-        let sets = unsafe { self.device.device().allocate_descriptor_sets(&info) }
-            .map_err(Error::vulkan("allocating a descriptor set"))?;
-        self.set = sets[0];
-
-        let infos: Vec<_> = buffers
-            .iter()
-            .map(|b| [vk::DescriptorBufferInfo::default().buffer(b.raw()).range(vk::WHOLE_SIZE)])
-            .collect();
-        let writes: Vec<_> = (0u32..)
-            .zip(&infos)
-            .map(|(binding, info)| {
-                vk::WriteDescriptorSet::default()
-                    .dst_set(self.set)
-                    .dst_binding(binding)
-                    .descriptor_type(vk::DescriptorType::STORAGE_BUFFER)
-                    .buffer_info(info)
-            })
-            .collect();
-        // SAFETY: the set has these bindings and is not in use; the buffers live.
-        unsafe { self.device.device().update_descriptor_sets(&writes, &[]) };
-        Ok(())
-    }
 }
 
 impl Drop for ComputeProgram {
     fn drop(&mut self) {
         let device = self.device.device();
-        // SAFETY: made from this device or null; the submit that used them was waited for. The same
-        // holds for each call below.
+        // SAFETY: made from this device or null; the submit that used it was waited for.
         unsafe { device.destroy_pipeline(self.pipeline, None) };
         // SAFETY: as above.
-        unsafe { device.destroy_descriptor_pool(self.pool, None) };
-        // SAFETY: as above.
         unsafe { device.destroy_pipeline_layout(self.layout, None) };
-        // SAFETY: as above.
-        unsafe { device.destroy_descriptor_set_layout(self.set_layout, None) };
-        // SAFETY: as above.
-        unsafe { device.destroy_shader_module(self.module, None) };
     }
 }

@@ -8,7 +8,9 @@
 //!   pixels);
 //! * there is no filter, no eye layer, which would take the depth of all pixels, and no light's texture.
 
-use crate::painter::{DEPTH, Painter, SceneDraw, draws};
+use crate::painter::{Painter, SceneDraw, draws};
+use crate::raster::{COLOR_LAYOUT, DEPTH};
+use crate::set::{Bound, BoundSet};
 use crate::shaders::FORWARD_FRAG;
 use crate::{FrameTimes, GBufferPainter, HeadlessDevice, HostBuffer, OwnedImage, Stage};
 use antumbra::graph::{Access, Work};
@@ -19,26 +21,19 @@ use antumbra::{Error, FramePlan, shaders};
 use ash::vk;
 use std::time::Duration;
 
-/// The bindings of `forward.frag`: the node's push constants, and its windows.
-const BINDINGS: [(u32, vk::DescriptorType); 2] =
-    [(0, vk::DescriptorType::UNIFORM_BUFFER), (2, vk::DescriptorType::SAMPLED_IMAGE)];
-
 /// Forward evaluation of a frame of a stage, which it keeps: it draws the stage's buffers by an image of the
 /// stage's node.
 pub struct Forward {
-    device: HeadlessDevice,
     stage: Stage,
     plan: FramePlan,
-    /// `None` only while it is made.
-    painter: Option<Painter>,
+    /// With the node's push constants and its windows bound.
+    painter: Painter,
     gbuffer_painter: GBufferPainter,
-    set_layout: vk::DescriptorSetLayout,
-    pool: vk::DescriptorPool,
-    set: vk::DescriptorSet,
     draws: Vec<SceneDraw>,
     visible: OwnedImage,
     depth: OwnedImage,
-    push: HostBuffer,
+    /// What the painter's set reads.
+    _push: HostBuffer,
 }
 
 impl Forward {
@@ -75,75 +70,28 @@ impl Forward {
         let extent = stage.gbuffer().depth.extent();
         let image = |name, format, usage| OwnedImage::new(device, name, format, extent, usage);
         let draws = draws(scene, stage.buffers(), stage.view(), keep);
-        let mut new = Self {
-            device: device.clone(),
-            stage,
-            plan,
-            painter: None,
-            gbuffer_painter: GBufferPainter::new(device)?,
-            set_layout: vk::DescriptorSetLayout::null(),
-            pool: vk::DescriptorPool::null(),
-            set: vk::DescriptorSet::null(),
-            draws,
-            visible: image(
-                "forward.visible",
-                visibility::FORMAT,
-                Usage::COLOR_ATTACHMENT | Usage::SAMPLED,
-            )?,
-            depth: image("forward.depth", DEPTH, Usage::DEPTH_STENCIL_ATTACHMENT)?,
-            push,
-        };
-        new.make_set()?;
-        let (formats, layout) = ([visibility::FORMAT], Some(new.set_layout));
-        new.painter = Some(Painter::new(device, &formats, 1.0, FORWARD_FRAG, false, layout)?);
-        Ok(new)
-    }
-
-    fn make_set(&mut self) -> Result<(), Error> {
-        let windows = self.stage.node()?.object(&self.plan, "ray_march.windows");
+        let visible =
+            image("forward.visible", visibility::FORMAT, Usage::COLOR_ATTACHMENT | Usage::SAMPLED)?;
+        let windows = stage.node()?.object(&plan, "ray_march.windows");
         let Some(PlanObject::Image { view, .. }) = windows else {
             return Err(Error::Frame("the plan has no windows".into()));
         };
-        let raw = self.device.device();
-        let bindings = BINDINGS.map(|(binding, kind)| {
-            vk::DescriptorSetLayoutBinding::default()
-                .binding(binding)
-                .descriptor_type(kind)
-                .descriptor_count(1)
-                .stage_flags(vk::ShaderStageFlags::FRAGMENT)
-        });
-        let create = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
-        // SAFETY: the device lives; the bindings are distinct.
-        self.set_layout = unsafe { raw.create_descriptor_set_layout(&create, None) }
-            .map_err(Error::vulkan("creating a descriptor set layout"))?;
-        let sizes = BINDINGS.map(|(_, ty)| vk::DescriptorPoolSize { ty, descriptor_count: 1 });
-        let create = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
-        // SAFETY: as above.
-        self.pool = unsafe { raw.create_descriptor_pool(&create, None) }
-            .map_err(Error::vulkan("creating a descriptor pool"))?;
-        let layouts = [self.set_layout];
-        let allocate = vk::DescriptorSetAllocateInfo::default()
-            .descriptor_pool(self.pool)
-            .set_layouts(&layouts);
-        // SAFETY: the pool was made for this one set.
-        self.set = unsafe { raw.allocate_descriptor_sets(&allocate) }
-            .map_err(Error::vulkan("allocating a descriptor set"))?[0];
-        let push =
-            [vk::DescriptorBufferInfo::default().buffer(self.push.raw()).range(vk::WHOLE_SIZE)];
         // As the node's rays leave it.
-        let layout = Access::SampledCompute.scope().layout;
-        let windows = [vk::DescriptorImageInfo::default().image_view(view).image_layout(layout)];
-        let [write_push, write_windows] = BINDINGS.map(|(binding, kind)| {
-            vk::WriteDescriptorSet::default()
-                .dst_set(self.set)
-                .dst_binding(binding)
-                .descriptor_type(kind)
-        });
-        let writes = [write_push.buffer_info(&push), write_windows.image_info(&windows)];
-        // SAFETY: the set is new; buffer and view are this object's own, the node's images being changed
-        // by nobody while it keeps the stage.
-        unsafe { raw.update_descriptor_sets(&writes, &[]) };
-        Ok(())
+        let left = Access::SampledCompute.scope().layout;
+        // The bindings of `forward.frag`. Nobody changes the node's images while this keeps the stage.
+        let bound = [(0, Bound::Uniform(&push)), (2, Bound::Fetched(view, left))];
+        let set = BoundSet::new(device, vk::ShaderStageFlags::FRAGMENT, &bound)?;
+        let formats = [visibility::FORMAT];
+        Ok(Self {
+            painter: Painter::new(device, &formats, 1.0, FORWARD_FRAG, false, Some(set))?,
+            gbuffer_painter: GBufferPainter::new(device)?,
+            draws,
+            visible,
+            depth: image("forward.depth", DEPTH, Usage::DEPTH_STENCIL_ATTACHMENT)?,
+            _push: push,
+            stage,
+            plan,
+        })
     }
 
     /// A frame of the node for its map and levels, and then the scene with its rays. Told are the passes
@@ -174,9 +122,7 @@ impl Forward {
 
     /// Draws the scene with its rays by the map and levels that are there.
     fn draw(&self) -> Result<Duration, Error> {
-        let painter = self.painter.as_ref();
-        let painter = painter.ok_or_else(|| Error::Frame("it was not made".into()))?;
-        painter.paint(&[&self.visible, &self.depth], Some(self.set), &self.draws)
+        self.painter.paint(&[&self.visible, &self.depth], &self.draws)
     }
 
     /// Paints the stage's G-buffer anew, as deferred evaluation needs it each frame; how long that takes.
@@ -208,16 +154,6 @@ impl Forward {
     /// # Errors
     /// As [`OwnedImage::read`].
     pub fn visibility(&self) -> Result<Vec<f32>, Error> {
-        self.visible.read(crate::painter::COLOR_LAYOUT)
-    }
-}
-
-impl Drop for Forward {
-    fn drop(&mut self) {
-        let raw = self.device.device();
-        // SAFETY: made from this device; every submit is waited for; null is allowed.
-        unsafe { raw.destroy_descriptor_pool(self.pool, None) };
-        // SAFETY: as above; the painter's pipeline layout may outlive its set layouts.
-        unsafe { raw.destroy_descriptor_set_layout(self.set_layout, None) };
+        self.visible.read(COLOR_LAYOUT)
     }
 }

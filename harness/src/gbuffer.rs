@@ -1,6 +1,7 @@
 //! A G-buffer: depth, world position, normal and role of each pixel.
 
-use crate::painter::{COLOR_LAYOUT, DEPTH, DEPTH_LAYOUT, Painter, SceneDraw, draws};
+use crate::painter::{Painter, SceneDraw, draws};
+use crate::raster::{COLOR_LAYOUT, DEPTH, DEPTH_LAYOUT};
 use crate::shaders::GBUFFER_FRAG;
 use crate::{HeadlessDevice, OwnedImage, SceneBuffers, View};
 use antumbra::graph::Scope;
@@ -119,6 +120,6 @@ impl GBufferPainter {
         draws: &[SceneDraw],
     ) -> Result<Duration, Error> {
         let images = [&gbuffer.position, &gbuffer.normal, &gbuffer.mask, &gbuffer.depth];
-        self.painter.paint(&images, None, draws)
+        self.painter.paint(&images, draws)
     }
 }

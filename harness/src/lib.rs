@@ -5,6 +5,16 @@
 //! Nothing here is fast: every call submits and waits. What is here is careful: an instance of Vulkan 1.1, no
 //! optional feature and no device extension, so that whatever runs on this device runs on any that antumbra
 //! accepts, and every message of the validation layer is kept for a test to look at.
+//!
+//! | what | where |
+//! |---|---|
+//! | a device, its messages, submits | [`HeadlessDevice`], [`MessageLog`], [`Submitted`], [`Invocations`] |
+//! | buffers and images that can be read back | [`HostBuffer`], [`OwnedImage`], [`read_image`] |
+//! | a scene, its G-buffer and a node that shades it | [`Stage`], [`SceneBuffers`], [`GBuffer`], [`View`] |
+//! | one compute shader, for a shader's unit test | [`ComputeProgram`], [`run_compute`] |
+//! | what a technique is compared with | [`Forward`], [`ReadbackScheme`] |
+//! | what passes cost on this device | [`measure_costs`], [`probe`] |
+//! | made scenes, and files read and pictures made | [`cases`], [`ply`], [`shade`], [`levels`], [`whole`] |
 
 // Vulkan through ash is unsafe call by call; each unsafe block has its own SAFETY line.
 #![allow(unsafe_code)]
@@ -21,11 +31,13 @@ mod image;
 mod instance;
 pub mod levels;
 mod messages;
+mod module;
 mod painter;
 pub mod ply;
 mod raster;
 mod readback;
 mod scene;
+mod set;
 pub mod shade;
 mod shaders;
 mod stage;

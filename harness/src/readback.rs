@@ -9,7 +9,8 @@
 //! One side, and the map without its projection onto pixels: it stands beside a frame of the node with
 //! `receivers=map sides=one`. The sums are the same bits as those of `accumulate=blend`.
 
-use crate::raster::{Attachment, Raster, RasterInfo};
+use crate::raster::{COLOR_LAYOUT, DEPTH_LAYOUT, Raster, RasterInfo, Target, Triangles};
+use crate::set::{Bound, BoundSet};
 use crate::shaders::QUADS_VERT;
 use crate::{HeadlessDevice, HostBuffer, OwnedImage, SceneBuffers};
 use antumbra::frame::ImageBarrier;
@@ -53,8 +54,11 @@ pub struct ReadbackScheme {
     front: OwnedImage,
     receivers: OwnedImage,
     map: OwnedImage,
-    layers: [Raster; 2],
+    /// Draws depth into `front` and `receivers`.
+    layers: Raster,
+    layer_targets: [Target; 2],
     blend: Raster,
+    blend_target: Target,
     depth: HostBuffer,
     corners: HostBuffer,
     indices: HostBuffer,
@@ -79,37 +83,36 @@ impl ReadbackScheme {
         let depth = Usage::DEPTH_STENCIL_ATTACHMENT | Usage::SAMPLED;
         let front = image("readback.front", depth_layers::FORMAT, map, depth)?;
         let receivers = image("readback.receivers", depth_layers::FORMAT, receiver_map, depth)?;
-        let map_image =
-            image("readback.map", visibility::FORMAT, receiver_map, Usage::COLOR_ATTACHMENT)?;
-        let layer = |target: &OwnedImage| {
-            Raster::new(
-                device,
-                &RasterInfo {
-                    target,
-                    attachment: Attachment::Depth,
-                    vertex: shaders::DEPTH_VERT,
-                    fragment: None,
-                    attributes: &[(0, 3)],
-                    stride: 12,
-                    fetched: None,
-                    push: size_of::<DepthPush>() as u32,
-                },
-            )
+        let color = Usage::COLOR_ATTACHMENT | Usage::SAMPLED;
+        let map_image = image("readback.map", visibility::FORMAT, receiver_map, color)?;
+        let layers = RasterInfo {
+            colors: &[],
+            background: 0.0,
+            adds: false,
+            depth: true,
+            vertex: shaders::DEPTH_VERT,
+            fragment: None,
+            vertices: &[&[3]],
+            set: None,
+            push: size_of::<DepthPush>() as u32,
         };
-        let layers = [layer(&front)?, layer(&receivers)?];
-        let blend = Raster::new(
-            device,
-            &RasterInfo {
-                target: &map_image,
-                attachment: Attachment::Add,
-                vertex: QUADS_VERT,
-                fragment: Some(shaders::PATCH_FRAG),
-                attributes: &[(0, 2), (8, 3)],
-                stride: size_of::<Corner>() as u32,
-                fetched: Some((1, &receivers)),
-                push: size_of::<PatchDraw>() as u32,
-            },
-        )?;
+        let layers = Raster::new(device, layers)?;
+        let layer_targets = [layers.target(&[&front])?, layers.target(&[&receivers])?];
+        let fetched = [(1, Bound::Fetched(receivers.view(), DEPTH_LAYOUT))];
+        let blend = RasterInfo {
+            colors: &[visibility::FORMAT],
+            background: 0.0,
+            adds: true,
+            depth: false,
+            vertex: QUADS_VERT,
+            fragment: Some(shaders::PATCH_FRAG),
+            // As a `Corner` lies in memory.
+            vertices: &[&[2, 3]],
+            set: Some(BoundSet::new(device, vk::ShaderStageFlags::FRAGMENT, &fetched)?),
+            push: size_of::<PatchDraw>() as u32,
+        };
+        let blend = Raster::new(device, blend)?;
+        let blend_target = blend.target(&[&map_image])?;
         let texels = u64::from(map) * u64::from(map);
         let of = |name, bytes, usage| HostBuffer::new(device, name, bytes, usage);
         use vk::BufferUsageFlags as Buffer;
@@ -130,7 +133,9 @@ impl ReadbackScheme {
             receivers,
             map: map_image,
             layers,
+            layer_targets,
             blend,
+            blend_target,
             instances: buffers.instances(scene),
             _buffers: buffers,
         })
@@ -188,11 +193,14 @@ impl ReadbackScheme {
         let made = started.elapsed();
         let patches = corners.len() / 4;
         let (_, blended) = self.device.submit_timed(|cmd| {
-            self.blend.begin(cmd);
-            let indices = (self.indices.raw(), 0, vk::IndexType::UINT32);
-            let (push, corners) = (bytemuck::bytes_of(&push), (self.corners.raw(), 0));
-            self.blend.draw(cmd, push, corners, indices, patches as u32 * 6);
-            self.blend.end(cmd);
+            let triangles = Triangles {
+                vertices: &[self.corners.raw()],
+                offsets: &[0],
+                indices: (self.indices.raw(), 0, vk::IndexType::UINT32),
+                count: patches as u32 * 6,
+            };
+            let draw = || self.blend.draw(cmd, bytemuck::bytes_of(&push), &triangles);
+            self.blend.record(cmd, &self.blend_target, draw);
             Ok(())
         })?;
         Ok(ReadbackTimes {
@@ -210,7 +218,7 @@ impl ReadbackScheme {
     /// # Errors
     /// What the device refuses.
     pub fn occlusion(&self) -> Result<Vec<f32>, Error> {
-        self.map.read(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
+        self.map.read(COLOR_LAYOUT)
     }
 
     fn draw_layer(
@@ -221,18 +229,23 @@ impl ReadbackScheme {
         view: &MapView,
         keep: impl Fn(&MeshInstance) -> bool,
     ) {
-        let raster = &self.layers[layer];
         let clip_from_world = view.clip_from_light() * light.light_from_world();
-        raster.begin(cmd);
-        for mesh in self.instances.iter().filter(|m| keep(m)) {
-            let Geometry::Buffers(b) = mesh.geometry else { continue };
-            let Some(indices) = b.indices else { continue };
-            let clip_from_mesh = (clip_from_world * mesh.world_from_mesh).as_mat4();
-            let push = DepthPush { clip_from_mesh: clip_from_mesh.to_cols_array() };
-            let positions = (b.positions, b.positions_offset);
-            raster.draw(cmd, bytemuck::bytes_of(&push), positions, indices, b.count);
-        }
-        raster.end(cmd);
+        let draw = || {
+            for mesh in self.instances.iter().filter(|m| keep(m)) {
+                let Geometry::Buffers(b) = mesh.geometry else { continue };
+                let Some(indices) = b.indices else { continue };
+                let clip_from_mesh = (clip_from_world * mesh.world_from_mesh).as_mat4();
+                let push = DepthPush { clip_from_mesh: clip_from_mesh.to_cols_array() };
+                let triangles = Triangles {
+                    vertices: &[b.positions],
+                    offsets: &[b.positions_offset],
+                    indices,
+                    count: b.count,
+                };
+                self.layers.draw(cmd, bytemuck::bytes_of(&push), &triangles);
+            }
+        };
+        self.layers.record(cmd, &self.layer_targets[layer], draw);
     }
 
     /// The occluders' depth to the processor, the receivers' to where it is fetched.
@@ -242,10 +255,10 @@ impl ReadbackScheme {
             image: image.raw(),
             layer: 0,
             aspect: vk::ImageAspectFlags::DEPTH,
-            before: Scope::DEPTH_DRAWN,
+            before: Scope::DEPTH_DRAWN.in_layout(DEPTH_LAYOUT),
             after: scope,
         };
-        let fetched = Scope::FRAGMENT_SAMPLED.in_layout(crate::raster::FETCHED);
+        let fetched = Scope::FRAGMENT_SAMPLED.in_layout(DEPTH_LAYOUT);
         for barrier in [to(&self.front, Scope::COPIED_FROM), to(&self.receivers, fetched)] {
             let (before, after) = (barrier.before.stage, barrier.after.stage);
             let none = vk::DependencyFlags::empty();
