@@ -20,7 +20,7 @@ demo:
 	@$(CARGO) build --release --example render
 	@for model in bunny suzanne; do \
 	    $(CARGO) run --quiet --release --example render -- scenes/$$model.glb --out out/$$model \
-	        || exit; \
+	        --repeat 9 || exit; \
 	done
 	@echo
 	@echo "Look at out/bunny/shaded.png and out/suzanne/shaded.png; visibility.png beside them is"
