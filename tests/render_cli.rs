@@ -123,6 +123,8 @@ fn every_technique_gives_its_files_and_report() {
         let report: Value =
             serde_json::from_slice(&fs::read(out.join("report.json")).unwrap()).unwrap();
         assert_eq!(report["technique"], technique);
+        let told = String::from_utf8(output.stdout).unwrap();
+        assert!(told.contains(&format!(" {technique} {setting}, ")), "{told}");
         let (key, value) = setting.split_once('=').unwrap();
         assert_eq!(report["settings"][key].to_string(), value);
         assert_eq!(report["settings"].get("sides"), None, "{technique} has no sides");

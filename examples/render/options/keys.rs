@@ -62,7 +62,8 @@ fn similar(key: &str) -> String {
 /// A technique with those of its settings that are not the defaults, as in "soft-shadow-map map=512".
 pub fn named(settings: &Settings) -> String {
     let plain = Settings { technique: settings.technique, ..Settings::default() };
-    let changed = KNOBS.iter().filter(|k| settings.get(k.key) != plain.get(k.key));
+    let own = KNOBS.iter().filter(|k| k.serves(settings.technique));
+    let changed = own.filter(|k| settings.get(k.key) != plain.get(k.key));
     let changed = changed.filter_map(|k| Some(format!(" {}={}", k.key, settings.get(k.key)?)));
     std::iter::once(settings.technique.name().to_owned()).chain(changed).collect()
 }
