@@ -229,7 +229,7 @@ fn wrong_scenes_are_one_sentence() {
     fs::write(there.join("room.obj"), b"v 0 0 0").unwrap();
     refuse("obj", &there.join("room.obj"), &[], "room.obj is no glTF; export the scene as .glb");
     let scene = write(&there, &triangle(&json!([mesh])), good);
-    refuse("no light", &scene, &[], "light");
+    refuse("no light", &scene, &[], "README.md shows one, \"Your own scene\"");
     let scene = write(&there, &triangle(&json!([lamp])), good);
     refuse("no triangles", &scene, &[], "triangles");
     let mut negative = lamp.clone();

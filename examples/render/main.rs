@@ -64,9 +64,12 @@ fn load(options: &Options) -> Result<Scene, Stop> {
 
 fn render(options: &Options) -> Result<String, Stop> {
     let scene = load(options)?;
-    let light = scene
-        .light(options.light.as_deref())
-        .map_err(|e| Stop::Wrong(format!("{}: {e}", options.scene.display())))?;
+    let light = scene.light(options.light.as_deref()).map_err(|e| {
+        // Who has no light yet wants to see one.
+        let more =
+            if scene.lights.is_empty() { "; README.md shows one, \"Your own scene\"" } else { "" };
+        Stop::Wrong(format!("{}: {e}{more}", options.scene.display()))
+    })?;
     let [width, height] = options.size;
     let aspect = f64::from(width) / f64::from(height);
     let camera = scene.camera.unwrap_or_else(|| Camera::framing(&scene, aspect));

@@ -220,11 +220,11 @@ fn ms(ms: f64) -> String {
 /// The values in the order in which they first come.
 fn once<'a>(values: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     let mut once = Vec::new();
-    values.for_each(|v| {
-        if !once.contains(&v) {
-            once.push(v)
+    for value in values {
+        if !once.contains(&value) {
+            once.push(value);
         }
-    });
+    }
     once
 }
 
