@@ -4,11 +4,14 @@
 #              out/bench/ and on the terminal (make bench QUICK=1 in under five minutes, the report
 #              alone)
 #
+# make function F=shader_functions T=overlap DRIVER=SwiftShader   one test program, or those of its tests whose
+#              name holds T, on one device; llvmpipe without DRIVER
+#
 # make sanitize   the library's unit tests under AddressSanitizer, which nightly Rust has
 #
 # ANTUMBRA_DRIVER=<part of a device name> picks the device for all of them.
 
-.PHONY: demo test test_on_llvmpipe test_on_swiftshader bench sanitize clean
+.PHONY: demo test test_on_llvmpipe test_on_swiftshader function bench sanitize clean
 
 CARGO ?= cargo
 SHELL := /bin/bash
@@ -20,7 +23,7 @@ demo:
 	@$(CARGO) build --release --example render
 	@for model in bunny suzanne; do \
 	    $(CARGO) run --quiet --release --example render -- scenes/$$model.glb --out out/$$model \
-	        || exit; \
+	        --repeat 9 || exit; \
 	done
 	@echo
 	@echo "Look at out/bunny/shaded.png and out/suzanne/shaded.png; visibility.png beside them is"
@@ -83,6 +86,16 @@ test_on_llvmpipe:
 
 test_on_swiftshader:
 	ANTUMBRA_DRIVER=SwiftShader $(SWIFTSHADER) $(test_on_driver)
+
+# One test on one device, as a change is worked on. The whole workspace here too, or cargo builds the dependencies anew.
+DRIVER ?= $(or $(ANTUMBRA_DRIVER),llvmpipe)
+function: export ANTUMBRA_DRIVER := $(DRIVER)
+function: export ANTUMBRA_VALIDATE := 1
+function:
+	$(if $(F),,$(error make function: name a test program, as in F=shader_functions; tests/Cargo.toml lists them))
+	@tests/drivers.sh test
+	$(if $(findstring swiftshader,$(shell echo $(DRIVER) | tr A-Z a-z)),$(SWIFTSHADER)) \
+	    $(CARGO) test --workspace --test $(F) $(T)
 
 # Not a part of the tests: it builds everything anew, and takes longer than they do.
 sanitize:

@@ -1,29 +1,32 @@
 //! Soft shadows from area lights, as one node of a Vulkan engine's render graph.
 //!
-//! The result is one image: for each pixel of the host's G-buffer the **visible fraction** of a
-//! rectangle light, 0 in umbra to 1 in the light.
+//! The result is one image: for each pixel of the host's G-buffer the **visible fraction** of a light, 0 in umbra to 1
+//! in the light.
 //!
 //! ```text
-//!   the host: meshes, a light, the G-buffer's depth
-//!        │
-//!        ▼
-//!   depth_layers       what the light sees: occluders' nearest and furthest faces, receivers
-//!        │
-//!        ▼
-//!   soft_shadow_map    each texel a micro-patch; what the patches hide of the light, added up
-//!        │
-//!        ▼
-//!   visibility         the visible fraction at each pixel
-//!        │
-//!        ▼
-//!   the host: visibility × unshadowed irradiance
+//!  the host: meshes, a light, the G-buffer's depth
+//!    │
+//!    ├─ depth_layers     maps as the light sees: occluders' nearest and furthest faces
+//!    │    ├─ hard                 compared with each pixel, 3×3 filtered
+//!    │    ├─ pcss                 the same, filtered as widely as the blockers' distance asks for
+//!    │    ├─ back_projection      texels projected back onto the light, gaps filled
+//!    │    ├─ soft_shadow_map      texels as micro-patches; what they hide of the light, added up
+//!    │    └─ nbuffer ─ ray_march  rays from pixels to the light through the layers
+//!    ├─ occlusion_textures        all faces in slices, prefiltered; what the slices hide, combined
+//!    ├─ linear_light              maps from points of a line; skins between them say what penumbrae see
+//!    └─ many_lights               a map for each of many points of the light; the mean of all
+//!         │
+//!         ▼   one of them, chosen by settings or by auto
+//!  visibility            the visible fraction at each pixel
+//!    │
+//!    ▼
+//!  the host: visibility × unshadowed irradiance
 //! ```
-//! [`techniques`] has beside it what users would pick instead, from the same inputs to the same result: a hard
-//! shadow map, PCSS, back-projection, many lights.
+//! Each technique is a folder of [`techniques`]; what they share is in [`stages`].
 //!
-//! Values go down and never back up. Each of these modules declares its passes as rows of data in a
-//! [`graph`]; [`ShadowNode::plan`] keeps the rows that the frame in front of it needs and derives
-//! their barriers; [`ShadowNode::record`] turns the plan into commands.
+//! Values go down and never back up. Each of these modules declares its passes as data in a [`graph`];
+//! [`ShadowNode::plan`] keeps the passes that the frame in front of it needs and derives their barriers;
+//! [`ShadowNode::record`] turns the plan into commands.
 //!
 //! ```no_run
 //! # use antumbra::{Allocator, Description, Error, Frame, Host, Requirements, ShadowNode};
@@ -36,7 +39,7 @@
 //!
 //! // Each frame: say what is where, plan, record between the G-buffer and the shading.
 //! let plan = node.plan(frame)?;
-//! println!("{}", plan.plan.table()); // what runs, what does not, and why
+//! println!("{}", plan.explain()); // what runs, what does not, and why
 //! node.record(cmd, &plan)?;
 //! let result = node.visibility(); // sample this where you shade
 //!

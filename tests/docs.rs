@@ -3,6 +3,9 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
+#[path = "docs/pages.rs"]
+mod pages;
+
 use antumbra::graph::{Owner, Shape};
 use antumbra::{Description, frame};
 use antumbra_tests::example::root;

@@ -314,7 +314,7 @@ fn what_does_not_exist_is_refused() {
         planned.unwrap_err().to_string()
     };
     assert!(sentence(&mut node, 2, 0).contains("light 2 does not exist"));
-    assert!(sentence(&mut node, 0, 1).contains("settings 1 do not exist"));
+    assert!(sentence(&mut node, 0, 1).contains("technique 1 does not exist"));
     for lights in [0, 65] {
         let refused = configure(&mut node, lights, &["map=32"]).unwrap_err().to_string();
         assert!(refused.contains("1 to 64 lights"), "{refused}");

@@ -3,17 +3,20 @@
 //! `cargo run --release --example render -- scenes/bunny.glb --out out/bunny`
 
 mod costs;
+mod notes;
 mod options;
 mod output;
 mod report;
 
 use antumbra::auto::Auto;
 use antumbra::scene::{Camera, Scene, from_gltf};
+use antumbra::Error;
 use antumbra_harness::shade;
 use antumbra_harness::{FrameTimes, HeadlessDevice, HeadlessOptions, Stage, View, technique};
 use image::ExtendedColorType;
 use options::{Options, Stop};
 use output::Files;
+use std::path::Path;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
@@ -34,9 +37,19 @@ fn main() -> ExitCode {
     }
 }
 
+/// Why a file was refused; where its name does not say that it is glTF, that is why.
+fn no_gltf(path: &Path, error: Error) -> Stop {
+    let kind = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+    match kind.as_deref() {
+        Some("glb" | "gltf") => error.into(),
+        _ if !path.is_file() => error.into(),
+        _ => Stop::Wrong(format!("{} is no glTF; export the scene as .glb", path.display())),
+    }
+}
+
 /// The scene with the overrides of the command line.
 fn load(options: &Options) -> Result<Scene, Stop> {
-    let mut scene = from_gltf(&options.scene)?;
+    let mut scene = from_gltf(&options.scene).map_err(|e| no_gltf(&options.scene, e))?;
     for (node, role) in &options.roles {
         scene.set_role(node, *role)?;
     }
@@ -51,9 +64,12 @@ fn load(options: &Options) -> Result<Scene, Stop> {
 
 fn render(options: &Options) -> Result<String, Stop> {
     let scene = load(options)?;
-    let light = scene
-        .light(options.light.as_deref())
-        .map_err(|e| Stop::Wrong(format!("{}: {e}", options.scene.display())))?;
+    let light = scene.light(options.light.as_deref()).map_err(|e| {
+        // Who has no light yet wants to see one.
+        let more =
+            if scene.lights.is_empty() { "; README.md shows one, \"Your own scene\"" } else { "" };
+        Stop::Wrong(format!("{}: {e}{more}", options.scene.display()))
+    })?;
     let [width, height] = options.size;
     let aspect = f64::from(width) / f64::from(height);
     let camera = scene.camera.unwrap_or_else(|| Camera::framing(&scene, aspect));
@@ -76,17 +92,15 @@ fn render(options: &Options) -> Result<String, Stop> {
             Some(choice)
         }
     };
-    if let Some(problem) = choice.as_ref().and_then(|c| c.problem.as_ref()) {
-        eprintln!("auto: {problem}");
-    }
     stage.configure_with(settings, |description| {
         description.max_error = options.max_error.or(description.max_error);
     })?;
     let plan = stage.plan_under(light, None)?;
-    // The first frame warms the driver up and is not timed, unless it is the only one.
-    if options.repeat > 1 {
-        stage.run(&plan)?;
+    for note in notes::of(options, &scene, light, &plan, choice.as_ref()) {
+        eprintln!("{note}");
     }
+    // The first frame is not timed: drivers compile shaders when they first run.
+    stage.run(&plan)?;
     let frames: Vec<FrameTimes> =
         (0..options.repeat).map(|_| stage.run(&plan)).collect::<Result<_, _>>()?;
 
@@ -115,6 +129,9 @@ fn render(options: &Options) -> Result<String, Stop> {
     files.png("shaded.png", options.size, ExtendedColorType::Rgb8, &shaded)?;
     files.text("report.json", report.json());
     let summary = report.summary();
+    if let Some(note) = notes::too_slow(options, choice.as_ref(), report.frame_ms()) {
+        eprintln!("{note}");
+    }
 
     // The device's last words count too.
     drop(stage);

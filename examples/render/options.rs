@@ -1,12 +1,14 @@
 //! The command line.
 
+pub mod keys;
+
 use antumbra::auto::Budget;
 use antumbra::knob::{Knob, Values};
 use antumbra::scene::Role;
 use antumbra::{Error, Technique};
 use clap::{CommandFactory, FromArgMatches, Parser};
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Renders a glTF scene's soft shadows into EXR, PNG and JSON files.
 #[derive(Parser, Debug)]
@@ -32,19 +34,19 @@ struct Arguments {
     /// Overrides a node's role (occluder, receiver, both), repeatable
     #[arg(long = "role", value_name = "NODE=ROLE")]
     roles: Vec<String>,
-    /// Frames to time
+    /// Frames to time, behind one that is not timed; the report has their median
     #[arg(long, value_name = "K", default_value_t = 1)]
     repeat: u32,
     /// Run under the validation layer with synchronization checks; any message fails the run
     #[arg(long)]
     validate: bool,
-    /// Mean error over shadow and penumbra that --technique auto may make, a visible fraction; with another technique,
-    /// what leaving an effect out may add to it
-    #[arg(long, value_name = "E", allow_negative_numbers = true)]
-    max_error: Option<f64>,
-    /// Milliseconds of the device that --technique auto may take
-    #[arg(long, value_name = "T", allow_negative_numbers = true)]
-    max_ms: Option<f64>,
+    /// For auto: the mean error over shadow and penumbra that it may make, 0.02 or 2%; 2 % where neither this nor
+    /// --max-ms is given. For a technique that is named: the most that each effect left out may add to its error
+    #[arg(long, value_name = "E", allow_hyphen_values = true)]
+    max_error: Option<String>,
+    /// For auto: the milliseconds of the device that a frame may take, 20 or 20ms
+    #[arg(long, value_name = "T", allow_hyphen_values = true)]
+    max_ms: Option<String>,
 }
 
 /// What to render, checked.
@@ -54,7 +56,7 @@ pub struct Options {
     pub out: PathBuf,
     /// What technique and settings are chosen by; none where they are given.
     pub auto: Option<Budget>,
-    /// What leaving an effect out may add to the error, where it is given.
+    /// The most that leaving out one effect may add to the error, where a technique is named.
     pub max_error: Option<f64>,
     pub settings: Technique,
     pub size: [u32; 2],
@@ -120,18 +122,16 @@ pub fn parse(arguments: impl Iterator<Item = OsString>) -> Result<Options, Stop>
         .after_help(knobs());
     let matches = command.try_get_matches_from(arguments).map_err(|e| {
         if e.use_stderr() {
-            // The first paragraph names the argument; usage and tips follow it.
-            let text = e.to_string();
-            let first: Vec<_> =
-                text.lines().map(str::trim).take_while(|line| !line.is_empty()).collect();
-            let line = first.join(" ");
-            Stop::Wrong(line.strip_prefix("error: ").unwrap_or(&line).to_string())
+            Stop::Wrong(sentence(&e.to_string()))
         } else {
             Stop::Help(e.to_string())
         }
     })?;
     let a = Arguments::from_arg_matches(&matches).map_err(|e| Stop::Wrong(e.to_string()))?;
-    let (auto, mut settings) = technique_of(&a)?;
+    check_out(&a.out)?;
+    let max_error = a.max_error.as_deref().map(fraction).transpose()?;
+    let max_ms = a.max_ms.as_deref().map(milliseconds).transpose()?;
+    let (auto, mut settings) = technique_of(&a, Budget { max_error, max_ms })?;
     for (key, value) in assignments(&a)? {
         settings.set(key, value)?;
     }
@@ -153,7 +153,7 @@ pub fn parse(arguments: impl Iterator<Item = OsString>) -> Result<Options, Stop>
         scene: a.scene,
         out: a.out,
         auto,
-        max_error: a.max_error.filter(|_| auto.is_none()),
+        max_error: max_error.filter(|_| auto.is_none()),
         settings,
         size: size(&a.size)?,
         light: a.light,
@@ -161,6 +161,52 @@ pub fn parse(arguments: impl Iterator<Item = OsString>) -> Result<Options, Stop>
         repeat: a.repeat,
         validate: a.validate,
     })
+}
+
+/// What clap says as one line: its first paragraph, which names the argument, and its tips. The usage is left out.
+fn sentence(text: &str) -> String {
+    let lines = || text.lines().map(str::trim);
+    let first: Vec<_> = lines().take_while(|line| !line.is_empty()).collect();
+    let first = first.join(" ");
+    let tips = lines().filter_map(|line| line.strip_prefix("tip: "));
+    let parts: Vec<&str> =
+        std::iter::once(first.strip_prefix("error: ").unwrap_or(&first)).chain(tips).collect();
+    parts.join("; ")
+}
+
+/// Holds the folder for the results against what is there, before anything is rendered.
+fn check_out(out: &Path) -> Result<(), Stop> {
+    match out.ancestors().find(|path| path.exists()) {
+        Some(path) if !path.is_dir() => {
+            Err(wrong("--out", format!("{} is a file; name a folder", path.display())))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// An error: a fraction from 0 to 1, or a percentage with its sign.
+fn fraction(text: &str) -> Result<f64, Stop> {
+    let refuse = |problem: String| Err(wrong("--max-error", problem));
+    let percent = text.trim().strip_suffix('%');
+    let number = percent.unwrap_or(text).trim().parse::<f64>();
+    match (number, percent) {
+        (Ok(x), None) if (1.0..100.0).contains(&x) => {
+            let percent = (100.0 * x).round();
+            refuse(format!("{text} is {percent} %; write {} or {text}%", percent / 1e4))
+        }
+        (Ok(x), None) if (0.0..1.0).contains(&x) => Ok(x),
+        (Ok(x), Some(_)) if (0.0..100.0).contains(&x) => Ok(x / 100.0),
+        _ => refuse(format!("{text} is no error from 0 to 100 %; write 0.02 or 2%")),
+    }
+}
+
+/// A time above 0, with its unit or without.
+fn milliseconds(text: &str) -> Result<f64, Stop> {
+    let number = text.trim().strip_suffix("ms").unwrap_or(text).trim().parse::<f64>();
+    match number {
+        Ok(ms) if ms > 0.0 && ms.is_finite() => Ok(ms),
+        _ => Err(wrong("--max-ms", format!("{text} is no time above 0; write 20 or 20ms"))),
+    }
 }
 
 fn assignments(a: &Arguments) -> Result<Vec<(&str, &str)>, Stop> {
@@ -173,11 +219,16 @@ fn assignments(a: &Arguments) -> Result<Vec<(&str, &str)>, Stop> {
 }
 
 /// The budget of `auto`, or the technique that was asked for: by its name, or by settings that it has.
-fn technique_of(a: &Arguments) -> Result<(Option<Budget>, Technique), Stop> {
-    let budget = Budget { max_error: a.max_error, max_ms: a.max_ms };
+fn technique_of(a: &Arguments, budget: Budget) -> Result<(Option<Budget>, Technique), Stop> {
     let given = assignments(a)?;
     match (a.technique.as_deref(), &given[..]) {
-        (None | Some(AUTO), []) => Ok((Some(budget), Technique::default())),
+        (None | Some(AUTO), []) => match budget.max_error {
+            Some(0.0) => Err(wrong(
+                "--max-error",
+                "no technique can promise an error of 0; write 0.02 or 2%",
+            )),
+            _ => Ok((Some(budget), Technique::default())),
+        },
         (Some(AUTO), [(key, _), ..]) => {
             Err(wrong("--set", format!("{key} is for auto to choose; name a --technique")))
         }
@@ -193,11 +244,8 @@ fn technique_of(a: &Arguments) -> Result<(Option<Budget>, Technique), Stop> {
             }
         },
         (None, given) => {
-            let all = std::iter::once(Technique::default()).chain(Technique::all());
-            let has = |t: &Technique, key: &str| t.get(key).is_some();
-            let technique = all.into_iter().find(|t| given.iter().all(|(key, _)| has(t, key)));
-            // A key that none has is refused by name when it is set.
-            Ok((None, technique.unwrap_or_default()))
+            let keys: Vec<&str> = given.iter().map(|(key, _)| *key).collect();
+            Ok((None, keys::technique(&keys).map_err(|problem| wrong("--set", problem))?))
         }
     }
 }

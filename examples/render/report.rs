@@ -1,5 +1,6 @@
 //! What ran, what did not, why, and what it cost.
 
+use crate::notes;
 use crate::options::Options;
 use antumbra::auto::Choice;
 use antumbra::effects::Outcome;
@@ -9,6 +10,9 @@ use antumbra::{FramePlan, Technique};
 use antumbra_harness::{FrameTimes, HeadlessDevice};
 use serde_json::{Map, Value, json};
 use std::time::Duration;
+
+/// What single precision may add to an error that was asked for, as a share of it.
+const ROUNDING: f64 = 1e-4;
 
 /// Everything the report is made of.
 pub struct Report<'a> {
@@ -47,6 +51,11 @@ impl Report<'_> {
         median(self.frames.iter().map(|f| of(f).as_secs_f64() * 1e3).collect())
     }
 
+    /// Milliseconds of a frame, from the submit to the fence.
+    pub fn frame_ms(&self) -> f64 {
+        self.median_ms(|f| f.frame)
+    }
+
     fn pass_ms(&self, name: &str) -> Option<f64> {
         let times: Vec<f64> = self
             .frames
@@ -58,6 +67,16 @@ impl Report<'_> {
 
     fn gpu_bytes(&self) -> u64 {
         self.memory.iter().map(|(_, bytes)| bytes).sum()
+    }
+
+    /// Whether the error promised and the time measured are within the budget.
+    fn met(&self, choice: &Choice) -> bool {
+        let budget = self.options.auto.unwrap_or_default();
+        let within = |most: Option<f64>, value: Option<f64>| {
+            most.zip(value).is_none_or(|(most, value)| value <= most * (1.0 + ROUNDING))
+        };
+        within(notes::asked_error(&budget), choice.error)
+            && within(budget.max_ms, Some(self.frame_ms()))
     }
 
     /// The text of report.json.
@@ -100,11 +119,11 @@ impl Report<'_> {
             json!({
                 "error": c.error,
                 "ms": c.ms,
-                "measured_ms": self.median_ms(|f| f.frame),
+                "measured_ms": self.frame_ms(),
                 "alike": c.alike,
                 "max_error": self.options.auto.and_then(|b| b.max_error),
                 "max_ms": self.options.auto.and_then(|b| b.max_ms),
-                "met": c.problem.is_none(),
+                "met": self.met(c),
                 "problem": c.problem,
             })
         });
@@ -117,7 +136,7 @@ impl Report<'_> {
             "size": self.options.size,
             "passes": passes,
             "skipped": skipped,
-            "frame_ms": self.median_ms(|f| f.frame),
+            "frame_ms": self.frame_ms(),
             "record_us": self.median_ms(|f| f.record) * 1e3,
             "gpu_bytes": self.gpu_bytes(),
             "memory": memory,
@@ -130,12 +149,21 @@ impl Report<'_> {
     /// Where to look and what it cost, for a person.
     pub fn summary(&self) -> String {
         let [width, height] = self.options.size;
+        let frames = match self.frames.len() {
+            1 => "one frame".into(),
+            n => format!("median of {n} frames"),
+        };
+        let foretold = self.choice.and_then(|c| c.ms).map(|ms| format!(", {ms:.1} ms foretold"));
+        let error = self.choice.and_then(|c| c.error);
+        let promised = error.map(|e| format!(", error ≤ {} promised", notes::percent(e)));
         format!(
-            "{}: {} triangles, {width}×{height} pixels, {}, {:.1} ms a frame on {}, {:.1} MB",
+            "{}: {} triangles, {width}×{height} pixels, {}{}, {:.1} ms ({frames}{}) on {}, {:.1} MB",
             self.options.out.join("shaded.png").display(),
             self.scene.triangles(),
-            self.settings.name(),
-            self.median_ms(|f| f.frame),
+            self.settings,
+            promised.unwrap_or_default(),
+            self.frame_ms(),
+            foretold.unwrap_or_default(),
             self.device.name(),
             self.gpu_bytes() as f64 / 1e6,
         )

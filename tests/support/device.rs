@@ -1,5 +1,7 @@
 //! The device of a test.
 
+use crate::example::root;
+use antumbra::Error;
 use antumbra_harness::{HeadlessDevice, HeadlessOptions, MessageLog, Tables};
 use std::io::Write;
 use std::ops::Deref;
@@ -75,7 +77,8 @@ impl TestDevice {
     }
 
     fn with(options: &HeadlessOptions) -> Self {
-        let device = HeadlessDevice::new(options).unwrap_or_else(|error| panic!("{error}"));
+        let device = HeadlessDevice::new(options)
+            .unwrap_or_else(|error| panic!("{error}{}", hint(&error, options)));
         Self::of(Arc::new(device))
     }
 
@@ -101,6 +104,25 @@ impl TestDevice {
     /// # Panics
     /// If the validation layer said anything.
     pub fn finish(self) {}
+}
+
+/// What makes SwiftShader found where it was asked for and is not: it is in a folder that the loader does not know.
+fn hint(error: &Error, options: &HeadlessOptions) -> String {
+    let named = options.driver.clone().or_else(|| std::env::var("ANTUMBRA_DRIVER").ok());
+    let wanted = named.unwrap_or_default().to_lowercase();
+    if !matches!(error, Error::NoDevice(_)) || !wanted.contains("swift") {
+        return String::new();
+    }
+    let folder = root().canonicalize().unwrap_or_else(|_| root());
+    let description = folder.join(".drivers/vk_swiftshader_icd.json");
+    let set = format!(
+        "set VK_ADD_DRIVER_FILES={}, or run make function F=TEST DRIVER=SwiftShader",
+        description.display()
+    );
+    match description.exists() {
+        true => format!("; {set}"),
+        false => format!("; make test unpacks SwiftShader into .drivers; then {set}"),
+    }
 }
 
 impl Deref for TestDevice {

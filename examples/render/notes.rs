@@ -1,0 +1,103 @@
+//! What a person should know of a run that goes well, and might not see in the picture.
+
+use crate::options::Options;
+use antumbra::FramePlan;
+use antumbra::auto::{Budget, Choice};
+use antumbra::effects::{Effect, Outcome};
+use antumbra::scene::{AreaLight, Scene};
+
+/// One line each, for standard error.
+pub fn of(
+    options: &Options,
+    scene: &Scene,
+    light: &AreaLight,
+    plan: &FramePlan,
+    choice: Option<&Choice>,
+) -> Vec<String> {
+    let notes = [
+        unmet(options, choice),
+        unpromised(options),
+        namesakes(scene, light),
+        others(options, scene, light),
+        unshadowed(light, plan),
+    ];
+    notes.into_iter().flatten().collect()
+}
+
+/// A fraction in percent, to three digits.
+pub fn percent(fraction: f64) -> String {
+    let percent = 100.0 * fraction;
+    let digits = (2.0 - percent.abs().log10().floor()).clamp(0.0, 12.0) as i32;
+    let scale = 10f64.powi(digits);
+    format!("{} %", (percent * scale).round() / scale)
+}
+
+/// That the frames took longer than was asked for, where nothing has been said of it before.
+pub fn too_slow(options: &Options, choice: Option<&Choice>, measured_ms: f64) -> Option<String> {
+    let most = options.auto?.max_ms?;
+    let told = choice?.problem.is_some();
+    (measured_ms > most && !told)
+        .then(|| format!("auto: {measured_ms:.1} ms were measured, and {most} ms asked for"))
+}
+
+/// The error that a budget asks for; none where it asks for the best that its time buys.
+pub fn asked_error(budget: &Budget) -> Option<f64> {
+    budget.max_error.or(budget.max_ms.is_none().then_some(Budget::DEFAULT_ERROR))
+}
+
+/// What of the budget cannot be met.
+fn unmet(options: &Options, choice: Option<&Choice>) -> Option<String> {
+    let (budget, choice) = (options.auto?, choice?);
+    let problem = choice.problem.as_ref()?;
+    let line = match (asked_error(&budget), choice.error) {
+        (Some(asked), Some(error)) if budget.max_ms.is_none() && error > asked => {
+            let default = if budget.max_error.is_none() { " (the default)" } else { "" };
+            format!(
+                "an error of {} was asked for{default}; the best promise here is {}, by {}",
+                percent(asked),
+                percent(error),
+                choice.technique
+            )
+        }
+        _ => problem.clone(),
+    };
+    Some(format!("auto: {line}"))
+}
+
+/// That an error is no promise where a technique is named.
+fn unpromised(options: &Options) -> Option<String> {
+    let error = percent(options.max_error?);
+    let technique = options.settings.name();
+    Some(format!(
+        "--max-error: {technique} was named, so nothing is chosen or promised; effects of up to {error} are left out"
+    ))
+}
+
+/// Lights that the first of their name hides.
+fn namesakes(scene: &Scene, light: &AreaLight) -> Option<String> {
+    let name = &light.name;
+    let number = scene.lights.iter().filter(|l| l.name == *name).count();
+    (number > 1).then(|| format!("{number} lights are named {name}; the first of them is used"))
+}
+
+/// Lights that were not named and are not used.
+fn others(options: &Options, scene: &Scene, light: &AreaLight) -> Option<String> {
+    let mut names: Vec<&str> = scene.lights.iter().map(|l| l.name.as_str()).collect();
+    names.retain(|name| *name != light.name);
+    let used = &light.name;
+    let silent = options.light.is_some() || names.is_empty();
+    (!silent).then(|| format!("the light {used} is used; --light takes {}", names.join(", ")))
+}
+
+/// That nothing can be shadowed, which looks like a picture without a light.
+fn unshadowed(light: &AreaLight, plan: &FramePlan) -> Option<String> {
+    let shadow = plan.verdicts.of(Effect::Shadow).outcome;
+    let [x, y, z] = light.light.emission().to_array().map(|c| (c * 100.0).round() / 100.0 + 0.0);
+    (shadow == Outcome::LeftOut).then(|| {
+        format!(
+            "nothing is shadowed: no occluder lies between the light {} and a receiver; it shines along its node's \
+             -Z, here towards ({x}, {y}, {z})",
+            light.name
+        )
+    })
+}
