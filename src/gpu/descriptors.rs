@@ -7,6 +7,7 @@
 
 use super::host::Host;
 use super::objects::Object;
+use super::owner::Maker;
 use super::pipeline::RowPipeline;
 use crate::Error;
 use crate::graph::{Graph, Pass};
@@ -17,7 +18,6 @@ const MAX_BINDINGS: usize = 20;
 
 /// The sets of all kinds, place by place; a place is a light of a frame slot.
 pub(crate) struct Descriptors {
-    pool: vk::DescriptorPool,
     sets: Vec<vk::DescriptorSet>,
     kinds: usize,
 }
@@ -25,7 +25,7 @@ pub(crate) struct Descriptors {
 impl Descriptors {
     /// Allocates every set that `rows` need in any of `places`.
     pub fn new(
-        host: &Host,
+        maker: &mut Maker,
         graph: &Graph,
         rows: &[RowPipeline],
         places: u32,
@@ -53,24 +53,17 @@ impl Descriptors {
             .max_sets(rows.len() as u32 * places)
             .pool_sizes(&sizes);
         // SAFETY: the device is valid (Host::borrow).
-        let pool = unsafe { host.device.create_descriptor_pool(&create, None) }
+        let pool = unsafe { maker.host.device.create_descriptor_pool(&create, None) }
             .map_err(Error::vulkan("creating the descriptor pool"))?;
-        let mut made = Self { pool, sets: Vec::new(), kinds: rows.len() };
+        maker.keep(pool);
         let layouts: Vec<_> =
             (0..places).flat_map(|_| rows.iter().map(|r| r.layouts.set)).collect();
         let allocate =
             vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(&layouts);
         // SAFETY: the pool was sized for exactly these sets, and the layouts are alive.
-        match unsafe { host.device.allocate_descriptor_sets(&allocate) } {
-            Ok(sets) => {
-                made.sets = sets;
-                Ok(made)
-            }
-            Err(e) => {
-                made.destroy(host);
-                Err(Error::vulkan("allocating the descriptor sets")(e))
-            }
-        }
+        let sets = unsafe { maker.host.device.allocate_descriptor_sets(&allocate) }
+            .map_err(Error::vulkan("allocating the descriptor sets"))?;
+        Ok(Self { sets, kinds: rows.len() })
     }
 
     /// The set of a kind at a place; none for rows that bind nothing.
@@ -121,12 +114,6 @@ impl Descriptors {
         // SAFETY: Host::borrow's promise: the slot's earlier commands are done, and this
         // frame's first use of the set comes later, so no command uses it; views and buffers are alive.
         unsafe { host.device.update_descriptor_sets(&writes[..count], &[]) };
-    }
-
-    /// Destroys the sets; no command may use them any more.
-    pub fn destroy(self, host: &Host) {
-        // SAFETY: made by this device; Host::borrow's promise: no command uses its sets any more.
-        unsafe { host.device.destroy_descriptor_pool(self.pool, None) };
     }
 }
 

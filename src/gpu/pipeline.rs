@@ -3,6 +3,7 @@
 use super::host::Host;
 use super::layouts::{LayoutsInfo, RowLayouts};
 use super::objects::{Object, Objects, name};
+use super::owner::{Maker, ObjectOwner};
 use crate::Error;
 use crate::frame::Faces;
 use crate::graph::{Draw, Graph, Pass, Shape, Target, Work};
@@ -30,32 +31,15 @@ pub(crate) fn variant(stride: usize, faces: Faces) -> usize {
 }
 
 impl RowPipeline {
-    /// Makes everything for a row; nothing is left behind where that fails.
+    /// Makes everything for a pass.
     pub fn new(
-        host: &Host,
+        maker: &mut Maker,
         graph: &Graph,
         pass: &Pass,
         objects: &Objects,
         strides: &[u32],
     ) -> Result<Self, Error> {
-        let mut row = Self::default();
-        match row.make(host, graph, pass, objects, strides) {
-            Ok(()) => Ok(row),
-            Err(e) => {
-                row.destroy(host);
-                Err(e)
-            }
-        }
-    }
-
-    fn make(
-        &mut self,
-        host: &Host,
-        graph: &Graph,
-        pass: &Pass,
-        objects: &Objects,
-        strides: &[u32],
-    ) -> Result<(), Error> {
+        let host = maker.host;
         let bindings: Vec<_> = pass
             .uses
             .iter()
@@ -82,28 +66,27 @@ impl RowPipeline {
                 pass.push.bytes().len(),
             ),
         };
-        self.push_stages = stages;
         let info =
             LayoutsInfo { bindings: &bindings, push_stages: stages, push_bytes: push_bytes as u32 };
-        self.layouts = match &host.layouts {
-            Some(shared) => shared.find(host, &info, pass.name)?,
-            None => RowLayouts::new(host, &info, pass.name)?,
+        let layouts = match &host.layouts {
+            Some(shared) => shared.find(&host.device, &info, pass.name)?,
+            None => RowLayouts::new(&mut maker.owner, &host.device, &info, pass.name)?,
         };
-
+        let mut row = Self { layouts, push_stages: stages, ..Self::default() };
         match pass.work {
             Work::Dispatch { shader, .. } | Work::Indirect { shader, .. } => {
-                let pipeline = self.compute(host, pass, shader)?;
-                self.pipelines.push(pipeline);
+                let pipeline = row.compute(host, pass, shader)?;
+                row.pipelines.push(maker.keep(pipeline));
             }
             Work::Raster { target, .. } => {
-                self.attachments(host, graph, pass, objects, target)?;
-                self.rasters(host, pass, strides)?;
+                row.attachments(maker, graph, pass, objects, target)?;
+                row.rasters(maker, pass, strides)?;
             }
         }
-        for &pipeline in &self.pipelines {
+        for &pipeline in &row.pipelines {
             name(host, pipeline, pass.name);
         }
-        Ok(())
+        Ok(row)
     }
 
     fn compute(&self, host: &Host, pass: &Pass, shader: Module) -> Result<vk::Pipeline, Error> {
@@ -120,12 +103,13 @@ impl RowPipeline {
 
     fn attachments(
         &mut self,
-        host: &Host,
+        maker: &mut Maker,
         graph: &Graph,
         pass: &Pass,
         objects: &Objects,
         target: Target,
     ) -> Result<(), Error> {
+        let device = &maker.host.device;
         let doing = |what: &str| format!("creating the {what} of {}", pass.name);
         let targets = attachments_of(graph, pass, objects)?;
         let Some(&(_, _, extent)) = targets.first() else {
@@ -164,8 +148,9 @@ impl RowPipeline {
         let create =
             vk::RenderPassCreateInfo::default().attachments(&attachments).subpasses(&subpasses);
         // SAFETY: one subpass, which uses every attachment; a test holds their number to four.
-        self.render_pass = unsafe { host.device.create_render_pass(&create, None) }
+        let render_pass = unsafe { device.create_render_pass(&create, None) }
             .map_err(Error::vulkan(doing("render pass")))?;
+        self.render_pass = maker.keep(render_pass);
         let views: Vec<_> = targets.iter().map(|(view, ..)| *view).collect();
         let create = vk::FramebufferCreateInfo::default()
             .render_pass(self.render_pass)
@@ -174,12 +159,13 @@ impl RowPipeline {
             .height(extent.height)
             .layers(1);
         // SAFETY: the views have the render pass's formats and, a test says, this size.
-        self.framebuffer = unsafe { host.device.create_framebuffer(&create, None) }
+        let framebuffer = unsafe { device.create_framebuffer(&create, None) }
             .map_err(Error::vulkan(doing("framebuffer")))?;
+        self.framebuffer = maker.keep(framebuffer);
         Ok(())
     }
 
-    fn rasters(&mut self, host: &Host, pass: &Pass, strides: &[u32]) -> Result<(), Error> {
+    fn rasters(&mut self, maker: &mut Maker, pass: &Pass, strides: &[u32]) -> Result<(), Error> {
         let Work::Raster { vertex, fragment, cull, draw, .. } = pass.work else { return Ok(()) };
         let mut modules = vec![(vertex, vk::ShaderStageFlags::VERTEX)];
         modules.extend(fragment.map(|f| (f, vk::ShaderStageFlags::FRAGMENT)));
@@ -197,10 +183,10 @@ impl RowPipeline {
                 })
                 .collect(),
         };
-        with_modules(host, &modules, |stages| {
+        with_modules(maker.host, &modules, |stages| {
             for (stride, cull, front) in variants {
-                let pipeline = self.raster(host, pass, stages, stride, cull, front)?;
-                self.pipelines.push(pipeline);
+                let pipeline = self.raster(maker.host, pass, stages, stride, cull, front)?;
+                self.pipelines.push(maker.keep(pipeline));
             }
             Ok(())
         })
@@ -279,22 +265,6 @@ impl RowPipeline {
             .map(|p| p[0])
             .map_err(|(_, e)| Error::vulkan(format!("creating {}", pass.name))(e))
     }
-
-    /// Destroys everything; no command may use it any more.
-    pub fn destroy(self, host: &Host) {
-        let device = &host.device;
-        for pipeline in self.pipelines {
-            // SAFETY: made by this device; Host::borrow's promise: no command uses it any more.
-            unsafe { device.destroy_pipeline(pipeline, None) };
-        }
-        // SAFETY: as above; null handles are legal to destroy.
-        unsafe { device.destroy_framebuffer(self.framebuffer, None) };
-        // SAFETY: as above.
-        unsafe { device.destroy_render_pass(self.render_pass, None) };
-        if host.layouts.is_none() {
-            self.layouts.destroy(device);
-        }
-    }
 }
 
 /// The images that a raster row draws into, in the order of its uses: views, formats and sizes.
@@ -319,39 +289,18 @@ fn with_modules<T>(
     shaders: &[(Module, vk::ShaderStageFlags)],
     make: impl FnOnce(&[vk::PipelineShaderStageCreateInfo]) -> Result<T, Error>,
 ) -> Result<T, Error> {
-    let mut modules = Vec::with_capacity(shaders.len());
-    let mut failed = None;
-    for (shader, _) in shaders {
+    let mut modules = ObjectOwner::default();
+    let stages = shaders.iter().map(|(shader, stage)| {
         let words = shader.words();
         let create = vk::ShaderModuleCreateInfo::default().code(&words);
         // SAFETY: the words are a module that tests validate.
-        match unsafe { host.device.create_shader_module(&create, None) } {
-            Ok(module) => modules.push(module),
-            Err(e) => {
-                failed = Some(Error::vulkan(format!("loading {}", shader.path))(e));
-                break;
-            }
-        }
-    }
-    let result = match failed {
-        Some(e) => Err(e),
-        None => {
-            let stages: Vec<_> = shaders
-                .iter()
-                .zip(&modules)
-                .map(|((_, stage), &module)| {
-                    vk::PipelineShaderStageCreateInfo::default()
-                        .stage(*stage)
-                        .module(module)
-                        .name(c"main")
-                })
-                .collect();
-            make(&stages)
-        }
-    };
-    for module in modules {
-        // SAFETY: pipelines do not need their modules once they are made.
-        unsafe { host.device.destroy_shader_module(module, None) };
-    }
-    result
+        let module = unsafe { host.device.create_shader_module(&create, None) }
+            .map_err(Error::vulkan(format!("loading {}", shader.path)))?;
+        let stage = vk::PipelineShaderStageCreateInfo::default().stage(*stage).name(c"main");
+        Ok(stage.module(modules.keep(module)))
+    });
+    let made = stages.collect::<Result<Vec<_>, _>>().and_then(|stages| make(&stages));
+    // Pipelines do not need their modules once they are made, and modules have no memory.
+    modules.destroy(&host.device, |_| {});
+    made
 }

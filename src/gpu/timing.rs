@@ -1,6 +1,7 @@
 //! Times of passes, by timestamps; read only when the host asks, never waited for.
 
 use super::host::Host;
+use super::owner::Maker;
 use crate::Error;
 use ash::vk;
 use std::sync::atomic::{AtomicU16, AtomicU32, Ordering};
@@ -30,7 +31,13 @@ struct Recorded {
 impl Timing {
     /// Makes pools for up to `rows` rows of `kinds` kinds a frame, or none where the queue family has
     /// no timestamps.
-    pub fn new(host: &Host, places: u32, kinds: usize, rows: usize) -> Result<Option<Self>, Error> {
+    pub fn new(
+        maker: &mut Maker,
+        places: u32,
+        kinds: usize,
+        rows: usize,
+    ) -> Result<Option<Self>, Error> {
+        let host = maker.host;
         let (instance, physical) = (&host.instance, host.physical_device);
         // SAFETY: Host::borrow's promise: the handles are valid and belong together.
         let families = unsafe { instance.get_physical_device_queue_family_properties(physical) };
@@ -40,11 +47,21 @@ impl Timing {
         if bits == 0 || limits.timestamp_period <= 0.0 {
             return Ok(None);
         }
-        let mut timing = Self {
-            pools: Vec::new(),
+        let queries = rows as u32 + 1;
+        let create = vk::QueryPoolCreateInfo::default()
+            .query_type(vk::QueryType::TIMESTAMP)
+            .query_count(queries);
+        let pools = (0..places).map(|_| {
+            // SAFETY: the device is valid (Host::borrow).
+            let pool = unsafe { host.device.create_query_pool(&create, None) }
+                .map_err(Error::vulkan("creating the timestamps"))?;
+            Ok(maker.keep(pool))
+        });
+        Ok(Some(Self {
+            pools: pools.collect::<Result<_, _>>()?,
             period: f64::from(limits.timestamp_period),
             mask: if bits >= 64 { u64::MAX } else { (1 << bits) - 1 },
-            queries: rows as u32 + 1,
+            queries,
             recorded: (0..places)
                 .map(|_| Recorded {
                     count: AtomicU32::new(0),
@@ -52,21 +69,7 @@ impl Timing {
                 })
                 .collect(),
             kinds,
-        };
-        for _ in 0..places {
-            let create = vk::QueryPoolCreateInfo::default()
-                .query_type(vk::QueryType::TIMESTAMP)
-                .query_count(timing.queries);
-            // SAFETY: the device is valid (Host::borrow).
-            match unsafe { host.device.create_query_pool(&create, None) } {
-                Ok(pool) => timing.pools.push(pool),
-                Err(e) => {
-                    timing.destroy(host);
-                    return Err(Error::vulkan("creating the timestamps")(e));
-                }
-            }
-        }
-        Ok(Some(timing))
+        }))
     }
 
     /// Starts a place anew: resets its pool and takes the first timestamp.
@@ -139,13 +142,5 @@ impl Timing {
             sums[at].1 += ms(pair);
         }
         Some(sums)
-    }
-
-    /// Destroys the pools; no command may use them any more.
-    pub fn destroy(self, host: &Host) {
-        for pool in self.pools {
-            // SAFETY: made by this device; Host::borrow's promise: no command uses it any more.
-            unsafe { host.device.destroy_query_pool(pool, None) };
-        }
     }
 }
