@@ -45,9 +45,8 @@ endif
 # ---------------------------------------------------------------------------------------------
 
 # Tests that use no device; they run once. Every other file in tests/ runs once a driver.
-NO_DEVICE := docs freshness line_truth naga_translation planning reflection refusals row_limits rows untrusted
+NO_DEVICE := docs freshness line_truth naga_translation one_build planning reflection refusals row_limits rows untrusted
 DEVICE := $(filter-out $(NO_DEVICE),$(basename $(notdir $(wildcard tests/*.rs))))
-# Always the whole workspace: cargo builds the dependencies anew where only one package is asked for.
 test_once := $(CARGO) test --workspace --lib $(NO_DEVICE:%=--test %)
 # The embed example's own tests are what the node says to an engine that gets something wrong;
 # wrong_light and hard_cases are the benchmark's: that its report sees what is wrong, and its table of hard cases.

@@ -70,8 +70,9 @@ pub enum Error {
 }
 
 impl Error {
-    /// Wraps a Vulkan result code; `doing` reads as in "creating the pipeline of {pass}".
-    pub(crate) fn vulkan(doing: impl Into<String>) -> impl FnOnce(ash::vk::Result) -> Self {
+    /// Wraps a Vulkan result code, a lost device apart from the others; `doing` reads as in "creating the
+    /// pipeline of {pass}".
+    pub fn vulkan(doing: impl Into<String>) -> impl FnOnce(ash::vk::Result) -> Self {
         let doing = doing.into();
         move |result| match result {
             ash::vk::Result::ERROR_DEVICE_LOST => Self::DeviceLost { doing },

@@ -60,7 +60,6 @@
 //! | see what a frame does | [`graph`], [`graph::Plan::table`], [`graph::Plan::graphviz`] |
 //! | load or make scenes | [`scene`] |
 //! | measure error | `truth` (feature `truth`) |
-//! | run without a window | `gpu::headless` (feature `headless`) |
 
 pub mod auto;
 pub mod effects;

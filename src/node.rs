@@ -2,14 +2,14 @@
 
 mod shown;
 
-pub use shown::{Inspected, LayerPass, VisibilityImage};
+pub use shown::{Inspected, LayerPass, PlanObject, VisibilityImage};
 
 use crate::Error;
 use crate::auto::{self, Auto, Choice};
 use crate::frame::{
     self, Description, Frame, FramePlan, FramePlans, Left, Limits, Memory, Stamp, Whose, Workspace,
 };
-use crate::gpu::{Allocator, Host, HostDraw, NodeObjects, Requirements, Retired};
+use crate::gpu::{Allocator, Host, HostDraw, NodeObjects, Object, Requirements, Retired};
 use crate::graph::{Draw, Graph, Layer, Owner, Pass, Shape, Target, Work};
 use crate::stages::depth_layers;
 use ash::vk;
@@ -325,15 +325,19 @@ impl ShadowNode {
             .collect()
     }
 
-    /// What is behind a resource of a plan's rows.
-    #[cfg(feature = "headless")]
-    pub(crate) fn object(&self, plan: &FramePlan, name: &str) -> crate::gpu::objects::Object {
+    /// The image or buffer behind a resource of a plan's graph, by the resource's name, for tests and
+    /// debuggers; none where no pass touches it, where the host lends it, and for the visibility image.
+    pub fn object(&self, plan: &FramePlan, name: &str) -> Option<PlanObject> {
         let graph = &plan.plan.graph;
-        let ids = (0..graph.resources().len()).map(|index| graph.id(index));
-        let found = ids.into_iter().find(|&id| graph.resource(id).name == name);
-        found.map_or(crate::gpu::objects::Object::None, |id| {
-            self.objects.get(plan.settings_index, id)
-        })
+        let mut ids = (0..graph.resources().len()).map(|index| graph.id(index));
+        let id = ids.find(|&id| graph.resource(id).name == name)?;
+        match (self.objects.get(plan.settings_index, id), graph.resource(id).shape) {
+            (Object::Image { image, view }, _) => Some(PlanObject::Image { image, view }),
+            (Object::Buffer(buffer), Shape::Buffer { bytes }) => {
+                Some(PlanObject::Buffer { buffer, bytes })
+            }
+            _ => None,
+        }
     }
 
     /// Name and bytes of everything the node holds in device memory: the visibility image, then what each

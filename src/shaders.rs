@@ -199,20 +199,6 @@ pub const LIT: Module = module!("visibility/lit.comp");
 /// The same in color.
 pub const LIT_COLOR: Module = module!("visibility/lit_color.comp");
 
-/// Positions and normals of the headless G-buffer.
-#[cfg(feature = "headless")]
-pub const GBUFFER_VERT: Module = module!("headless/gbuffer.vert");
-/// Penumbra rectangles that the processor made.
-#[cfg(feature = "headless")]
-pub const QUADS_VERT: Module = module!("headless/quads.vert");
-/// Position, normal and role of a pixel.
-#[cfg(feature = "headless")]
-pub const GBUFFER_FRAG: Module = module!("headless/gbuffer.frag");
-
-/// The rays of a fragment.
-#[cfg(feature = "headless")]
-pub const FORWARD_FRAG: Module = module!("headless/forward.frag");
-
 /// Every module of the node's passes.
 pub const ALL: &[Module] = &[
     DEPTH_VERT,

@@ -4,8 +4,8 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
 use antumbra::RectangleLight;
-use antumbra::gpu::headless::View;
 use antumbra::scene::generate;
+use antumbra_harness::View;
 use antumbra_tests::device;
 use antumbra_tests::measure::{Setup, model, percent, summary};
 

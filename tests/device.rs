@@ -6,7 +6,7 @@
 // One planted hazard has to be recorded through the unsafe door; its block says why it may.
 #![allow(unsafe_code)]
 
-use antumbra::gpu::headless::{
+use antumbra_harness::{
     ComputeProgram, HeadlessDevice, HeadlessOptions, HostBuffer, OwnedImage, run_compute,
 };
 use antumbra_tests::compile::try_compile;

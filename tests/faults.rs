@@ -6,9 +6,9 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
-use antumbra::gpu::headless::{ImageSource, read_image};
 use antumbra::graph::Scope;
 use antumbra::{Description, Error, Requirements, ShadowNode, frame};
+use antumbra_harness::{ImageSource, read_image};
 use antumbra_tests::TestDevice;
 use antumbra_tests::bench::{Bench, Described, EXTENT, Memory, OTHER_EXTENT, host};
 use antumbra_tests::measure::settings;

@@ -3,8 +3,8 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
-use antumbra::gpu::headless::{Forward, HeadlessDevice, View};
 use antumbra::scene::{Instance, Role, Scene, generate};
+use antumbra_harness::{Forward, HeadlessDevice, View};
 use antumbra_tests::device;
 use antumbra_tests::measure::{Setup, model, percent};
 

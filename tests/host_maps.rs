@@ -4,10 +4,10 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
-use antumbra::gpu::headless::{HeadlessDevice, OwnedImage, Stage};
 use antumbra::scene::{Scene, generate};
 use antumbra::stages::depth_layers::{MapView, fit_occluders};
 use antumbra::{HostImage, OccluderMaps, Scope};
+use antumbra_harness::{HeadlessDevice, OwnedImage, Stage};
 use antumbra_tests::device;
 use antumbra_tests::measure::{Setup, settings};
 use ash::vk;

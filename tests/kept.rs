@@ -3,9 +3,9 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
-use antumbra::gpu::headless::Stage;
 use antumbra::scene::generate;
 use antumbra::{Frame, FramePlan, RectangleLight, Technique};
+use antumbra_harness::Stage;
 use antumbra_tests::device;
 use antumbra_tests::measure::{Setup, metre_line};
 use glam::{DMat4, DVec3};

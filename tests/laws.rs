@@ -3,8 +3,8 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
-use antumbra::gpu::headless::{HeadlessDevice, Stage, View};
 use antumbra::scene::{Instance, Role, Scene, generate};
+use antumbra_harness::{HeadlessDevice, Stage, View};
 use antumbra_tests::device;
 use antumbra_tests::measure::{Setup, settings};
 use glam::{DMat4, DVec3};

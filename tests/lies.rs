@@ -4,12 +4,10 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
-use antumbra::gpu::headless::{
-    HeadlessDevice, HeadlessOptions, HostBuffer, OwnedImage, Stage, View,
-};
 use antumbra::graph::Scope;
 use antumbra::scene::{Scene, generate};
 use antumbra::{Error, FramePlan, Geometry, HostImage};
+use antumbra_harness::{HeadlessDevice, HeadlessOptions, HostBuffer, OwnedImage, Stage, View};
 use antumbra_tests::measure::settings;
 use ash::vk;
 

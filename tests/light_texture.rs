@@ -3,10 +3,10 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
-use antumbra::gpu::headless::{HeadlessDevice, OwnedImage, Stage};
 use antumbra::scene::{Scene, generate};
 use antumbra::truth::visible_fraction_of_quad;
 use antumbra::{Description, Error, Frame, LightTexture, RectangleLight, Scope};
+use antumbra_harness::{HeadlessDevice, OwnedImage, Stage};
 use antumbra_tests::device;
 use antumbra_tests::measure::{Setup, percent, settings};
 use ash::vk;

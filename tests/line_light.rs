@@ -3,10 +3,10 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
-use antumbra::gpu::headless::View;
 use antumbra::scene::generate;
 use antumbra::truth::ExactLine;
 use antumbra::{RectangleLight, Technique};
+use antumbra_harness::View;
 use antumbra_tests::device;
 use antumbra_tests::measure::{Setup, bunny_under_a_line, metre_line, percent, summary};
 

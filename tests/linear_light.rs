@@ -4,11 +4,11 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
 use antumbra::ash::vk;
-use antumbra::gpu::headless::{HeadlessDevice, View};
 use antumbra::graph::Shape;
 use antumbra::scene::{Scene, generate};
 use antumbra::techniques::linear_light::twin::{crossing_of, is_edge, part_of_segment, transition};
 use antumbra::{Description, Settings, Technique};
+use antumbra_harness::{HeadlessDevice, View};
 use antumbra_tests::compare::Tolerance;
 use antumbra_tests::measure::{
     Setup, bunny_under_a_line, metre_line, model, percent, settings, summary,

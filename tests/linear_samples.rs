@@ -3,10 +3,10 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
-use antumbra::gpu::headless::{Stage, View};
 use antumbra::scene::{Role, Scene, generate};
 use antumbra::techniques::linear_light::twin::{between, bits, run_at};
 use antumbra::{Frame, RectangleLight};
+use antumbra_harness::{Stage, View};
 use antumbra_tests::measure::{Setup, metre_line, model, percent};
 use antumbra_tests::{Function, device};
 use glam::{DMat4, DQuat, DVec3};

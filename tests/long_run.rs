@@ -9,7 +9,7 @@
 #[path = "long_run/engine.rs"]
 mod engine;
 
-use antumbra::gpu::headless::HeadlessDevice;
+use antumbra_harness::HeadlessDevice;
 use antumbra_tests::device::{device, unwatched};
 use antumbra_tests::random::times;
 use engine::Engine;

@@ -3,9 +3,9 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
-use antumbra::gpu::headless::{ComputeProgram, HeadlessDevice, HostBuffer};
 use antumbra::stages::nbuffer::twin::Values;
 use antumbra::stages::nbuffer::{Kind, Levels};
+use antumbra_harness::{ComputeProgram, HeadlessDevice, HostBuffer};
 use antumbra_tests::compile::try_compile;
 use antumbra_tests::{Function, device};
 use ash::vk;

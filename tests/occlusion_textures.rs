@@ -5,7 +5,6 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
 use antumbra::ash::vk;
-use antumbra::gpu::headless::{HeadlessDevice, View};
 use antumbra::scene::{Mesh, Role, Scene, generate};
 use antumbra::stages::depth_layers::MapView;
 use antumbra::techniques::common::twin::fraction_above;
@@ -13,6 +12,7 @@ use antumbra::techniques::occlusion_textures::{Combine, twin};
 use antumbra::techniques::ray_march::{self, Projection};
 use antumbra::truth::Receiver;
 use antumbra::{Description, RectangleLight, frame};
+use antumbra_harness::{HeadlessDevice, View};
 use antumbra_tests::device;
 use antumbra_tests::measure::{Setup, model, percent, settings, summary};
 use glam::{DMat4, DVec3};

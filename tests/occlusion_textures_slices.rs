@@ -4,9 +4,9 @@
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use antumbra::RectangleLight;
-use antumbra::gpu::headless::HeadlessDevice;
 use antumbra::scene::{Role, Scene, generate};
 use antumbra::techniques::occlusion_textures::twin::BINS;
+use antumbra_harness::HeadlessDevice;
 use antumbra_tests::device;
 use antumbra_tests::measure::{Setup, model};
 use glam::{DMat4, DVec3};

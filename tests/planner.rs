@@ -3,15 +3,12 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
-#[path = "planner/cases.rs"]
-mod cases;
-
 use antumbra::RectangleLight;
 use antumbra::effects::Outcome;
-use antumbra::gpu::headless::Stage;
+use antumbra_harness::Stage;
+use antumbra_harness::cases::cases;
 use antumbra_tests::device;
 use antumbra_tests::measure::{Setup, percent, settings};
-use cases::cases;
 use glam::DVec3;
 
 /// The pixels of a ground's view a side.

@@ -6,9 +6,9 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
-use antumbra::gpu::headless::{Stage, View};
 use antumbra::scene::{Instance, Role, Scene, generate};
 use antumbra::{Error, RectangleLight};
+use antumbra_harness::{Stage, View};
 use antumbra_tests::TestDevice;
 use antumbra_tests::measure::settings;
 use antumbra_tests::tables::{self, POORER, Pretence};

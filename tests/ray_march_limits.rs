@@ -3,8 +3,8 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
-use antumbra::gpu::headless::{HeadlessDevice, View};
 use antumbra::scene::{Camera, Role, Scene, generate};
+use antumbra_harness::{HeadlessDevice, View};
 use antumbra_tests::device;
 use antumbra_tests::measure::{Setup, percent};
 use glam::{DMat4, DVec3};

@@ -3,9 +3,9 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
-use antumbra::gpu::headless::{HeadlessDevice, Stage};
 use antumbra::scene::{Scene, generate};
 use antumbra::{Error, Frame, FramePlan, FramePlans, RectangleLight, Scope, Visibility};
+use antumbra_harness::{HeadlessDevice, Stage};
 use antumbra_tests::device;
 use antumbra_tests::measure::{Setup, settings};
 use glam::{DMat4, DVec3};

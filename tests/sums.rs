@@ -4,13 +4,13 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
 use antumbra::FramePlan;
-use antumbra::gpu::headless::{ReadbackScheme, Stage};
 use antumbra::graph::Pass;
 use antumbra::scene::{Scene, generate};
 use antumbra::techniques::soft_shadow_map::push::{Blocks, GatherMap, PatchDraw};
 use antumbra::techniques::soft_shadow_map::twin::{
     OccluderMap, back_or_front, backs_of_mean, occlusion,
 };
+use antumbra_harness::{ReadbackScheme, Stage};
 use antumbra_tests::measure::Setup;
 use antumbra_tests::{TestDevice, device};
 

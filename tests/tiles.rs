@@ -3,11 +3,11 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
-use antumbra::gpu::headless::{HeadlessDevice, View};
 use antumbra::scene::{Camera, Role, Scene, generate};
 use antumbra::stages::visibility::twin::{Bounds, listed_tile, rounded_tile};
 use antumbra::techniques::common::twin::nodes_around;
 use antumbra::techniques::soft_shadow_map::twin::{Node, Tile, is_felt, superblocks_around};
+use antumbra_harness::{HeadlessDevice, View};
 use antumbra_tests::compare::Tolerance;
 use antumbra_tests::measure::{Setup, model};
 use antumbra_tests::{Function, device};

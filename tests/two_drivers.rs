@@ -6,10 +6,10 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
-use antumbra::gpu::headless::{HeadlessDevice, HeadlessOptions, OwnedImage};
 use antumbra::scene::{Scene, generate};
 use antumbra::stages::depth_layers::fit_occluders;
 use antumbra::{OccluderMaps, Scope};
+use antumbra_harness::{HeadlessDevice, HeadlessOptions, OwnedImage};
 use antumbra_tests::measure::{Setup, settings};
 use ash::vk;
 

@@ -13,12 +13,10 @@ mod json;
 mod parts;
 #[path = "untrusted/seed.rs"]
 mod seed;
-#[path = "../fuzz/fuzz_targets/gltf.rs"]
-#[allow(dead_code, reason = "it is a program of its own")]
-mod target;
 
 use allocation_counter::measure;
 use antumbra::scene::{Scene, from_gltf, from_gltf_bytes};
+use antumbra_harness::whole;
 use antumbra_tests::example::{folder, root};
 use json::{Json, break_text};
 use parts::Parts;
@@ -27,7 +25,6 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use target::whole;
 
 /// The most bytes of memory that loading takes for each byte of a file and its buffers, and beside
 /// that; `from_gltf` states both, and `hostile` measures them.

@@ -9,9 +9,9 @@
 #[path = "../technique/mod.rs"]
 mod technique;
 
-use antumbra::gpu::headless::{FrameTimes, HeadlessDevice};
 use antumbra::scene::{Scene, generate};
 use antumbra::{RectangleLight, Technique};
+use antumbra_harness::{FrameTimes, HeadlessDevice};
 use technique::table::Table;
 use technique::{Options, Ready, Study, in_turns, make_tables, scene_under};
 

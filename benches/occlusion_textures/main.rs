@@ -11,8 +11,8 @@
 mod technique;
 
 use antumbra::Technique;
-use antumbra::gpu::headless::{FrameTimes, HeadlessDevice};
 use antumbra::scene::Scene;
+use antumbra_harness::{FrameTimes, HeadlessDevice};
 use technique::table::{Table, line};
 use technique::{Options, Ready, Study, in_turns, make_tables, scene};
 

@@ -6,18 +6,16 @@
 // A bench tells what goes wrong by panicking.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[path = "../../tests/planner/cases.rs"]
-#[allow(dead_code, reason = "what should run is for the tests to look at")]
-mod cases;
 #[path = "../technique/mod.rs"]
 mod technique;
 
 use antumbra::frame::{Limits, plan_all};
-use antumbra::gpu::headless::{FrameTimes, HeadlessDevice, HeadlessOptions, Stage, View};
 use antumbra::graph::{MeshList, Scope};
 use antumbra::scene::{Role, generate};
 use antumbra::{Description, Frame, FramePlans, Geometry, HostImage, MeshBuffers, MeshInstance};
 use antumbra::{RectangleLight, Settings};
+use antumbra_harness::cases;
+use antumbra_harness::{FrameTimes, HeadlessDevice, HeadlessOptions, Stage, View};
 use ash::vk::{self, Handle};
 use glam::{DMat4, DVec3};
 use std::time::Instant;
@@ -102,7 +100,7 @@ fn pruned(_: &HeadlessDevice, options: &Options) -> Table {
         let mut both = |of: [String; 2]| row.extend(of);
         both(plans.each_ref().map(|p| p.plan.steps.len().to_string()));
         both(ms.map(|ms| format!("{ms:.2}")));
-        let told = |of: fn(&antumbra::gpu::headless::Invocations) -> u64| {
+        let told = |of: fn(&antumbra_harness::Invocations) -> u64| {
             counts.map(|c| c.map_or_else(|| "-".into(), |c| of(&c).to_string()))
         };
         both(told(|c| c.vertex));

@@ -2,8 +2,8 @@
 
 use super::{Options, median_of, ms, settings};
 use crate::technique::table::Table;
-use antumbra::gpu::headless::{Forward, HeadlessDevice, Stage, View};
 use antumbra::scene::{Camera, Instance, Role, Scene, from_gltf, generate};
+use antumbra_harness::{Forward, HeadlessDevice, Stage, View};
 use std::path::Path;
 
 const EXTENT: [u32; 2] = [640, 480];
@@ -54,7 +54,7 @@ pub fn forward(device: &HeadlessDevice, options: &Options) -> Table {
             }
             let [gbuffer, pixels, at_fragments] = [gbuffer, pixels, at_fragments]
                 .map(|times| crate::technique::table::median(&times));
-            let common = |t: &antumbra::gpu::headless::FrameTimes| {
+            let common = |t: &antumbra_harness::FrameTimes| {
                 t.passes.iter().map(|(_, ms)| ms).sum::<f64>() - t.passes.last().unwrap().1
             };
             let images = (forward.deferred_visibility().unwrap(), forward.visibility().unwrap());

@@ -7,15 +7,14 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod forward;
-mod levels;
 #[path = "../technique/mod.rs"]
 mod technique;
 
-use antumbra::gpu::headless::{FrameTimes, HeadlessDevice};
 use antumbra::scene::Scene;
 use antumbra::stages::nbuffer::{Kind, Levels};
 use antumbra::{Settings, Technique};
-use levels::{BUILD, bytes, tightness};
+use antumbra_harness::levels::{self, BUILD, bytes, tightness};
+use antumbra_harness::{FrameTimes, HeadlessDevice};
 use std::time::Instant;
 use technique::table::{Table, median};
 use technique::{Options, Ready, Study, in_turns, make_tables, scene};

@@ -8,11 +8,10 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod model;
-mod ply;
 mod study;
 mod table;
 
-use antumbra::gpu::headless::{HeadlessDevice, HeadlessOptions};
+use antumbra_harness::{HeadlessDevice, HeadlessOptions};
 use std::path::PathBuf;
 use table::Table;
 

@@ -1,9 +1,9 @@
 //! Models, and stages to measure them on.
 
-use antumbra::gpu::headless::{FrameTimes, HeadlessDevice, Stage, View};
 use antumbra::scene::{Role, Scene, from_gltf};
 use antumbra::truth::{Receiver, Sampling, Tracer};
 use antumbra::{FramePlan, Settings};
+use antumbra_harness::{FrameTimes, HeadlessDevice, Stage, View};
 use glam::DVec3;
 use std::path::Path;
 

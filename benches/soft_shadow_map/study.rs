@@ -2,11 +2,11 @@
 
 use super::Options;
 use super::model::{Ready, accumulation_ms, committed};
-use super::ply::ply;
 use super::table::{Table, exponent, line, median, quantile, spread};
-use antumbra::gpu::headless::{HeadlessDevice, ReadbackScheme};
 use antumbra::scene::{Role, Scene, generate};
 use antumbra::truth::ErrorSummary;
+use antumbra_harness::ply::ply;
+use antumbra_harness::{HeadlessDevice, ReadbackScheme};
 use glam::DMat4;
 use std::path::Path;
 

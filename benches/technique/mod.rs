@@ -2,10 +2,10 @@
 
 #![allow(dead_code, reason = "each bench uses a part")]
 
-use antumbra::gpu::headless::{FrameTimes, HeadlessDevice, HeadlessOptions, Stage, View};
 use antumbra::scene::{Instance, Role, Scene, from_gltf, generate};
 use antumbra::truth::{ErrorSummary, ExactLine, Receiver, Sampling, Tracer};
 use antumbra::{FramePlan, RectangleLight, Settings, Technique};
+use antumbra_harness::{FrameTimes, HeadlessDevice, HeadlessOptions, Stage, View};
 use glam::DVec3;
 use std::path::Path;
 

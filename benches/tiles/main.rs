@@ -10,8 +10,8 @@
 mod technique;
 
 use antumbra::Technique;
-use antumbra::gpu::headless::{FrameTimes, HeadlessDevice, View};
 use antumbra::scene::{Camera, Role, Scene};
+use antumbra_harness::{FrameTimes, HeadlessDevice, View};
 use glam::{DMat4, DVec3};
 use technique::table::{Table, median};
 use technique::{Options, Ready, Study, in_turns, make_tables, scene, settings};

@@ -2,7 +2,7 @@
 
 use antumbra::Error;
 use antumbra::auto::{Costs, Table};
-use antumbra::gpu::headless::{HeadlessDevice, measure_costs};
+use antumbra_harness::{HeadlessDevice, measure_costs};
 use std::path::PathBuf;
 
 /// Kept from an earlier run, or measured now. What cannot be kept is measured again next time.

@@ -6,12 +6,12 @@ mod costs;
 mod options;
 mod output;
 mod report;
-mod shade;
 
 use antumbra::auto::Auto;
-use antumbra::gpu::headless::{FrameTimes, HeadlessDevice, HeadlessOptions, Stage, View};
 use antumbra::scene::{Camera, Scene, from_gltf};
 use antumbra::{Settings, Technique};
+use antumbra_harness::shade;
+use antumbra_harness::{FrameTimes, HeadlessDevice, HeadlessOptions, Stage, View};
 use image::ExtendedColorType;
 use options::{Options, Stop};
 use output::Files;

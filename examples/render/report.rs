@@ -3,10 +3,10 @@
 use crate::options::Options;
 use antumbra::auto::Choice;
 use antumbra::effects::Outcome;
-use antumbra::gpu::headless::{FrameTimes, HeadlessDevice};
 use antumbra::scene::Scene;
 use antumbra::settings::KNOBS;
 use antumbra::{FramePlan, Settings};
+use antumbra_harness::{FrameTimes, HeadlessDevice};
 use serde_json::{Map, Value, json};
 use std::time::Duration;
 

@@ -1,11 +1,10 @@
 //! Any bytes as a glTF file; ../README.md says how to run it.
 //!
-//! tests/untrusted.rs compiles this file too and calls [`whole::open`] on files of its own, so that what
-//! one of the two looks for the other does.
+//! tests/untrusted.rs calls [`whole::open`] too, on files of its own, so that what one of the two looks for
+//! the other does.
 #![cfg_attr(fuzzing, no_main)]
 
-#[path = "../whole.rs"]
-pub mod whole;
+use antumbra_harness::whole;
 
 #[cfg(fuzzing)]
 libfuzzer_sys::fuzz_target!(|file: &[u8]| {
@@ -15,7 +14,7 @@ libfuzzer_sys::fuzz_target!(|file: &[u8]| {
 
 /// Opens the files that it is given: those that the fuzzer found, for which no fuzzer is needed.
 #[cfg(not(fuzzing))]
-pub fn main() {
+fn main() {
     for path in std::env::args_os().skip(1) {
         let name = std::path::Path::new(&path).display();
         match std::fs::read(&path) {

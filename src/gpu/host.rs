@@ -20,7 +20,7 @@ pub struct Host {
     pub(crate) queue_family: u32,
     pub(crate) pipeline_cache: vk::PipelineCache,
     pub(crate) debug_utils: Option<ext::debug_utils::Device>,
-    /// Where the rows' layouts are shared with other nodes.
+    /// Where the passes' layouts are shared with other nodes; none where each node makes its own.
     pub(super) layouts: Option<Arc<SharedLayouts>>,
 }
 
@@ -93,10 +93,11 @@ impl Host {
         self
     }
 
-    /// Takes the rows' layouts from among those of the device, which outlive the node.
-    #[cfg(feature = "headless")]
+    /// Shares the passes' layouts with the other nodes made on this device, so that a driver which looks
+    /// compiled pipelines up by their layout finds those of an earlier node. They must be destroyed by
+    /// [`SharedLayouts::destroy`] after all of these nodes and before the device.
     #[must_use]
-    pub(super) fn with_layouts(mut self, layouts: Arc<SharedLayouts>) -> Self {
+    pub fn with_layouts(mut self, layouts: Arc<SharedLayouts>) -> Self {
         self.layouts = Some(layouts);
         self
     }

@@ -53,12 +53,14 @@ impl RowLayouts {
     }
 }
 
-/// Layouts that outlive the nodes made with them, one for all passes that are bound alike.
+/// The descriptor set layouts and pipeline layouts of one device, which outlive the nodes made with them: one
+/// pair for all passes that are bound alike.
 ///
+/// A host that makes nodes again and again gives this to each of them by [`super::Host::with_layouts`].
 /// SwiftShader finds what it has compiled by the identity of the layout besides the shader, so its pipeline
 /// cache holds nothing for a node that makes layouts of its own.
 #[derive(Default)]
-pub(super) struct SharedLayouts(Mutex<(HashMap<Key, RowLayouts>, ObjectOwner)>);
+pub struct SharedLayouts(Mutex<(HashMap<Key, RowLayouts>, ObjectOwner)>);
 
 /// Binding, type and stages of each binding; stages and bytes of the push constants.
 type Key = (Vec<(u32, vk::DescriptorType, vk::ShaderStageFlags)>, vk::ShaderStageFlags, u32);
@@ -83,12 +85,14 @@ impl SharedLayouts {
         Ok(layouts)
     }
 
-    /// Destroys all of them; nothing may use them any more.
-    #[cfg(feature = "headless")]
-    pub(super) fn destroy(&self, device: &ash::Device) {
-        let (known, owner) =
-            std::mem::take(&mut *self.0.lock().unwrap_or_else(PoisonError::into_inner));
-        drop(known);
+    /// Destroys all of them.
+    ///
+    /// # Safety
+    /// The device is the one that the nodes were made on, it lives, and those nodes and everything that they
+    /// retired are destroyed.
+    pub unsafe fn destroy(&self, device: &ash::Device) {
+        let mut table = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let (_, owner) = std::mem::take(&mut *table);
         // Layouts have no memory of their own.
         owner.destroy(device, |_| {});
     }

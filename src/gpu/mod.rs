@@ -10,7 +10,7 @@ mod host;
 mod layouts;
 mod memory;
 mod node_objects;
-pub(crate) mod objects;
+mod objects;
 mod owner;
 mod pipeline;
 mod record;
@@ -19,10 +19,9 @@ mod retired;
 mod timing;
 
 pub use host::{Host, Requirements};
+pub use layouts::SharedLayouts;
 pub use memory::{Allocator, MemoryBlock, MemoryRequest};
 pub(crate) use node_objects::NodeObjects;
+pub(crate) use objects::Object;
 pub use record::HostDraw;
 pub use retired::{RetireQueue, Retired};
-
-#[cfg(feature = "headless")]
-pub mod headless;

@@ -44,3 +44,22 @@ pub struct Inspected {
     /// The layout it is in behind the plan.
     pub layout: vk::ImageLayout,
 }
+
+/// The Vulkan object behind a resource of a plan, which stays the node's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlanObject {
+    /// An image and a view of all of it.
+    Image {
+        /// The image.
+        image: vk::Image,
+        /// The view.
+        view: vk::ImageView,
+    },
+    /// A buffer.
+    Buffer {
+        /// The buffer.
+        buffer: vk::Buffer,
+        /// Its size in bytes.
+        bytes: u64,
+    },
+}

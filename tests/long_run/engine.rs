@@ -1,10 +1,10 @@
 //! A small engine whose world changes all the time.
 
-use antumbra::gpu::headless::{
-    GBuffer, GBufferPainter, HeadlessDevice, SceneBuffers, Stage, Submitted, View,
-};
 use antumbra::scene::{Role, Scene};
 use antumbra::{Description, FramePlan, MeshInstance, RetireQueue, Settings};
+use antumbra_harness::{
+    GBuffer, GBufferPainter, HeadlessDevice, SceneBuffers, Stage, Submitted, View,
+};
 use antumbra_tests::measure::settings;
 use antumbra_tests::random::{Case, Lamp, case, meshes};
 use antumbra_tests::rig::Random;

@@ -3,7 +3,7 @@
 use super::compare::{alike, changed, difference, differences, rounding};
 use super::promises::{self, FEW_TEXELS, FEW_TEXELS_MIRRORED, Likeness};
 use super::{Case, OBJECTS, Object, judge, shadows, well_conditioned};
-use antumbra::gpu::headless::View;
+use antumbra_harness::View;
 use antumbra_tests::random::{Lamp, case, magnitude, turn, vector};
 use antumbra_tests::rig::Rig;
 use glam::{DMat4, DVec3};

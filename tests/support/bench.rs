@@ -4,11 +4,11 @@
 #![allow(unsafe_code)]
 
 use crate::measure::settings;
-use antumbra::gpu::headless::{HeadlessDevice, ImageSource, Stage, View, read_image};
 use antumbra::gpu::{MemoryBlock, MemoryRequest};
 use antumbra::graph::Scope;
 use antumbra::scene::{Scene, generate};
 use antumbra::{Allocator, Description, Error, Frame, FramePlan, Host, ShadowNode, Visibility};
+use antumbra_harness::{HeadlessDevice, ImageSource, Stage, View, read_image};
 use ash::vk;
 
 /// Settings as words, and what else a description has.

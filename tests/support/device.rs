@@ -1,6 +1,6 @@
 //! The device of a test.
 
-use antumbra::gpu::headless::{HeadlessDevice, HeadlessOptions, MessageLog, Tables};
+use antumbra_harness::{HeadlessDevice, HeadlessOptions, MessageLog, Tables};
 use std::io::Write;
 use std::ops::Deref;
 use std::sync::{Arc, Mutex, PoisonError, Weak};

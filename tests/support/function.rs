@@ -15,7 +15,7 @@
 use crate::compare::{Report, Tolerance};
 use crate::compile::try_compile;
 use crate::signature::{Scalar, Signature};
-use antumbra::gpu::headless::{HeadlessDevice, HostBuffer, run_compute};
+use antumbra_harness::{HeadlessDevice, HostBuffer, run_compute};
 use ash::vk;
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::TestRunner;

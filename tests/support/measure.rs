@@ -1,13 +1,13 @@
 //! A scene under a light, seen by a grid of pixels: the node's visible fraction beside the truth.
 
 use crate::example::root;
-use antumbra::gpu::headless::{HeadlessDevice, Stage, View};
 use antumbra::scene::{Role, Scene, from_gltf, generate};
 use antumbra::truth::{
     ErrorSummary, Exact, ExactLine, PolygonLight, Receiver, Sampling, Tracer,
     visible_fraction_of_quad,
 };
 use antumbra::{RectangleLight, Settings};
+use antumbra_harness::{HeadlessDevice, Stage, View};
 use glam::DVec3;
 
 /// Settings from the words of a command line: `"map=64 sides=one"`, or with a technique first:

@@ -1,8 +1,8 @@
 //! Random scenes: what proptest draws, shrinks and prints.
 
 use antumbra::RectangleLight;
-use antumbra::gpu::headless::View;
 use antumbra::scene::{Instance, Mesh, Role};
+use antumbra_harness::View;
 use glam::{DMat3, DMat4, DQuat, DVec3, DVec4};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};

@@ -1,11 +1,11 @@
 //! One stage that evaluates random scenes: a node of several settings, its lights a batch of images in one submit.
 
 use crate::random::{Case, Lamp, Object, SIDE, Shape, meshes};
-use antumbra::gpu::headless::{GBufferPainter, HeadlessDevice, SceneBuffers, Stage, View};
 use antumbra::scene::{Role, Scene};
 use antumbra::settings::{KNOBS, Knob};
 use antumbra::techniques::linear_light::Across;
 use antumbra::{MeshInstance, Settings, Technique};
+use antumbra_harness::{GBufferPainter, HeadlessDevice, SceneBuffers, Stage, View};
 use glam::DMat4;
 
 /// Images a submit.

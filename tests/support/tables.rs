@@ -7,7 +7,7 @@
 // Functions in Vulkan's place are unsafe, to be called and to call what they stand for.
 #![allow(unsafe_code)]
 
-use antumbra::gpu::headless::Tables;
+use antumbra_harness::Tables;
 use ash::vk;
 use std::cell::{Cell, RefCell};
 

@@ -6,9 +6,9 @@ use crate::options::Options;
 use crate::store::{Row, Store};
 use antumbra::auto::{Auto, Budget, CANDIDATES, COLUMNS, Costs, Likeness, Measured, PROBE};
 use antumbra::effects::Situation;
-use antumbra::gpu::headless::{HeadlessDevice, HeadlessOptions, Stage, probe};
 use antumbra::scene::Instance;
 use antumbra::{Settings, Technique};
+use antumbra_harness::{HeadlessDevice, HeadlessOptions, Stage, probe};
 use std::path::Path;
 
 /// Passes in light space, by what their names begin with; all others run at the pixels.

@@ -4,13 +4,13 @@
 use crate::Problem;
 use crate::findings::{Finding, Verdict};
 use crate::groups::{Against, Entry, Group, Scale, Stage};
-use crate::ply::ply;
 use crate::scenes::{SceneSpec, Source};
 use crate::store::Row;
 use crate::techniques::{FORWARD, value_of};
 use antumbra::RectangleLight;
 use antumbra::scene::generate::{self, cuboid};
 use antumbra::scene::{Camera, Role, Scene};
+use antumbra_harness::ply::ply;
 use glam::{DMat4, DVec3};
 use std::path::PathBuf;
 

@@ -5,8 +5,8 @@ use crate::scenes::{self, SceneSpec, Source};
 use crate::sweeps;
 use crate::techniques::{CURVES, value_of};
 use antumbra::auto::{CANDIDATES, Candidate};
-use antumbra::gpu::headless::View;
 use antumbra::scene::{Camera, Instance, Role, Scene, generate};
+use antumbra_harness::View;
 use glam::{DMat4, DVec3};
 
 /// The study of what `auto` chooses among.

@@ -18,23 +18,16 @@ pub mod findings;
 pub mod groups;
 pub mod hard_cases;
 pub mod hills;
-#[path = "../../ray_march/levels.rs"]
-mod levels;
 pub mod measure;
 pub mod options;
 pub mod pareto;
 pub mod picture;
 pub mod plot;
-#[path = "../../soft_shadow_map/ply.rs"]
-mod ply;
 pub mod progress;
 pub mod report;
 pub mod run;
 pub mod runner;
 pub mod scenes;
-#[path = "../../../examples/render/shade.rs"]
-#[allow(dead_code, clippy::expect_used)]
-mod shade;
 pub mod stats;
 pub mod store;
 pub mod sweeps;

@@ -13,7 +13,7 @@ use crate::report::{self, Report};
 use crate::scenes::{self, SceneSpec, Source};
 use crate::store::{Header, Outcome, Row, Store};
 use crate::truth::Fnv;
-use antumbra::gpu::headless::{HeadlessDevice, HeadlessOptions};
+use antumbra_harness::{HeadlessDevice, HeadlessOptions};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;

@@ -6,10 +6,10 @@ use crate::measure::Bench;
 use crate::scenes::scaled;
 use crate::techniques::Method;
 use crate::truth;
-use antumbra::gpu::headless::{Forward, FrameTimes, ReadbackScheme, Stage};
 use antumbra::scene::Instance;
 use antumbra::truth::{Receiver, Sampling, Tracer};
 use antumbra::{FramePlan, RectangleLight};
+use antumbra_harness::{Forward, FrameTimes, ReadbackScheme, Stage};
 use std::time::{Duration, Instant};
 
 /// The random numbers of the ray tracer that is measured, which are not the truth's.

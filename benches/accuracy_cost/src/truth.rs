@@ -3,9 +3,9 @@
 use crate::Problem;
 use crate::groups::Against;
 use antumbra::RectangleLight;
-use antumbra::gpu::headless::GBuffer;
 use antumbra::scene::{Role, Scene};
 use antumbra::truth::{Receiver, Sampling, Tracer, visible_fraction_of_quad};
+use antumbra_harness::GBuffer;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::path::Path;

@@ -3,11 +3,11 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
-use antumbra::gpu::headless::{HeadlessDevice, HeadlessOptions};
 use antumbra_bench::hard_cases::cases::{self, HardCase};
 use antumbra_bench::hard_cases::judge::{Row, Verdict};
 use antumbra_bench::hard_cases::set::{Block, Set};
 use antumbra_bench::hard_cases::{run, table, techniques};
+use antumbra_harness::{HeadlessDevice, HeadlessOptions};
 use glam::{DMat4, DVec3};
 
 /// Runs cases under the validation layer where the environment asks for it.

@@ -3,12 +3,12 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
-use antumbra::gpu::headless::{HeadlessDevice, HeadlessOptions};
 use antumbra_bench::groups::{Group, QUICK, Scale, Stage};
 use antumbra_bench::measure::Bench;
 use antumbra_bench::scenes::{SceneSpec, Source};
 use antumbra_bench::store::{Outcome, Row};
 use antumbra_bench::sweeps;
+use antumbra_harness::{HeadlessDevice, HeadlessOptions};
 use std::path::PathBuf;
 
 const SMALL: Scale = Scale { grid: 64, rounds: 1, ..QUICK };

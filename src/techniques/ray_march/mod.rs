@@ -53,7 +53,7 @@
 //! (`Description::light_texture`). The part of the light under the pixel's own plane is then up to the rays.
 //!
 //! **Deferred** (algorithm 1): the rays are those of the G-buffer's pixels. What a forward renderer would pay,
-//! rays of every fragment as it is drawn, is in the benchmark: `gpu::headless::Forward` asks the same functions
+//! rays of every fragment as it is drawn, is in the benchmark: `antumbra_harness::Forward` asks the same functions
 //! from a fragment shader. A cube takes about as long so, a scan of 48 thousand triangles 1.6 to 3 times as long
 //! (800×600 pixels, 4 and 9 rays, no filter, lavapipe). A fragment knows its plane, though, which the depths of
 //! facets as small as pixels do not tell: 1.3 instead of 2.0 % mean error on the bunny (tests/forward.rs).

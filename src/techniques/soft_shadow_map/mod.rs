@@ -86,7 +86,5 @@ pub mod push;
 mod settings;
 pub mod twin;
 
-#[cfg(feature = "headless")]
-pub(crate) use passes::{BLEND_STEPS, receiver_grid};
-pub use passes::{Inputs, declare, wanted};
+pub use passes::{BLEND_STEPS, Inputs, declare, receiver_grid, wanted};
 pub use settings::{Accumulate, Receivers, Settings, Sides, spread_of};

@@ -17,7 +17,7 @@ const SUPERBLOCK: u32 = 32;
 /// As in `gather.glsl`: each texel's back face where it lies before the receiver, else its front face.
 const BACK_OR_FRONT: i32 = 2;
 /// Blended contributions are multiples of 2⁻²⁴, see `patch.frag`.
-pub(crate) const BLEND_STEPS: f32 = 16_777_216.0;
+pub const BLEND_STEPS: f32 = 16_777_216.0;
 /// A superblock and its blocks, as they lie together.
 const FAMILY: u64 = 17;
 /// Blocks a group, as in `patch_count.comp`.
@@ -181,7 +181,7 @@ fn declare_nodes(
 }
 
 /// Receiver texels in occluder texels: the step, and the centre of texel (0, 0).
-pub(crate) fn receiver_grid(view: &MapView, occluders: &MapView) -> ([f32; 2], [f32; 2]) {
+pub fn receiver_grid(view: &MapView, occluders: &MapView) -> ([f32; 2], [f32; 2]) {
     let (per, first) = (occluders.texels_per_uv(), occluders.first());
     let receiver_per = view.texels_per_uv();
     let step = [0, 1].map(|i| per[i] / receiver_per[i]);

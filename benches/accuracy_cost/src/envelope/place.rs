@@ -3,11 +3,11 @@
 use crate::Problem;
 use crate::scenes;
 use antumbra::RectangleLight;
-use antumbra::gpu::headless::View;
 use antumbra::scene::generate::GROUND_SIDE;
 use antumbra::scene::{Role, Scene, generate};
 use antumbra::truth::metrics::FULL_TOLERANCE;
 use antumbra::truth::{Exact, PolygonLight, Receiver};
+use antumbra_harness::View;
 use glam::{DMat4, DVec3};
 
 /// A sheet: no thickness, so that it comes as near as one likes to ground and light.

@@ -6,9 +6,9 @@ use super::pixels::{self, Maps, Range, Reach};
 use super::techniques::{self, Expected, Held};
 use crate::Problem;
 use crate::scenes::scaled;
-use antumbra::gpu::headless::{HeadlessDevice, Stage, View};
 use antumbra::scene::{Instance, Role, Scene};
 use antumbra::{FramePlan, Settings};
+use antumbra_harness::{HeadlessDevice, Stage, View};
 use std::collections::BTreeMap;
 
 /// The image's side in pixels.

@@ -1,8 +1,8 @@
 //! What a hard case is made of: blocks, floors, a light and the pixels that look on, in f64.
 
 use antumbra::RectangleLight;
-use antumbra::gpu::headless::View;
 use antumbra::scene::{Mesh, Role, Scene, generate};
+use antumbra_harness::View;
 use glam::{DMat4, DVec3};
 
 /// The shape of something that blocks light.

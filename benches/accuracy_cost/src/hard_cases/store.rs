@@ -4,7 +4,7 @@ use super::judge::Row;
 use super::table;
 use super::{cases, run};
 use crate::Problem;
-use antumbra::gpu::headless::HeadlessDevice;
+use antumbra_harness::HeadlessDevice;
 use std::collections::BTreeMap;
 use std::path::Path;
 

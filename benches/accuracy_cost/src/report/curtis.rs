@@ -3,13 +3,13 @@
 use super::tables::{found, row_of};
 use super::{Report, ms, once};
 use crate::curtis::{self, MAPS, RAYS, SCREENS, VERSIONS, Version};
-use crate::levels::{BUILD, bytes, ms as sum_of, tightness};
 use crate::picture::{self, Pictures};
 use crate::plot::escape;
 use crate::store::{Outcome, Row};
 use crate::sweeps;
 use crate::techniques::{FORWARD, value_of};
 use antumbra::stages::nbuffer::{Kind, Levels};
+use antumbra_harness::levels::{BUILD, bytes, ms as sum_of, tightness};
 
 /// A table of the paper.
 struct Table {

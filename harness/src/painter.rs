@@ -1,19 +1,20 @@
 //! Scenes drawn into color attachments and reversed depth: G-buffers, and whatever a fragment shader makes
 //! of the same fragments.
 
-use super::{HeadlessDevice, OwnedImage, SceneBuffers, View};
-use crate::Error;
-use crate::scene::{Instance, Scene};
-use crate::shaders::{self, Module};
+use crate::shaders::GBUFFER_VERT;
+use crate::{HeadlessDevice, OwnedImage, SceneBuffers, View};
+use antumbra::Error;
+use antumbra::scene::{Instance, Scene};
+use antumbra::shaders::{DEPTH_VERT, Module};
 use ash::vk;
 use std::time::Duration;
 
 /// The depth attachment's format.
-pub(super) const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
+pub(crate) const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 
 /// The layouts that the attachments are left in.
-pub(super) const DEPTH_LAYOUT: vk::ImageLayout = vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL;
-pub(super) const COLOR_LAYOUT: vk::ImageLayout = vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL;
+pub(crate) const DEPTH_LAYOUT: vk::ImageLayout = vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL;
+pub(crate) const COLOR_LAYOUT: vk::ImageLayout = vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL;
 
 /// 124 bytes of the vertex stage and 4 of the fragment stage.
 #[repr(C)]
@@ -27,7 +28,7 @@ struct Push {
 
 /// A mesh ready to be drawn. Its buffers are the [`SceneBuffers`]' that it was made of, which must live as
 /// long.
-pub(super) struct SceneDraw {
+pub(crate) struct SceneDraw {
     push: Push,
     positions: vk::Buffer,
     normals: vk::Buffer,
@@ -36,7 +37,7 @@ pub(super) struct SceneDraw {
 }
 
 /// The instances that `keep` accepts, as a view sees them.
-pub(super) fn draws(
+pub(crate) fn draws(
     scene: &Scene,
     buffers: &SceneBuffers,
     view: &View,
@@ -50,7 +51,7 @@ pub(super) fn draws(
 }
 
 /// A render pass, and a pipeline of a vertex and a fragment shader.
-pub(super) struct Painter {
+pub(crate) struct Painter {
     device: HeadlessDevice,
     colors: usize,
     /// What color attachments begin as, in every channel.
@@ -101,7 +102,7 @@ impl Painter {
         new.layout = unsafe { raw.create_pipeline_layout(&create, None) }
             .map_err(Error::vulkan("creating a painter's pipeline layout"))?;
         // Both put a vertex where the other does.
-        let vertex = if inputs { shaders::GBUFFER_VERT } else { shaders::DEPTH_VERT };
+        let vertex = if inputs { GBUFFER_VERT } else { DEPTH_VERT };
         let vertex = new.module(vertex)?;
         let fragment = new.module(fragment);
         let made = match fragment {

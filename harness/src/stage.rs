@@ -1,16 +1,16 @@
 //! A scene, a G-buffer and a node on one device: what tests, benches and the render example run.
 
-use super::gbuffer::MASK;
-use super::{
+use crate::gbuffer::MASK;
+use crate::{
     GBuffer, GBufferPainter, HeadlessDevice, HostBuffer, ImageSource, Invocations, SceneBuffers,
     View, read_image,
 };
-use crate::auto::{Auto, Choice};
-use crate::gpu::objects::Object;
-use crate::graph::{Scope, Shape};
-use crate::scene::{AreaLight, Instance, Scene};
-use crate::stages::visibility;
-use crate::{
+use antumbra::auto::{Auto, Choice};
+use antumbra::graph::Scope;
+use antumbra::node::PlanObject;
+use antumbra::scene::{AreaLight, Instance, Scene};
+use antumbra::stages::visibility;
+use antumbra::{
     Description, Error, Frame, FramePlan, FramePlans, Host, MeshInstance, RectangleLight, Settings,
     ShadowNode, Visibility,
 };
@@ -141,12 +141,12 @@ impl Stage {
     }
 
     /// How its pixels look at the scene.
-    pub(super) fn view(&self) -> &View {
+    pub(crate) fn view(&self) -> &View {
         &self.view
     }
 
     /// The scene's buffers.
-    pub(super) fn buffers(&self) -> &SceneBuffers {
+    pub(crate) fn buffers(&self) -> &SceneBuffers {
         &self.buffers
     }
 
@@ -342,10 +342,8 @@ impl Stage {
         plan: &FramePlan,
         name: &str,
     ) -> Result<Vec<T>, Error> {
-        let mut resources = plan.plan.graph.resources().iter();
-        let found = resources.find(|r| r.name == name).map(|r| r.shape);
-        match (found, self.node()?.object(plan, name)) {
-            (Some(Shape::Buffer { bytes }), Object::Buffer(buffer)) => {
+        match self.node()?.object(plan, name) {
+            Some(PlanObject::Buffer { buffer, bytes }) => {
                 Ok(HostBuffer::copy_of(&self.device, name, buffer, bytes)?.read())
             }
             _ => Err(Error::Frame(format!("the plan has no buffer {name}"))),

@@ -1,7 +1,7 @@
 //! Command buffers that are recorded once and submitted.
 
-use super::HeadlessDevice;
-use crate::Error;
+use crate::HeadlessDevice;
+use antumbra::Error;
 use ash::vk;
 use std::time::{Duration, Instant};
 

@@ -1,14 +1,14 @@
 //! The Vulkan instance: loader, validation layer, debug messenger.
 
-use super::messages::MessageLog;
-use crate::Error;
+use crate::messages::MessageLog;
+use antumbra::Error;
 use ash::{ext, vk};
 use std::ffi::CStr;
 
 const VALIDATION_LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
 
 /// An instance and its messenger, destroyed together.
-pub(super) struct Instance {
+pub(crate) struct Instance {
     pub entry: ash::Entry,
     pub raw: ash::Instance,
     /// Whether `VK_EXT_debug_utils` is on.

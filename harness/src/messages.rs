@@ -29,7 +29,7 @@ impl MessageLog {
     }
 
     /// What makes Vulkan report here. The log must outlive the messenger and the instance.
-    pub(super) fn messenger(&self) -> vk::DebugUtilsMessengerCreateInfoEXT<'static> {
+    pub(crate) fn messenger(&self) -> vk::DebugUtilsMessengerCreateInfoEXT<'static> {
         use vk::DebugUtilsMessageSeverityFlagsEXT as Severity;
         use vk::DebugUtilsMessageTypeFlagsEXT as Type;
         vk::DebugUtilsMessengerCreateInfoEXT::default()

@@ -8,13 +8,14 @@
 //!   pixels);
 //! * there is no filter, no eye layer, which would take the depth of all pixels, and no light's texture.
 
-use super::painter::{DEPTH, Painter, SceneDraw, draws};
-use super::{FrameTimes, GBufferPainter, HeadlessDevice, HostBuffer, OwnedImage, Stage};
-use crate::gpu::objects::Object;
-use crate::graph::{Access, Work};
-use crate::scene::{Instance, Scene};
-use crate::stages::visibility;
-use crate::{Error, FramePlan, shaders};
+use crate::painter::{DEPTH, Painter, SceneDraw, draws};
+use crate::shaders::FORWARD_FRAG;
+use crate::{FrameTimes, GBufferPainter, HeadlessDevice, HostBuffer, OwnedImage, Stage};
+use antumbra::graph::{Access, Work};
+use antumbra::node::PlanObject;
+use antumbra::scene::{Instance, Scene};
+use antumbra::stages::visibility;
+use antumbra::{Error, FramePlan, shaders};
 use ash::vk;
 use std::time::Duration;
 
@@ -94,14 +95,13 @@ impl Forward {
         };
         new.make_set()?;
         let (formats, layout) = ([visibility::FORMAT], Some(new.set_layout));
-        new.painter =
-            Some(Painter::new(device, &formats, 1.0, shaders::FORWARD_FRAG, false, layout)?);
+        new.painter = Some(Painter::new(device, &formats, 1.0, FORWARD_FRAG, false, layout)?);
         Ok(new)
     }
 
     fn make_set(&mut self) -> Result<(), Error> {
         let windows = self.stage.node()?.object(&self.plan, "ray_march.windows");
-        let Object::Image { view, .. } = windows else {
+        let Some(PlanObject::Image { view, .. }) = windows else {
             return Err(Error::Frame("the plan has no windows".into()));
         };
         let raw = self.device.device();
@@ -208,7 +208,7 @@ impl Forward {
     /// # Errors
     /// As [`OwnedImage::read`].
     pub fn visibility(&self) -> Result<Vec<f32>, Error> {
-        self.visible.read(super::painter::COLOR_LAYOUT)
+        self.visible.read(crate::painter::COLOR_LAYOUT)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Buffers that the host and the device both see.
 
-use super::HeadlessDevice;
-use crate::Error;
+use crate::HeadlessDevice;
+use antumbra::Error;
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
@@ -57,7 +57,7 @@ impl HostBuffer {
     }
 
     /// A copy of all that a buffer holds which was made to be copied from and is not in use.
-    pub(super) fn copy_of(
+    pub(crate) fn copy_of(
         device: &HeadlessDevice,
         name: &str,
         source: vk::Buffer,
@@ -158,7 +158,7 @@ impl Drop for HostBuffer {
 }
 
 /// Memory for one resource.
-pub(super) fn allocate(
+pub(crate) fn allocate(
     device: &HeadlessDevice,
     name: &str,
     requirements: vk::MemoryRequirements,
@@ -177,7 +177,7 @@ pub(super) fn allocate(
 }
 
 /// Gives memory back.
-pub(super) fn free(device: &HeadlessDevice, allocation: Option<Allocation>) {
+pub(crate) fn free(device: &HeadlessDevice, allocation: Option<Allocation>) {
     if let Some(allocation) = allocation {
         let mut allocator = device.allocator().lock().unwrap_or_else(PoisonError::into_inner);
         // It fails only for an allocation of another allocator, which this is not.

@@ -1,6 +1,6 @@
 //! Cameras as matrices.
 
-use crate::scene::Camera;
+use antumbra::scene::Camera;
 use glam::{DMat4, DVec4};
 
 /// How pixels look at the world. Depth is reversed: 0 is the background.

@@ -1,9 +1,9 @@
 //! Device-local images, their upload and their read-back.
 
-use super::buffer::{allocate, free};
-use super::{HeadlessDevice, HostBuffer};
-use crate::graph::Scope;
-use crate::{Error, HostImage};
+use crate::buffer::{allocate, free};
+use crate::{HeadlessDevice, HostBuffer};
+use antumbra::graph::Scope;
+use antumbra::{Error, HostImage};
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::Allocation;

@@ -1,9 +1,9 @@
 //! What passes cost on a device, by a small frame of it: under half a second.
 
-use super::{HeadlessDevice, Stage, View};
-use crate::auto::{Costs, Measured, Table};
-use crate::scene::{Camera, generate};
-use crate::{Error, Settings};
+use crate::{HeadlessDevice, Stage, View};
+use antumbra::auto::{Costs, Measured, Table};
+use antumbra::scene::{Camera, generate};
+use antumbra::{Error, Settings};
 
 /// The probe's pixels.
 const EXTENT: [u32; 2] = [256, 192];

@@ -1,5 +1,8 @@
 //! Scenes made to need something, or not to; `tests/planner.rs` and `benches/planner` share them.
 
+// The scenes are constants of this file: one that cannot be made is a fault of it.
+#![allow(clippy::unwrap_used)]
+
 use antumbra::RectangleLight;
 use antumbra::effects::Effect;
 use antumbra::scene::{Mesh, Role, Scene, generate};
@@ -7,8 +10,11 @@ use glam::{DMat4, DVec3};
 
 /// A scene made to need something, or not to.
 pub struct Case {
+    /// Its name, for tables.
     pub name: &'static str,
+    /// The scene.
     pub scene: Scene,
+    /// The settings as text.
     pub words: &'static str,
     /// Half the side of the ground that pixels see, metres.
     pub half: f64,

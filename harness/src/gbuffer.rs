@@ -1,16 +1,17 @@
 //! A G-buffer: depth, world position, normal and role of each pixel.
 
-use super::painter::{COLOR_LAYOUT, DEPTH, DEPTH_LAYOUT, Painter, SceneDraw, draws};
-use super::{HeadlessDevice, OwnedImage, SceneBuffers, View};
-use crate::graph::Scope;
-use crate::scene::{Instance, Scene};
-use crate::{Error, HostImage, shaders};
+use crate::painter::{COLOR_LAYOUT, DEPTH, DEPTH_LAYOUT, Painter, SceneDraw, draws};
+use crate::shaders::GBUFFER_FRAG;
+use crate::{HeadlessDevice, OwnedImage, SceneBuffers, View};
+use antumbra::graph::Scope;
+use antumbra::scene::{Instance, Scene};
+use antumbra::{Error, HostImage};
 use ash::vk;
 use std::time::Duration;
 
 const VECTOR: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 /// The roles' format: 255 blocks and receives, 128 receives only, 0 receives nothing.
-pub(super) const MASK: vk::Format = vk::Format::R8_UNORM;
+pub(crate) const MASK: vk::Format = vk::Format::R8_UNORM;
 
 /// The images, all of one size.
 pub struct GBuffer {
@@ -93,7 +94,7 @@ impl GBufferPainter {
     /// [`Error::Vulkan`] where the driver refuses.
     pub fn new(device: &HeadlessDevice) -> Result<Self, Error> {
         let colors = [VECTOR, VECTOR, MASK];
-        Ok(Self { painter: Painter::new(device, &colors, 0.0, shaders::GBUFFER_FRAG, true, None)? })
+        Ok(Self { painter: Painter::new(device, &colors, 0.0, GBUFFER_FRAG, true, None)? })
     }
 
     /// Paints the instances that `keep` accepts, submits and waits.
@@ -112,7 +113,7 @@ impl GBufferPainter {
     }
 
     /// As [`Self::paint`], what is ready to be drawn; how long it took.
-    pub(super) fn paint_draws(
+    pub(crate) fn paint_draws(
         &self,
         gbuffer: &GBuffer,
         draws: &[SceneDraw],

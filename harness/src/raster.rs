@@ -1,13 +1,13 @@
 //! One pipeline that draws into one image: a render pass, a framebuffer, at most one fetched image.
 
-use super::{HeadlessDevice, OwnedImage};
-use crate::Error;
-use crate::shaders::Module;
+use crate::{HeadlessDevice, OwnedImage};
+use antumbra::Error;
+use antumbra::shaders::Module;
 use ash::vk;
 
 /// What is drawn into.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Attachment {
+pub(crate) enum Attachment {
     /// Depth, cleared to 0, the greater kept.
     Depth,
     /// One color channel, cleared to 0, fragments added.
@@ -15,7 +15,7 @@ pub(super) enum Attachment {
 }
 
 /// What a pipeline is made of.
-pub(super) struct RasterInfo<'a> {
+pub(crate) struct RasterInfo<'a> {
     pub target: &'a OwnedImage,
     pub attachment: Attachment,
     pub vertex: Module,
@@ -30,7 +30,7 @@ pub(super) struct RasterInfo<'a> {
 }
 
 /// A pipeline and its framebuffer. The target is left in the layout of its attachment.
-pub(super) struct Raster {
+pub(crate) struct Raster {
     device: HeadlessDevice,
     attachment: Attachment,
     extent: vk::Extent2D,
@@ -45,7 +45,7 @@ pub(super) struct Raster {
 }
 
 /// The layout that fetched images must be in.
-pub(super) const FETCHED: vk::ImageLayout = vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL;
+pub(crate) const FETCHED: vk::ImageLayout = vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL;
 
 impl Raster {
     pub fn new(device: &HeadlessDevice, info: &RasterInfo) -> Result<Self, Error> {

@@ -1,7 +1,7 @@
 //! How often shaders run, by pipeline statistics.
 
-use super::HeadlessDevice;
-use crate::Error;
+use crate::HeadlessDevice;
+use antumbra::Error;
 use ash::vk;
 
 /// Invocations of shaders.
@@ -28,7 +28,7 @@ impl Drop for Pool<'_> {
 impl HeadlessDevice {
     /// Records, submits and waits as [`Self::submit_and_wait`] does, and counts what shaders did; nothing is
     /// submitted, and the answer is none, where the device has no statistics or
-    /// [`super::HeadlessOptions::statistics`] did not ask for them.
+    /// [`crate::HeadlessOptions::statistics`] did not ask for them.
     ///
     /// # Errors
     /// As [`Self::submit_and_wait`].

@@ -1,10 +1,10 @@
 //! The device, its one queue and its allocator.
 
-use super::choose::{Candidate, choose};
-use super::instance::Instance;
-use super::messages::MessageLog;
-use crate::gpu::layouts::SharedLayouts;
-use crate::{Error, Host};
+use crate::choose::{Candidate, choose};
+use crate::instance::Instance;
+use crate::messages::MessageLog;
+use antumbra::gpu::SharedLayouts;
+use antumbra::{Error, Host};
 use ash::{ext, vk};
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use std::fmt;
@@ -81,7 +81,8 @@ impl Drop for Device {
     fn drop(&mut self) {
         // SAFETY: made by this device; no pipeline is being made any more.
         unsafe { self.0.destroy_pipeline_cache(self.1, None) };
-        self.2.destroy(&self.0);
+        // SAFETY: as above; the nodes are gone by contract, as is all that was made on the device.
+        unsafe { self.2.destroy(&self.0) };
         // SAFETY: idle (`Shared` waits first), and all that came from it is gone by contract.
         unsafe { self.0.destroy_device(None) };
     }
@@ -204,7 +205,7 @@ impl HeadlessDevice {
         self.0.queue_family
     }
 
-    /// A cache of the device's pipelines, for [`crate::Host::with_pipeline_cache`].
+    /// A cache of the device's pipelines, for [`antumbra::Host::with_pipeline_cache`].
     pub fn pipeline_cache(&self) -> vk::PipelineCache {
         self.0.device.1
     }
@@ -238,7 +239,7 @@ impl HeadlessDevice {
     }
 
     /// Whether pipeline statistics were asked for and are there.
-    pub(super) fn has_statistics(&self) -> bool {
+    pub(crate) fn has_statistics(&self) -> bool {
         self.0.statistics
     }
 
@@ -274,7 +275,7 @@ impl HeadlessDevice {
     }
 
     /// Submits command buffers, one thread at a time.
-    pub(super) fn submit_to_queue(
+    pub(crate) fn submit_to_queue(
         &self,
         cmds: &[vk::CommandBuffer],
         fence: vk::Fence,

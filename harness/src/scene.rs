@@ -1,9 +1,9 @@
 //! A scene's meshes in buffers.
 
-use super::{HeadlessDevice, HostBuffer};
-use crate::lent::MeshBounds;
-use crate::scene::Scene;
-use crate::{Error, Geometry, MeshBuffers, MeshInstance};
+use crate::{HeadlessDevice, HostBuffer};
+use antumbra::lent::MeshBounds;
+use antumbra::scene::Scene;
+use antumbra::{Error, Geometry, MeshBuffers, MeshInstance};
 use ash::vk;
 
 /// The buffers of one mesh.
@@ -27,7 +27,7 @@ impl SceneBuffers {
     /// [`Error::Memory`] or [`Error::Vulkan`] where the device refuses.
     pub fn new(device: &HeadlessDevice, scene: &Scene) -> Result<Self, Error> {
         use vk::BufferUsageFlags as Usage;
-        let upload = |mesh: &crate::scene::Mesh| {
+        let upload = |mesh: &antumbra::scene::Mesh| {
             if mesh.indices.len() < 3 {
                 return Ok(None);
             }
@@ -53,7 +53,7 @@ impl SceneBuffers {
 
     /// The scene's instances as the node takes them.
     pub fn instances(&self, scene: &Scene) -> Vec<MeshInstance> {
-        let instance = |i: &crate::scene::Instance| {
+        let instance = |i: &antumbra::scene::Instance| {
             let mesh = self.meshes.get(i.mesh)?.as_ref()?;
             Some(MeshInstance {
                 geometry: Geometry::Buffers(MeshBuffers::indexed(
@@ -73,7 +73,7 @@ impl SceneBuffers {
     }
 
     /// Positions, normals, indices and their count.
-    pub(super) fn draw(&self, mesh: usize) -> Option<(vk::Buffer, vk::Buffer, vk::Buffer, u32)> {
+    pub(crate) fn draw(&self, mesh: usize) -> Option<(vk::Buffer, vk::Buffer, vk::Buffer, u32)> {
         let mesh = self.meshes.get(mesh)?.as_ref()?;
         Some((mesh.positions.raw(), mesh.normals.raw(), mesh.indices.raw(), mesh.count))
     }

@@ -9,15 +9,16 @@
 //! One side, and the map without its projection onto pixels: it stands beside a frame of the node with
 //! `receivers=map sides=one`. The sums are the same bits as those of `accumulate=blend`.
 
-use super::raster::{Attachment, Raster, RasterInfo};
-use super::{HeadlessDevice, HostBuffer, OwnedImage, SceneBuffers};
-use crate::frame::ImageBarrier;
-use crate::graph::Scope;
-use crate::scene::{Role, Scene};
-use crate::stages::depth_layers::{self, DepthPush, MapView};
-use crate::stages::visibility;
-use crate::techniques::soft_shadow_map::{BLEND_STEPS, push::PatchDraw, receiver_grid};
-use crate::{Error, Geometry, MeshInstance, RectangleLight, shaders};
+use crate::raster::{Attachment, Raster, RasterInfo};
+use crate::shaders::QUADS_VERT;
+use crate::{HeadlessDevice, HostBuffer, OwnedImage, SceneBuffers};
+use antumbra::frame::ImageBarrier;
+use antumbra::graph::Scope;
+use antumbra::scene::{Role, Scene};
+use antumbra::stages::depth_layers::{self, DepthPush, MapView};
+use antumbra::stages::visibility;
+use antumbra::techniques::soft_shadow_map::{BLEND_STEPS, push::PatchDraw, receiver_grid};
+use antumbra::{Error, Geometry, MeshInstance, RectangleLight, shaders};
 use ash::vk;
 use std::time::{Duration, Instant};
 
@@ -101,7 +102,7 @@ impl ReadbackScheme {
             &RasterInfo {
                 target: &map_image,
                 attachment: Attachment::Add,
-                vertex: shaders::QUADS_VERT,
+                vertex: QUADS_VERT,
                 fragment: Some(shaders::PATCH_FRAG),
                 attributes: &[(0, 2), (8, 3)],
                 stride: size_of::<Corner>() as u32,
@@ -244,7 +245,7 @@ impl ReadbackScheme {
             before: Scope::DEPTH_DRAWN,
             after: scope,
         };
-        let fetched = Scope::FRAGMENT_SAMPLED.in_layout(super::raster::FETCHED);
+        let fetched = Scope::FRAGMENT_SAMPLED.in_layout(crate::raster::FETCHED);
         for barrier in [to(&self.front, Scope::COPIED_FROM), to(&self.receivers, fetched)] {
             let (before, after) = (barrier.before.stage, barrier.after.stage);
             let none = vk::DependencyFlags::empty();

@@ -1,7 +1,7 @@
 //! One compute dispatch from SPIR-V and buffers: what a shader's unit test needs.
 
-use super::{HeadlessDevice, HostBuffer};
-use crate::Error;
+use crate::{HeadlessDevice, HostBuffer};
+use antumbra::Error;
 use ash::vk;
 
 /// Runs `spirv`'s entry point `main` once over `groups` workgroups and waits.

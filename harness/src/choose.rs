@@ -1,11 +1,11 @@
 //! Which of the machine's devices to use: a pure choice over plain data.
 
-use crate::Error;
+use antumbra::Error;
 use ash::vk;
 
 /// What the choice needs to know of a device.
 #[derive(Clone, Debug)]
-pub(super) struct Candidate {
+pub(crate) struct Candidate {
     pub name: String,
     pub kind: vk::PhysicalDeviceType,
     pub api_version: u32,
@@ -45,7 +45,7 @@ impl Candidate {
 /// # Errors
 /// [`Error::NoDevice`] with the devices that there are, if none is called so; [`Error::Device`] if
 /// the best of them cannot be used.
-pub(super) fn choose(
+pub(crate) fn choose(
     candidates: &[Candidate],
     wanted: Option<&str>,
 ) -> Result<(usize, u32), Error> {

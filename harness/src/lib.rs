@@ -1,0 +1,50 @@
+//! What examples, tests and benches share, and what a host needs none of: a Vulkan device without a window, a
+//! scene and a G-buffer on it, a node that shades them, and read-back; beside them the made scenes and the
+//! small readers and writers that more than one of those programs uses.
+//!
+//! Nothing here is fast: every call submits and waits. What is here is careful: an instance of Vulkan 1.1, no
+//! optional feature and no device extension, so that whatever runs on this device runs on any that antumbra
+//! accepts, and every message of the validation layer is kept for a test to look at.
+
+// Vulkan through ash is unsafe call by call; each unsafe block has its own SAFETY line.
+#![allow(unsafe_code)]
+
+mod buffer;
+pub mod cases;
+mod choose;
+mod compute;
+mod costs;
+mod device;
+mod forward;
+mod gbuffer;
+mod image;
+mod instance;
+pub mod levels;
+mod messages;
+mod painter;
+pub mod ply;
+mod raster;
+mod readback;
+mod scene;
+pub mod shade;
+mod shaders;
+mod stage;
+mod statistics;
+mod submit;
+mod view;
+pub mod whole;
+
+pub use buffer::HostBuffer;
+pub use compute::{ComputeProgram, run_compute};
+pub use costs::{measure_costs, probe};
+pub use device::{HeadlessDevice, HeadlessOptions, Tables};
+pub use forward::Forward;
+pub use gbuffer::{GBuffer, GBufferPainter};
+pub use image::{ImageSource, OwnedImage, bytes_per_texel, read_image};
+pub use messages::MessageLog;
+pub use readback::{ReadbackScheme, ReadbackTimes};
+pub use scene::SceneBuffers;
+pub use stage::{FrameTimes, Stage};
+pub use statistics::Invocations;
+pub use submit::Submitted;
+pub use view::View;
