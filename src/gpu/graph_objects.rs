@@ -3,17 +3,17 @@
 use super::descriptors::Descriptors;
 use super::objects::Objects;
 use super::owner::Maker;
-use super::pipeline::RowPipeline;
+use super::pipeline::PassObjects;
 use crate::Error;
 use crate::frame::Description;
 use crate::graph::{Graph, Pass, Work};
 use ash::vk;
 use std::ffi::CString;
 
-/// The resources of a graph; pipelines, descriptor sets and labels for each kind of its passes.
+/// The resources of a graph; pipelines, a label and descriptor sets for each kind of its passes.
 pub(crate) struct GraphObjects {
     pub objects: Objects,
-    pub rows: Vec<RowPipeline>,
+    pub kinds: Vec<PassObjects>,
     pub labels: Vec<CString>,
     pub descriptors: Descriptors,
     /// How many Vulkan objects there are that the node's owner does not keep one by one: descriptor
@@ -31,17 +31,17 @@ impl GraphObjects {
     ) -> Result<Self, Error> {
         let objects = Objects::new(maker, graph, description.inspect)?;
         let strides = &description.position_strides;
-        let rows =
-            graph.kinds().map(|pass| RowPipeline::new(maker, graph, pass, &objects, strides));
-        let rows = rows.collect::<Result<Vec<_>, _>>()?;
-        let descriptors = Descriptors::new(maker, graph, &rows, places)?;
-        let shared_layouts = if maker.host.layouts.is_some() { 2 * rows.len() } else { 0 };
+        let kinds =
+            graph.kinds().map(|pass| PassObjects::new(maker, graph, pass, &objects, strides));
+        let kinds = kinds.collect::<Result<Vec<_>, _>>()?;
+        let descriptors = Descriptors::new(maker, graph, &kinds, places)?;
+        let shared_layouts = if maker.host.layouts.is_some() { 2 * kinds.len() } else { 0 };
         Ok(Self {
             objects,
             labels: graph.kinds().map(|p| label(p.name)).collect(),
             descriptors,
-            unowned: rows.len() * places as usize + shared_layouts,
-            rows,
+            unowned: kinds.len() * places as usize + shared_layouts,
+            kinds,
         })
     }
 
@@ -54,8 +54,8 @@ impl GraphObjects {
 
     /// The render pass of a kind of pass and the size of its target; none for those that draw nothing.
     pub fn render_pass(&self, kind: usize) -> Option<(vk::RenderPass, vk::Extent2D)> {
-        let row = self.rows.get(kind).filter(|r| r.render_pass != vk::RenderPass::null())?;
-        Some((row.render_pass, row.extent))
+        let made = self.kinds.get(kind).filter(|k| k.render_pass != vk::RenderPass::null())?;
+        Some((made.render_pass, made.extent))
     }
 }
 

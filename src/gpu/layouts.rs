@@ -1,4 +1,4 @@
-//! What the rows of a kind are bound by: a descriptor set layout and a pipeline layout.
+//! What the passes of a kind are bound by: a descriptor set layout and a pipeline layout.
 
 use super::owner::ObjectOwner;
 use crate::Error;
@@ -6,22 +6,22 @@ use ash::vk;
 use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};
 
-/// Both layouts of a row.
+/// Both layouts of a pass.
 #[derive(Clone, Copy, Default)]
-pub(super) struct RowLayouts {
+pub(super) struct PassLayouts {
     pub set: vk::DescriptorSetLayout,
     pub pipeline: vk::PipelineLayout,
 }
 
-/// What they say: the bindings of one set, and the push constants' stages and bytes.
+/// What both declare: the bindings of one set, and the push constants' stages and bytes.
 pub(super) struct LayoutsInfo<'a> {
     pub bindings: &'a [vk::DescriptorSetLayoutBinding<'a>],
     pub push_stages: vk::ShaderStageFlags,
     pub push_bytes: u32,
 }
 
-impl RowLayouts {
-    /// Makes both for the pass of this name.
+impl PassLayouts {
+    /// Makes both for the pass of this name, and gives them to `owner`.
     pub fn new(
         owner: &mut ObjectOwner,
         device: &ash::Device,
@@ -60,19 +60,19 @@ impl RowLayouts {
 /// SwiftShader finds what it has compiled by the identity of the layout besides the shader, so its pipeline
 /// cache holds nothing for a node that makes layouts of its own.
 #[derive(Default)]
-pub struct SharedLayouts(Mutex<(HashMap<Key, RowLayouts>, ObjectOwner)>);
+pub struct SharedLayouts(Mutex<(HashMap<Key, PassLayouts>, ObjectOwner)>);
 
 /// Binding, type and stages of each binding; stages and bytes of the push constants.
 type Key = (Vec<(u32, vk::DescriptorType, vk::ShaderStageFlags)>, vk::ShaderStageFlags, u32);
 
 impl SharedLayouts {
-    /// Those that say this, made where there are none yet; they stay the table's.
+    /// Finds the layouts that declare this, and makes them where there are none yet; the table owns them.
     pub(super) fn find(
         &self,
         device: &ash::Device,
         info: &LayoutsInfo,
         pass: &str,
-    ) -> Result<RowLayouts, Error> {
+    ) -> Result<PassLayouts, Error> {
         let bindings = info.bindings.iter();
         let bindings = bindings.map(|b| (b.binding, b.descriptor_type, b.stage_flags)).collect();
         let key = (bindings, info.push_stages, info.push_bytes);
@@ -80,7 +80,7 @@ impl SharedLayouts {
         if let Some(&layouts) = known.get(&key) {
             return Ok(layouts);
         }
-        let layouts = RowLayouts::new(owner, device, info, pass)?;
+        let layouts = PassLayouts::new(owner, device, info, pass)?;
         known.insert(key, layouts);
         Ok(layouts)
     }

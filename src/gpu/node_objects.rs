@@ -38,8 +38,8 @@ impl NodeObjects {
             let result = ResultImage::new(maker, description)?;
             let settings = graphs.iter().map(|g| GraphObjects::new(maker, g, description, places));
             let settings = settings.collect::<Result<Vec<_>, _>>()?;
-            let rows = graphs.iter().map(|g| g.passes().len()).max().unwrap_or(0);
-            let timing = Timing::new(maker, places, kinds_of(&settings), rows)?;
+            let passes = graphs.iter().map(|g| g.passes().len()).max().unwrap_or(0);
+            let timing = Timing::new(maker, places, kinds_of(&settings), passes)?;
             Ok((result, settings, timing))
         })?;
         Ok(Self { result, settings, timing, slots, lights, owner })
@@ -97,13 +97,10 @@ impl NodeObjects {
 
     /// A view of a light's layer of it; null where the host lends it.
     pub fn result_layer(&self, light: u32) -> vk::ImageView {
-        match self.result.as_ref().map(|result| result.layer(light)) {
-            Some(Object::Image { view, .. }) => view,
-            _ => vk::ImageView::null(),
-        }
+        self.result.as_ref().map_or(Default::default(), |result| result.layer(light).image().1)
     }
 
-    /// Records a plan whose rows are the ones that these objects were made for.
+    /// Records a plan whose passes are the ones that these objects were made for.
     pub fn record(
         &self,
         host: &Host,
@@ -117,7 +114,7 @@ impl NodeObjects {
             host,
             objects: &settings.objects,
             result: self.result.as_ref(),
-            rows: &settings.rows,
+            kinds: &settings.kinds,
             labels: &settings.labels,
             descriptors: &settings.descriptors,
             timing: self.timing.as_ref(),
@@ -129,7 +126,7 @@ impl NodeObjects {
         .record(plan);
     }
 
-    /// The render pass of a kind of row of one of the settings and the size of its target; none for
+    /// The render pass of a kind of pass of one of the settings and the size of its target; none for
     /// those that draw nothing.
     pub fn render_pass(
         &self,
@@ -139,8 +136,8 @@ impl NodeObjects {
         self.settings.get(settings as usize)?.render_pass(kind)
     }
 
-    /// Each kind of row that a light's frame recorded last with a slot, and the milliseconds of all of its
-    /// rows; kinds are counted over all settings.
+    /// Each kind of pass that a light's frame recorded last with a slot, and the milliseconds of all of
+    /// its passes; kinds are counted over all settings.
     pub fn timings(&self, host: &Host, slot: u32, light: u32) -> Option<Vec<(usize, f64)>> {
         let there = slot < self.slots && light < self.lights;
         self.timing.as_ref().filter(|_| there)?.read(host, self.place(slot, light))
@@ -152,7 +149,7 @@ impl NodeObjects {
         result.chain(self.settings.iter().flat_map(|s| s.objects.memory())).collect()
     }
 
-    /// The same of one of the settings alone.
+    /// Name and bytes of what one of the settings has in device memory.
     pub fn memory_of(&self, settings: u32) -> Vec<(&'static str, u64)> {
         self.settings.get(settings as usize).map_or(Vec::new(), |s| s.objects.memory().collect())
     }
@@ -170,5 +167,5 @@ impl NodeObjects {
 
 /// How many kinds of pass some settings have in all.
 fn kinds_of(settings: &[GraphObjects]) -> usize {
-    settings.iter().map(|s| s.rows.len()).sum()
+    settings.iter().map(|s| s.kinds.len()).sum()
 }

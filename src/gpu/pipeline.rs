@@ -1,7 +1,7 @@
-//! A pipeline, its layouts and, for rasters, its render pass, from a row: one for all of its kind.
+//! The pipelines and layouts of a pass and, for rasters, its render pass: one set for all of its kind.
 
 use super::host::Host;
-use super::layouts::{LayoutsInfo, RowLayouts};
+use super::layouts::{LayoutsInfo, PassLayouts};
 use super::objects::{Object, Objects, name};
 use super::owner::{Maker, ObjectOwner};
 use crate::Error;
@@ -11,12 +11,12 @@ use crate::shaders::Module;
 use crate::stages::depth_layers::DepthPush;
 use ash::vk;
 
-/// What a row needs to be recorded.
+/// What a pass needs to be recorded.
 #[derive(Default)]
-pub(crate) struct RowPipeline {
-    pub layouts: RowLayouts,
+pub(crate) struct PassObjects {
+    pub layouts: PassLayouts,
     pub push_stages: vk::ShaderStageFlags,
-    /// One for compute and indirect draws; for meshes one a stride and kind of [`Faces`].
+    /// One for compute and indirect draws; for meshes one for each stride and kind of [`Faces`].
     pub pipelines: Vec<vk::Pipeline>,
     pub render_pass: vk::RenderPass,
     pub framebuffer: vk::Framebuffer,
@@ -25,12 +25,12 @@ pub(crate) struct RowPipeline {
     pub colors: usize,
 }
 
-/// Which of a mesh row's pipelines draws a mesh.
+/// Which of a mesh pass's pipelines draws a mesh.
 pub(crate) fn variant(stride: usize, faces: Faces) -> usize {
     stride * 3 + faces as usize
 }
 
-impl RowPipeline {
+impl PassObjects {
     /// Makes everything for a pass.
     pub fn new(
         maker: &mut Maker,
@@ -58,7 +58,7 @@ impl RowPipeline {
                 (vk::ShaderStageFlags::COMPUTE, pass.push.bytes().len())
             }
             Work::Raster { draw: Draw::Layer { .. }, .. } => {
-                // The matrix that each mesh pushes, and what the row says behind it.
+                // The matrix that each mesh pushes, and what the pass pushes behind it.
                 (vk::ShaderStageFlags::VERTEX, pass.push.bytes().len().max(size_of::<DepthPush>()))
             }
             Work::Raster { .. } => (
@@ -70,23 +70,23 @@ impl RowPipeline {
             LayoutsInfo { bindings: &bindings, push_stages: stages, push_bytes: push_bytes as u32 };
         let layouts = match &host.layouts {
             Some(shared) => shared.find(&host.device, &info, pass.name)?,
-            None => RowLayouts::new(&mut maker.owner, &host.device, &info, pass.name)?,
+            None => PassLayouts::new(&mut maker.owner, &host.device, &info, pass.name)?,
         };
-        let mut row = Self { layouts, push_stages: stages, ..Self::default() };
+        let mut made = Self { layouts, push_stages: stages, ..Self::default() };
         match pass.work {
             Work::Dispatch { shader, .. } | Work::Indirect { shader, .. } => {
-                let pipeline = row.compute(host, pass, shader)?;
-                row.pipelines.push(maker.keep(pipeline));
+                let pipeline = made.compute(host, pass, shader)?;
+                made.pipelines.push(maker.keep(pipeline));
             }
             Work::Raster { target, .. } => {
-                row.attachments(maker, graph, pass, objects, target)?;
-                row.rasters(maker, pass, strides)?;
+                made.attachments(maker, graph, pass, objects, target)?;
+                made.rasters(maker, pass, strides)?;
             }
         }
-        for &pipeline in &row.pipelines {
+        for &pipeline in &made.pipelines {
             name(host, pipeline, pass.name);
         }
-        Ok(row)
+        Ok(made)
     }
 
     fn compute(&self, host: &Host, pass: &Pass, shader: Module) -> Result<vk::Pipeline, Error> {
@@ -121,7 +121,7 @@ impl RowPipeline {
             Target::Depth { .. } => vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
             Target::Add => vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
         };
-        // The barriers in front of the row put the image into this layout and order it against
+        // The barriers in front of the pass put the image into this layout and order it against
         // everything else, so the render pass itself changes and orders nothing.
         let description = |format| {
             vk::AttachmentDescription::default()
@@ -267,7 +267,7 @@ impl RowPipeline {
     }
 }
 
-/// The images that a raster row draws into, in the order of its uses: views, formats and sizes.
+/// The images that a raster pass draws into, in the order of its uses: views, formats and sizes.
 fn attachments_of(
     graph: &Graph,
     pass: &Pass,

@@ -6,7 +6,7 @@ use crate::Error;
 use ash::vk;
 use std::sync::atomic::{AtomicU16, AtomicU32, Ordering};
 
-/// A pool of timestamps for each place, which is a light of a frame slot: one before the first row, one
+/// A pool of timestamps for each place, which is a light of a frame slot: one before the first pass, one
 /// behind each.
 pub(crate) struct Timing {
     pools: Vec<vk::QueryPool>,
@@ -18,24 +18,24 @@ pub(crate) struct Timing {
     queries: u32,
     /// What was recorded last at each place.
     recorded: Vec<Recorded>,
-    /// Kinds of row.
+    /// How many kinds of pass there are.
     kinds: usize,
 }
 
-/// The rows that were recorded: how many, and the kind of each.
+/// The passes that were recorded: how many, and the kind of each.
 struct Recorded {
     count: AtomicU32,
     kinds: Vec<AtomicU16>,
 }
 
 impl Timing {
-    /// Makes pools for up to `rows` rows of `kinds` kinds a frame, or none where the queue family has
+    /// Makes pools for up to `passes` passes of `kinds` kinds a frame, or none where the queue family has
     /// no timestamps.
     pub fn new(
         maker: &mut Maker,
         places: u32,
         kinds: usize,
-        rows: usize,
+        passes: usize,
     ) -> Result<Option<Self>, Error> {
         let host = maker.host;
         let (instance, physical) = (&host.instance, host.physical_device);
@@ -47,7 +47,7 @@ impl Timing {
         if bits == 0 || limits.timestamp_period <= 0.0 {
             return Ok(None);
         }
-        let queries = rows as u32 + 1;
+        let queries = passes as u32 + 1;
         let create = vk::QueryPoolCreateInfo::default()
             .query_type(vk::QueryType::TIMESTAMP)
             .query_count(queries);
@@ -65,7 +65,7 @@ impl Timing {
             recorded: (0..places)
                 .map(|_| Recorded {
                     count: AtomicU32::new(0),
-                    kinds: (0..rows).map(|_| AtomicU16::new(0)).collect(),
+                    kinds: (0..passes).map(|_| AtomicU16::new(0)).collect(),
                 })
                 .collect(),
             kinds,
@@ -90,8 +90,8 @@ impl Timing {
         self.recorded[place].count.store(0, Ordering::Relaxed);
     }
 
-    /// Takes the timestamp behind a row of a kind, the `nth` of the frame from 0.
-    pub fn end_row(
+    /// Takes the timestamp behind a pass of a kind, the `nth` of the frame from 0.
+    pub fn end_pass(
         &self,
         host: &Host,
         cmd: vk::CommandBuffer,
@@ -102,14 +102,14 @@ impl Timing {
         recorded.kinds[nth].store(kind as u16, Ordering::Relaxed);
         recorded.count.store(nth as u32 + 1, Ordering::Relaxed);
         let (pool, query) = (self.pools[place], nth as u32 + 1);
-        // SAFETY: as in `begin`; each row takes the next query, and there is one for every row.
+        // SAFETY: as in `begin`; each pass takes the next query, and there is one for every pass.
         unsafe {
             let bottom = vk::PipelineStageFlags::BOTTOM_OF_PIPE;
             host.device.cmd_write_timestamp(cmd, bottom, pool, query);
         };
     }
 
-    /// Each kind of row that was recorded last at a place and the milliseconds of all of its rows, in the
+    /// Each kind of pass that was recorded last at a place and the milliseconds of all of its passes, in the
     /// order of the first ones; none until its commands are done.
     pub fn read(&self, host: &Host, place: usize) -> Option<Vec<(usize, f64)>> {
         let recorded = self.recorded.get(place)?;
