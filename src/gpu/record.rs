@@ -127,7 +127,7 @@ impl Recorder<'_> {
                         for (draw, matrix) in frame.draws(layer.meshes(), view) {
                             match &draw.mesh.geometry {
                                 Geometry::Buffers(buffers) => {
-                                    self.mesh(made, draw, matrix, buffers)
+                                    self.mesh(made, draw, matrix, buffers);
                                 }
                                 &Geometry::HostDrawn(mesh) => (self.draw)(&HostDraw {
                                     cmd,
@@ -177,7 +177,7 @@ impl Recorder<'_> {
         unsafe { device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::GRAPHICS, pipeline) };
         // SAFETY: the layout's range is one 4×4 matrix for the vertex stage.
         unsafe {
-            device.cmd_push_constants(cmd, made.layouts.pipeline, made.push_stages, 0, matrix)
+            device.cmd_push_constants(cmd, made.layouts.pipeline, made.push_stages, 0, matrix);
         };
         // SAFETY: Host::borrow's promise: the mesh's buffers are valid and hold what the frame
         // says of them.
