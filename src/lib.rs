@@ -69,13 +69,14 @@ pub mod error;
 pub mod frame;
 pub mod gpu;
 pub mod graph;
+pub mod knob;
 pub mod lent;
 pub mod light;
 pub mod node;
 pub mod scene;
-pub mod settings;
 pub mod shaders;
 pub mod stages;
+pub mod technique;
 pub mod techniques;
 #[cfg(feature = "truth")]
 pub mod truth;
@@ -92,7 +93,7 @@ pub use lent::{
 };
 pub use light::RectangleLight;
 pub use node::{LayerPass, ShadowNode, VisibilityImage};
-pub use settings::{Settings, Technique};
+pub use technique::Technique;
 
 /// The README's example is compiled with the doctests.
 #[cfg(doctest)]

@@ -110,14 +110,14 @@ impl ShadowNode {
         memory: &mut Memory,
         plan: &mut FramePlan,
     ) -> Result<(), Error> {
-        let whose = Whose { light: frame.light_index, settings: frame.settings_index };
+        let whose = Whose { light: frame.light_index, settings: frame.technique_index };
         let kept = self.left().for_plan(whose);
         let chosen;
-        let description = match self.chosen.get(frame.settings_index as usize) {
+        let description = match self.chosen.get(frame.technique_index as usize) {
             Some(description) => description,
             // Says what is wrong.
             None => {
-                chosen = self.description.choosing(frame.settings_index)?;
+                chosen = self.description.choosing(frame.technique_index)?;
                 &*chosen
             }
         };
@@ -183,10 +183,10 @@ impl ShadowNode {
         self.layer_pass_of(0, layer)
     }
 
-    /// The same for one of the settings, as [`Frame::settings_index`] counts them.
-    pub fn layer_pass_of(&self, settings_index: u32, layer: Layer) -> Option<LayerPass> {
-        let description = self.description.choosing(settings_index).ok()?;
-        let graph = frame::nominal(&description, self.limits);
+    /// The same for one of the settings, as [`Frame::technique_index`] counts them.
+    pub fn layer_pass_of(&self, technique_index: u32, layer: Layer) -> Option<LayerPass> {
+        let description = self.description.choosing(technique_index).ok()?;
+        let graph = frame::all_passes(&description, self.limits);
         let draws = |p: &Pass| match p.work {
             Work::Raster { draw: Draw::Layer { layer: l, .. }, target, .. } => {
                 l == layer && matches!(target, Target::Depth { .. })
@@ -194,7 +194,7 @@ impl ShadowNode {
             _ => false,
         };
         let kind = graph.kinds().position(draws)?;
-        let (render_pass, extent) = self.objects.render_pass(settings_index, kind)?;
+        let (render_pass, extent) = self.objects.render_pass(technique_index, kind)?;
         Some(LayerPass { render_pass, extent, raster: depth_layers::raster_of(layer) })
     }
 
@@ -266,17 +266,18 @@ impl ShadowNode {
     ) -> Result<(Vec<Choice>, Option<Retired>), Error> {
         let choices = auto.choose_all(&self.description, frames)?;
         let mut retired = None;
-        let known = |c: &Choice| self.description.all_settings().any(|s| *s == c.settings);
+        let known = |c: &Choice| self.description.all_techniques().any(|t| *t == c.technique);
         if !choices.iter().all(known) {
-            let (settings, other_settings) = auto::distinct(&choices);
-            let description = Description { settings, other_settings, ..self.description.clone() };
+            let (technique, other_techniques) = auto::distinct(&choices);
+            let description =
+                Description { technique, other_techniques, ..self.description.clone() };
             retired = Some(self.reconfigure(allocator, description)?);
         }
         for (frame, choice) in frames.iter_mut().zip(&choices) {
-            let mut all = self.description.all_settings();
-            let same = all.position(|s| *s == choice.settings);
+            let mut all = self.description.all_techniques();
+            let same = all.position(|t| *t == choice.technique);
             // Beyond as many settings as a node may have, the first serve.
-            frame.settings_index = same.unwrap_or(0) as u32;
+            frame.technique_index = same.unwrap_or(0) as u32;
         }
         Ok((choices, retired))
     }
@@ -313,7 +314,7 @@ impl ShadowNode {
                     return None;
                 };
                 let layout = last_layout(id)?;
-                let (image, _) = self.objects.image(plan.settings_index, id);
+                let (image, _) = self.objects.image(plan.technique_index, id);
                 Some(Inspected {
                     name: resource.name,
                     image,
@@ -331,7 +332,7 @@ impl ShadowNode {
         let graph = &plan.plan.graph;
         let mut ids = (0..graph.resources().len()).map(|index| graph.id(index));
         let id = ids.find(|&id| graph.resource(id).name == name)?;
-        match (self.objects.get(plan.settings_index, id), graph.resource(id).shape) {
+        match (self.objects.get(plan.technique_index, id), graph.resource(id).shape) {
             (Object::Image { image, view }, _) => Some(PlanObject::Image { image, view }),
             (Object::Buffer(buffer), Shape::Buffer { bytes }) => {
                 Some(PlanObject::Buffer { buffer, bytes })
@@ -348,8 +349,8 @@ impl ShadowNode {
 
     /// Name and bytes of what one of the settings has for the lights that choose it; nothing for settings
     /// that do not exist.
-    pub fn memory_of(&self, settings_index: u32) -> Vec<(&'static str, u64)> {
-        self.objects.memory_of(settings_index)
+    pub fn memory_of(&self, technique_index: u32) -> Vec<(&'static str, u64)> {
+        self.objects.memory_of(technique_index)
     }
 
     /// How many Vulkan objects the node holds.
@@ -365,14 +366,14 @@ impl ShadowNode {
 
 /// Every row that any frame could run, for each of the description's settings.
 fn graphs(description: &Description, limits: Limits) -> Result<Vec<Graph>, Error> {
-    let of = |index| Ok(frame::nominal(&*description.choosing(index as u32)?, limits));
-    (0..description.all_settings().count()).map(of).collect()
+    let of = |index| Ok(frame::all_passes(&*description.choosing(index as u32)?, limits));
+    (0..description.all_techniques().count()).map(of).collect()
 }
 
 /// A description with each of its settings alone.
 fn chosen(description: &Description) -> Result<Vec<Description>, Error> {
     let of = |index| Ok(description.choosing(index as u32)?.into_owned());
-    (0..description.all_settings().count()).map(of).collect()
+    (0..description.all_techniques().count()).map(of).collect()
 }
 
 /// A node may be shared by threads: each records slots of its own.

@@ -26,8 +26,9 @@ fn names(description: &Description) -> Vec<String> {
         ["the descriptor pool", "the descriptor sets", "the timestamps", "a layer of visibility"]
             .map(Into::into)
             .into();
-    for s in description.all_settings() {
-        let alone = Description { settings: *s, other_settings: Vec::new(), ..description.clone() };
+    for s in description.all_techniques() {
+        let alone =
+            Description { technique: *s, other_techniques: Vec::new(), ..description.clone() };
         let graph = frame::full_graph(&alone);
         names.extend(graph.resources().iter().map(|r| r.name.to_owned()));
         names.extend(graph.passes().iter().map(|p| p.name.to_owned()));
@@ -89,7 +90,7 @@ fn calls_that_fail_while_a_node_is_made() {
     ];
     let hard: Described = ("technique=hard map=16", |d| {
         (d.lights, d.inspect) = (2, true);
-        d.other_settings.push(settings("technique=hard map=32"));
+        d.other_techniques.push(settings("technique=hard map=32"));
     });
     let all = std::iter::once(&hard).chain(if slow { &[] } else { more });
     for (words, change) in all {

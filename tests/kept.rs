@@ -32,7 +32,7 @@ fn run(stage: &mut Stage, plan: &FramePlan) -> Vec<f32> {
 
 /// Every technique, and those settings that have rows of their own.
 fn all() -> Vec<String> {
-    let plain = Technique::ALL.iter().map(|(name, _)| format!("technique={name}"));
+    let plain = Technique::NAMES.iter().map(|name| format!("technique={name}"));
     let more = [
         "technique=soft-shadow-map receivers=map",
         "technique=soft-shadow-map receivers=map accumulate=blend",

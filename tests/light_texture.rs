@@ -141,7 +141,7 @@ fn what_cannot_be_weighed_is_refused() {
     let scene = card(generate::square_light(0.4).unwrap());
     let setup = Setup::ground(&scene, 2.2, 32);
     let described = |words: &str, format| Description {
-        settings: settings(words),
+        technique: settings(words),
         light_texture: Some(LightTexture { format, color: true }),
         ..Description::new([32, 32])
     };

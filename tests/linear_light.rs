@@ -7,7 +7,7 @@ use antumbra::ash::vk;
 use antumbra::graph::Shape;
 use antumbra::scene::{Scene, generate};
 use antumbra::techniques::linear_light::twin::{crossing_of, is_edge, part_of_segment, transition};
-use antumbra::{Description, Settings, Technique};
+use antumbra::{Description, Technique};
 use antumbra_harness::{HeadlessDevice, View};
 use antumbra_tests::compare::Tolerance;
 use antumbra_tests::measure::{
@@ -246,7 +246,7 @@ fn every_texel_may_end_an_occluder() {
     let w: Vec<f64> = (0..13).map(|i| 2.0 - 1e-5 * 2.5f64.powi(i)).collect();
     assert!(w.windows(4).all(|w| is_edge([w[0], w[1], w[2], w[3]])));
     let graph = antumbra::frame::full_graph(&Description {
-        settings: settings("technique=linear-light map=100"),
+        technique: settings("technique=linear-light map=100"),
         ..Description::new([64, 64])
     });
     let bytes = |name: &str| {
@@ -261,12 +261,8 @@ fn every_texel_may_end_an_occluder() {
 #[test]
 fn bad_input_is_refused_with_a_sentence() {
     let refuse = |words: &str| {
-        let mut s = Settings { technique: Technique::LinearLight, ..Default::default() };
-        let set = words.split_whitespace().try_for_each(|word| {
-            let (key, value) = word.split_once('=').unwrap();
-            s.set(key, value)
-        });
-        set.and_then(|()| s.check()).unwrap_err().to_string()
+        let technique = format!("linear-light {words}").parse::<Technique>();
+        technique.and_then(|t| t.check()).unwrap_err().to_string()
     };
     for samples in ["0", "1", "17", "few"] {
         let error = refuse(&format!("samples={samples}"));
@@ -279,7 +275,7 @@ fn bad_input_is_refused_with_a_sentence() {
     let error = refuse("map=4096 samples=2 lines=1");
     assert!(error.contains("set map=2048,"), "{error}");
     let mut description =
-        Description { settings: settings("technique=linear-light"), ..Description::new([64, 64]) };
+        Description { technique: settings("technique=linear-light"), ..Description::new([64, 64]) };
     assert!(description.check().is_ok());
     description.occluder_maps = Some(vk::Format::D32_SFLOAT);
     let error = description.check().unwrap_err().to_string();

@@ -7,8 +7,7 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
 use antumbra::graph::{Graph, Owner};
-use antumbra::techniques::soft_shadow_map::Accumulate;
-use antumbra::{Description, Error, LightTexture, Requirements, Settings, ShadowNode, frame};
+use antumbra::{Description, Error, LightTexture, Requirements, ShadowNode, Technique, frame};
 use antumbra_tests::TestDevice;
 use antumbra_tests::bench::{Bench, Described, EXTENT, Memory, OTHER_EXTENT, host};
 use antumbra_tests::measure::settings;
@@ -24,12 +23,12 @@ fn pieces(description: &Description) -> usize {
         })
         .count()
     };
-    let alone = |s: &Settings| Description {
-        settings: *s,
-        other_settings: Vec::new(),
+    let alone = |s: &Technique| Description {
+        technique: *s,
+        other_techniques: Vec::new(),
         ..description.clone()
     };
-    let graphs = description.all_settings().map(|s| of(&frame::full_graph(&alone(s))));
+    let graphs = description.all_techniques().map(|s| of(&frame::full_graph(&alone(s))));
     graphs.sum::<usize>() + usize::from(!description.lent_visibility)
 }
 
@@ -52,7 +51,7 @@ const ALL: &[Described] = &[
     ("technique=occlusion-textures map=16 slices=8 prefilter=n-buffer combine=product", |_| {}),
     ("technique=linear-light map=16 samples=2 lines=1", |_| {}),
     ("technique=hard map=16", |d| (d.lights, d.inspect) = (3, true)),
-    ("technique=hard map=16", |d| d.other_settings.push(settings("technique=hard map=32"))),
+    ("technique=hard map=16", |d| d.other_techniques.push(settings("technique=hard map=32"))),
 ];
 
 /// What went wrong is the piece that was refused.
@@ -73,9 +72,7 @@ fn an_allocator_that_fails_at_each_call() {
     let mut faults = [0; 3];
     for (words, change) in ALL {
         let description = Bench::description(words, *change);
-        if description.settings.soft_shadow_map.accumulate == Accumulate::Blend
-            && !Requirements::of(&host).blends_f32
-        {
+        if description.technique.room().blends_f32() && !Requirements::of(&host).blends_f32 {
             println!("{words}: the device cannot blend");
             continue;
         }

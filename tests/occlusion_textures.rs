@@ -7,11 +7,11 @@
 use antumbra::ash::vk;
 use antumbra::scene::{Mesh, Role, Scene, generate};
 use antumbra::stages::depth_layers::MapView;
+use antumbra::stages::depth_layers::{self, Projection};
 use antumbra::techniques::common::twin::fraction_above;
 use antumbra::techniques::occlusion_textures::{Combine, twin};
-use antumbra::techniques::ray_march::{self, Projection};
 use antumbra::truth::Receiver;
-use antumbra::{Description, RectangleLight, frame};
+use antumbra::{Description, RectangleLight, Technique, frame};
 use antumbra_harness::{HeadlessDevice, View};
 use antumbra_tests::device;
 use antumbra_tests::measure::{Setup, model, percent, settings, summary};
@@ -161,7 +161,7 @@ fn in_light_space(scene: &Scene, map: u32) -> (MapView, Vec<[DVec3; 3]>) {
         };
         mesh.indices.chunks_exact(3).map(move |t| [0, 1, 2].map(|j| point(&t[j])))
     });
-    let view = ray_march::view(&light, &boxes, Projection::Behind, map).unwrap();
+    let view = depth_layers::view(&light, &boxes, Projection::Behind, map).unwrap();
     (view, triangles.collect())
 }
 
@@ -184,7 +184,7 @@ fn an_independent_version_of_the_published_formulas_says_the_same() {
             .flat_map(|slices| [false, true].map(|fill| of(slices, fill, Combine::Product)))
             .chain([of(16, false, Combine::Sum), of(16, false, Combine::Max)]);
         for (slices, fill, way) in ways {
-            let combine = Combine::ALL.iter().find(|(_, c)| *c == way).unwrap().0;
+            let combine = way.name();
             let words = format!(
                 "technique=occlusion-textures map=64 placement=uniform slices={slices} fill={} combine={combine}",
                 if fill { "on" } else { "off" }
@@ -347,15 +347,8 @@ fn the_work_does_not_grow_with_the_light() {
 #[test]
 fn bad_input_is_refused_with_a_sentence() {
     let refuse = |words: &str| {
-        let mut settings = antumbra::Settings {
-            technique: antumbra::Technique::OcclusionTextures,
-            ..Default::default()
-        };
-        let set = words.split_whitespace().try_for_each(|word| {
-            let (key, value) = word.split_once('=').unwrap();
-            settings.set(key, value)
-        });
-        set.and_then(|()| settings.check()).unwrap_err().to_string()
+        let technique = format!("occlusion-textures {words}").parse::<Technique>();
+        technique.and_then(|t| t.check()).unwrap_err().to_string()
     };
     for slices in ["0", "3", "33", "-1", "many"] {
         let error = refuse(&format!("slices={slices}"));
@@ -378,11 +371,11 @@ fn bad_input_is_refused_with_a_sentence() {
         }
     }
     let words = settings("technique=occlusion-textures");
-    let mut description = Description { settings: words, ..Description::new([64, 64]) };
+    let mut description = Description { technique: words, ..Description::new([64, 64]) };
     assert!(description.check().is_ok());
     description.occluder_maps = Some(vk::Format::D32_SFLOAT);
     let error = description.check().unwrap_err().to_string();
     assert!(error.contains("lend meshes"), "{error}");
-    let graph = frame::full_graph(&Description { settings: words, ..Description::new([64, 64]) });
+    let graph = frame::full_graph(&Description { technique: words, ..Description::new([64, 64]) });
     assert!(graph.passes().iter().any(|p| p.name == "occlusion_textures.visibility"));
 }

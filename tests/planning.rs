@@ -66,7 +66,7 @@ fn planning_takes_no_memory_after_the_first_frame() {
         "technique=back-projection",
     ] {
         let description =
-            Description { settings: settings(words), lights: 4, ..Description::new([64; 2]) };
+            Description { technique: settings(words), lights: 4, ..Description::new([64; 2]) };
         for stays in [false, true] {
             let mut plans = FramePlans::new();
             // To and fro: where more meshes matter than ever before, their list grows.

@@ -20,8 +20,8 @@ mod promises;
 #[path = "random_laws/tally.rs"]
 mod tally;
 
+use antumbra::Technique;
 use antumbra::scene::Role;
-use antumbra::{Settings, Technique};
 use antumbra_tests::device::unwatched;
 use antumbra_tests::random::{Case, Object, Shape, hold};
 use antumbra_tests::rig::{Random, Rig, Shot, random_settings, words};
@@ -46,7 +46,7 @@ fn judge<S: Strategy>(
     strategy: &S,
     pixels: impl Fn(&S::Value) -> &Case,
     shots: impl Fn(&Rig, usize, &S::Value) -> Vec<Shot>,
-    verdict: impl Fn(&Settings, &[Vec<f32>], &mut Tally) -> Verdict,
+    verdict: impl Fn(&Technique, &[Vec<f32>], &mut Tally) -> Verdict,
 ) -> Tally {
     let device = unwatched();
     // Its pipelines alone take half of the time.
@@ -55,7 +55,7 @@ fn judge<S: Strategy>(
     let tally = RefCell::new(Tally::new(law));
     let mut random = Random(u64::from(seed) << 32);
     for set in 0..SETS {
-        let all = Technique::ALL.iter().map(|(_, t)| random_settings(*t, &mut random));
+        let all = Technique::all().into_iter().map(|t| random_settings(t, &mut random));
         let settings: Vec<_> = all.collect();
         let rig = RefCell::new(Rig::new(&device, &settings, max_error));
         hold(cases, seed.wrapping_mul(SETS).wrapping_add(set), strategy, |value| {
@@ -63,7 +63,7 @@ fn judge<S: Strategy>(
             let case = pixels(&value);
             rig.look(case);
             for (index, settings) in settings.iter().enumerate() {
-                if case.lamp.line && !takes_lines(settings.technique) {
+                if case.lamp.line && !settings.room().takes().line {
                     continue;
                 }
                 let shots = shots(&rig, index, &value);
@@ -82,10 +82,6 @@ fn judge<S: Strategy>(
     let tally = tally.into_inner();
     tally.check();
     tally
-}
-
-fn takes_lines(technique: Technique) -> bool {
-    matches!(technique, Technique::Hard | Technique::ManyLights | Technique::LinearLight)
 }
 
 /// The same scene, all of its objects occluders alone: its pixels show planes that block nothing.

@@ -15,10 +15,12 @@ use antumbra::frame::{self, Limits};
 use antumbra::graph::Scope;
 use antumbra::scene::{Role, generate};
 use antumbra::stages::depth_layers::{Eye, MapView};
+use antumbra::techniques::{hard, soft_shadow_map};
 use antumbra::{
     Description, Error, Frame, Geometry, HostImage, LightTexture, MeshBuffers, MeshInstance,
-    OccluderMaps, RectangleLight, Settings, Technique, Visibility,
+    OccluderMaps, RectangleLight, Visibility,
 };
+use antumbra_harness::technique;
 use antumbra_tests::measure::settings;
 use ash::vk::{self, Handle, ImageLayout as Layout, ImageUsageFlags as Usage};
 use glam::{DMat4, DVec3};
@@ -87,7 +89,7 @@ impl Given {
             Lends::GBuffer | Lends::Visibility => words.into(),
         };
         let description = Description {
-            settings: settings(&words),
+            technique: settings(&words),
             mask_format: Some(vk::Format::R8_UNORM),
             lent_visibility: lends == Lends::Visibility,
             occluder_maps: (lends == Lends::Maps).then_some(vk::Format::D32_SFLOAT),
@@ -216,21 +218,36 @@ fn descriptions() {
         ),
         d("an error that is no number", |d| d.max_error = Some(f64::NAN), &["max_error", "NaN"]),
         d(
-            "too many settings",
-            |d| d.other_settings = vec![d.settings; 8],
-            &["8 other settings", "7"],
+            "too many techniques",
+            |d| d.other_techniques = vec![d.technique; 8],
+            &["8 other techniques", "7"],
         ),
-        d("no map", |d| d.settings.map = 0, &["setting map", "1 to 4096"]),
-        d("an absurd map", |d| d.settings.map = 1 << 20, &["setting map", "1 to 4096"]),
-        d("a bad knob", |d| d.settings.soft_shadow_map.tolerance = f32::NAN, &["tolerance", "NaN"]),
+        d(
+            "no map",
+            |d| d.technique = hard::Settings { map: 0 }.into(),
+            &["setting map", "1 to 4096"],
+        ),
+        d(
+            "an absurd map",
+            |d| d.technique = hard::Settings { map: 1 << 20 }.into(),
+            &["setting map", "1 to 4096"],
+        ),
+        d(
+            "a bad knob",
+            |d| {
+                let tolerance = f32::NAN;
+                d.technique = soft_shadow_map::Settings { tolerance, ..Default::default() }.into();
+            },
+            &["tolerance", "NaN"],
+        ),
         d(
             "a bad knob of the others",
-            |d| d.other_settings.push(Settings { map: 4097, ..d.settings }),
+            |d| d.other_techniques.push(hard::Settings { map: 4097 }.into()),
             &["setting map", "4097"],
         ),
         d(
             "more rays than a list of pixels holds",
-            |d| (d.settings.technique, d.extent) = (Technique::RayMarch, [16384; 2]),
+            |d| (d.technique, d.extent) = (technique("ray-march"), [16384; 2]),
             &["ray-march", "16384×16384", "128 MiB"],
         ),
         d(
@@ -242,28 +259,28 @@ fn descriptions() {
             "maps from one point for many",
             Maps,
             "",
-            Described(|d| d.settings.technique = Technique::ManyLights),
+            Described(|d| d.technique = technique("many-lights")),
             &["many-lights", "lend meshes"],
         ),
         (
             "maps from one point for a line",
             Maps,
             "",
-            Described(|d| d.settings.technique = Technique::LinearLight),
+            Described(|d| d.technique = technique("linear-light")),
             &["linear-light", "lend meshes"],
         ),
         (
             "two faces for many slices",
             Maps,
             "",
-            Described(|d| d.settings.technique = Technique::OcclusionTextures),
+            Described(|d| d.technique = technique("occlusion-textures")),
             &["occlusion-textures", "lend meshes"],
         ),
         (
             "a texture that nobody weighs",
             Texture,
             "",
-            Described(|d| d.settings.technique = Technique::Pcss),
+            Described(|d| d.technique = technique("pcss")),
             &["pcss", "choose ray-march"],
         ),
         (

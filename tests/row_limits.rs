@@ -8,7 +8,7 @@ use antumbra::graph::{
     Access, COLOR_ATTACHMENTS, Graph, INVOCATIONS, Pass, STORAGE_BYTES, Shape, Work,
 };
 use antumbra::shaders::{self, Module};
-use antumbra::{Description, LightTexture, Technique, frame};
+use antumbra::{Description, LightTexture, frame};
 use antumbra_tests::measure::settings;
 use antumbra_tests::reflect::reflect;
 use ash::vk::Format as F;
@@ -66,19 +66,17 @@ const WORDS: [&str; 17] = [
 
 /// The largest image, or for a list of its pixels the largest that is accepted, in the shape with the widest rows.
 fn largest(words: &str) -> Description {
-    let mut settings = settings(words);
     // The largest map that agrees with the other settings.
-    settings.map = 4096;
-    while settings.check().is_err() {
-        settings.map /= 2;
-        assert!(settings.map >= 16, "{words}: {}", settings.check().unwrap_err());
-    }
-    let extent = if settings.technique == Technique::RayMarch { [16384, 682] } else { [16384; 2] };
+    let sides = std::iter::successors(Some(4096), |side| (*side > 16).then_some(side / 2));
+    let mut all = sides.map(|side| settings(words).with_map(side).unwrap());
+    let technique = all.find(|t| t.check().is_ok()).unwrap_or_else(|| panic!("{words}: no map"));
+    let lists_pixels = technique.room().pixel_list([16384; 2]).is_some();
+    let extent = if lists_pixels { [16384, 682] } else { [16384; 2] };
     let format = F::R8G8B8A8_UNORM;
-    let texture =
-        (settings.technique == Technique::RayMarch).then_some(LightTexture { format, color: true });
+    let textured = technique.room().takes().texture;
+    let texture = textured.then_some(LightTexture { format, color: true });
     let description = Description {
-        settings,
+        technique,
         mask_format: Some(F::R8_UNORM),
         light_texture: texture,
         ..Description::new(extent)
@@ -176,7 +174,7 @@ fn no_row_takes_more_than_every_device_has() {
     for words in WORDS {
         let description = largest(words);
         let graph = frame::full_graph(&description);
-        println!("{words}: map={}, {} rows", description.settings.map, graph.passes().len());
+        println!("{words}: map={}, {} rows", description.technique.map(), graph.passes().len());
         rows += graph.passes().len();
         let of_rows = graph.kinds().flat_map(|pass| of_row(&graph, pass));
         let all = of_resources(&graph, description.extent).into_iter().chain(of_rows);

@@ -57,7 +57,7 @@ fn descriptions() -> Vec<(String, Description)> {
                 continue;
             }
             let description = Description {
-                settings: settings(words),
+                technique: settings(words),
                 mask_format,
                 occluder_maps,
                 light_texture: texture.map(|color| LightTexture { format, color }),

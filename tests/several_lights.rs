@@ -41,7 +41,7 @@ fn stage(device: &HeadlessDevice, scene: &Scene, lights: u32, words: &[&str]) ->
 fn configure(stage: &mut Stage, lights: u32, words: &[&str]) -> Result<(), Error> {
     stage.configure_with(settings(words[0]), |description| {
         description.lights = lights;
-        description.other_settings = words[1..].iter().map(|w| settings(w)).collect();
+        description.other_techniques = words[1..].iter().map(|w| settings(w)).collect();
         description.frames_in_flight = 2;
     })
 }
@@ -96,14 +96,14 @@ fn four_lights_in_one_submit_are_four_nodes_to_the_bit() {
     let apart = words.map(|words| of_one(&mut stage(&device, &scene, 1, &[words]), 0.0));
     let shadows = |image: &Vec<f32>| image.iter().any(|&v| v < 0.5);
     assert!(apart.iter().flatten().all(shadows), "every light casts a shadow");
-    let plans: Vec<_> = (0..4).map(|i| plan(&mut node, i, |f| f.settings_index = i)).collect();
+    let plans: Vec<_> = (0..4).map(|i| plan(&mut node, i, |f| f.technique_index = i)).collect();
     for (index, image) in run(&mut node, &plans).into_iter().enumerate() {
         assert!(image == apart[index][index], "light {index}, with settings of its own");
     }
     // Every light has the same settings, and so the same maps and buffers one behind the other.
     for (index, apart) in (0..).zip(&apart) {
         // Recorded in another order than that of the layers, and with the other frame slot.
-        let of = |i| plan(&mut node, i, |f| (f.settings_index, f.slot) = (index, 1));
+        let of = |i| plan(&mut node, i, |f| (f.technique_index, f.slot) = (index, 1));
         let plans: Vec<_> = [2, 0, 3, 1].map(of).into();
         assert!(run(&mut node, &plans) == *apart, "settings {index}");
         let timed = (0..5).map(|light| node.node().unwrap().timings_of(1, light));
@@ -130,7 +130,7 @@ fn lights_planned_together_are_lights_planned_alone() {
         let lamp = |index: u32| light(shift(index) + moved, false);
         let change = |index: usize, frame: &mut Frame| {
             frame.light_index = index as u32;
-            frame.settings_index = u32::from(index == 3);
+            frame.technique_index = u32::from(index == 3);
             frame.revision = Some(scene_revision);
             frame.view_revision = Some(view_revision);
             aside(frame, camera);
@@ -198,7 +198,7 @@ fn idle_lights_cost_nothing_and_a_moving_camera_sees_what_each_light_shadows() {
     let plans = |node: &mut Stage, view: u64| -> Vec<FramePlan> {
         let of_light = |index: u32| {
             plan(node, index, |frame| {
-                frame.settings_index = of[index as usize];
+                frame.technique_index = of[index as usize];
                 (frame.revision, frame.view_revision) = (Some(1), Some(view));
                 aside(frame, 0.1 * view as f64);
             })
@@ -224,10 +224,10 @@ fn idle_lights_cost_nothing_and_a_moving_camera_sees_what_each_light_shadows() {
     assert!(passes[1..].iter().all(|p| *p == passes[1]), "{passes:?}");
     // A plan that counts on maps which another light has drawn over is refused.
     let stale = plan(&mut node, 2, |frame| {
-        frame.settings_index = 1;
+        frame.technique_index = 1;
         frame.revision = Some(1);
     });
-    let over = plan(&mut node, 0, |frame| frame.settings_index = 1);
+    let over = plan(&mut node, 0, |frame| frame.technique_index = 1);
     node.run(&over).unwrap();
     let sentence = node.run(&stale).unwrap_err().to_string();
     assert!(sentence.contains("plan the frame again"), "{sentence}");
@@ -239,7 +239,7 @@ fn a_resize_keeps_lights_apart() {
     let scene = cards();
     let mut node = stage(&device, &scene, 3, &["map=32", "technique=hard map=32"]);
     let plans = |node: &mut Stage| -> Vec<FramePlan> {
-        (0..3).map(|i| plan(node, i, |f| f.settings_index = i % 2)).collect()
+        (0..3).map(|i| plan(node, i, |f| f.technique_index = i % 2)).collect()
     };
     let before = plans(&mut node);
     let images = run(&mut node, &before);
@@ -307,9 +307,9 @@ fn what_does_not_exist_is_refused() {
     let device = device();
     let scene = cards();
     let mut node = stage(&device, &scene, 2, &["map=32"]);
-    let sentence = |node: &mut Stage, light_index, settings_index| {
+    let sentence = |node: &mut Stage, light_index, technique_index| {
         let planned = node.plan_with(&light(0.0, false), |frame| {
-            (frame.light_index, frame.settings_index) = (light_index, settings_index);
+            (frame.light_index, frame.technique_index) = (light_index, technique_index);
         });
         planned.unwrap_err().to_string()
     };

@@ -4,7 +4,7 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
 use antumbra::scene::{Camera, Role, Scene, generate};
-use antumbra::stages::visibility::twin::{Bounds, listed_tile, rounded_tile};
+use antumbra::stages::tiles::twin::{Bounds, listed_tile, rounded_tile};
 use antumbra::techniques::common::twin::nodes_around;
 use antumbra::techniques::soft_shadow_map::twin::{Node, Tile, is_felt, superblocks_around};
 use antumbra_harness::{HeadlessDevice, View};

@@ -13,7 +13,7 @@ use antumbra::frame::{Limits, plan_all};
 use antumbra::graph::{MeshList, Scope};
 use antumbra::scene::{Role, generate};
 use antumbra::{Description, Frame, FramePlans, Geometry, HostImage, MeshBuffers, MeshInstance};
-use antumbra::{RectangleLight, Settings};
+use antumbra::{RectangleLight, Technique};
 use antumbra_harness::cases;
 use antumbra_harness::{FrameTimes, HeadlessDevice, HeadlessOptions, Stage, View};
 use ash::vk::{self, Handle};
@@ -38,7 +38,7 @@ fn median(mut all: Vec<f64>) -> f64 {
 }
 
 fn settings(words: &str) -> Settings {
-    let mut settings = Settings::default();
+    let mut settings = Technique::default();
     for word in words.split_whitespace() {
         match word.split_once('=').unwrap() {
             ("technique", name) => settings.technique = name.parse().unwrap(),

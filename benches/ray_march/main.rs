@@ -10,9 +10,9 @@ mod forward;
 #[path = "../technique/mod.rs"]
 mod technique;
 
+use antumbra::Technique;
 use antumbra::scene::Scene;
 use antumbra::stages::nbuffer::{Kind, Levels};
-use antumbra::{Settings, Technique};
 use antumbra_harness::levels::{self, BUILD, bytes, tightness};
 use antumbra_harness::{FrameTimes, HeadlessDevice};
 use std::time::Instant;

@@ -2,7 +2,7 @@
 
 use antumbra::scene::{Role, Scene, from_gltf};
 use antumbra::truth::{Receiver, Sampling, Tracer};
-use antumbra::{FramePlan, Settings};
+use antumbra::{FramePlan, Technique};
 use antumbra_harness::{FrameTimes, HeadlessDevice, Stage, View};
 use glam::DVec3;
 use std::path::Path;
@@ -15,7 +15,7 @@ pub fn committed(name: &str) -> Scene {
 
 /// Settings from the words of a command line.
 pub fn settings(words: &str) -> Settings {
-    let mut settings = Settings::default();
+    let mut settings = Technique::default();
     for word in words.split_whitespace() {
         let (key, value) = word.split_once('=').unwrap();
         settings.set(key, value).unwrap_or_else(|e| panic!("{e}"));

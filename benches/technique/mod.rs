@@ -4,7 +4,7 @@
 
 use antumbra::scene::{Instance, Role, Scene, from_gltf, generate};
 use antumbra::truth::{ErrorSummary, ExactLine, Receiver, Sampling, Tracer};
-use antumbra::{FramePlan, RectangleLight, Settings, Technique};
+use antumbra::{FramePlan, RectangleLight, Technique};
 use antumbra_harness::{FrameTimes, HeadlessDevice, HeadlessOptions, Stage, View};
 use glam::DVec3;
 use std::path::Path;
@@ -72,7 +72,7 @@ pub fn scene_under(name: &str, light: RectangleLight) -> Scene {
 
 /// A technique's settings from the words of a command line.
 pub fn settings(technique: Technique, words: &str) -> Settings {
-    let mut settings = Settings { technique, ..Settings::default() };
+    let mut settings = Settings { technique, ..Technique::default() };
     for (key, value) in words.split_whitespace().filter_map(|w| w.split_once('=')) {
         settings.set(key, value).unwrap_or_else(|e| panic!("{e}"));
     }
@@ -88,7 +88,7 @@ pub struct Ready {
 
 impl Ready {
     /// The pixels over |x|, |z| ≤ `half` metres.
-    pub fn new(device: &HeadlessDevice, scene: &Scene, settings: Settings, half: f64) -> Self {
+    pub fn new(device: &HeadlessDevice, scene: &Scene, settings: Technique, half: f64) -> Self {
         Self::seen(device, scene, settings, &View::map_of_ground(half, 8.0), [480; 2])
     }
 
@@ -96,7 +96,7 @@ impl Ready {
     pub fn seen(
         device: &HeadlessDevice,
         scene: &Scene,
-        settings: Settings,
+        settings: Technique,
         view: &View,
         extent: [u32; 2],
     ) -> Self {

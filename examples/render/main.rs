@@ -9,9 +9,8 @@ mod report;
 
 use antumbra::auto::Auto;
 use antumbra::scene::{Camera, Scene, from_gltf};
-use antumbra::{Settings, Technique};
 use antumbra_harness::shade;
-use antumbra_harness::{FrameTimes, HeadlessDevice, HeadlessOptions, Stage, View};
+use antumbra_harness::{FrameTimes, HeadlessDevice, HeadlessOptions, Stage, View, technique};
 use image::ExtendedColorType;
 use options::{Options, Stop};
 use output::Files;
@@ -65,7 +64,7 @@ fn render(options: &Options) -> Result<String, Stop> {
         ..Default::default()
     })?;
     // Before anything is chosen, the technique with the fewest passes.
-    let few = Settings { technique: Technique::Hard, ..Settings::default() };
+    let few = technique("hard");
     let mut stage = Stage::new(&device, &scene, &view, options.size, few, |_| true)?;
     let mut settings = options.settings;
     let choice = match options.auto {
@@ -73,7 +72,7 @@ fn render(options: &Options) -> Result<String, Stop> {
         Some(budget) => {
             let mut auto = Auto::new(budget, costs::of(&device)?);
             let choice = stage.choose(&mut auto, light)?;
-            settings = choice.settings;
+            settings = choice.technique;
             Some(choice)
         }
     };

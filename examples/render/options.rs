@@ -1,9 +1,9 @@
 //! The command line.
 
 use antumbra::auto::Budget;
+use antumbra::knob::{Knob, Values};
 use antumbra::scene::Role;
-use antumbra::settings::KNOBS;
-use antumbra::{Error, Settings, Technique};
+use antumbra::{Error, Technique};
 use clap::{CommandFactory, FromArgMatches, Parser};
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -56,7 +56,7 @@ pub struct Options {
     pub auto: Option<Budget>,
     /// What leaving an effect out may add to the error, where it is given.
     pub max_error: Option<f64>,
-    pub settings: Settings,
+    pub settings: Technique,
     pub size: [u32; 2],
     pub light: Option<String>,
     pub roles: Vec<(String, Role)>,
@@ -81,18 +81,27 @@ fn wrong(option: &str, problem: impl AsRef<str>) -> Stop {
     Stop::Wrong(format!("{option}: {}", problem.as_ref()))
 }
 
-/// The settings as the end of the help text.
+/// The settings as the end of the help text, each with the techniques that have it.
 fn knobs() -> String {
     let mut text = String::from("Settings (--set KEY=VALUE):\n");
-    for k in KNOBS {
-        text.push_str(&format!(
-            "  {:<14} {} [{}; default {}; {}]\n",
-            k.key,
-            k.about,
-            if k.unit == "choice" { k.range.into() } else { format!("{}, {}", k.range, k.unit) },
-            k.default,
-            if k.techniques.is_empty() { "all techniques".into() } else { k.techniques() }
-        ));
+    let all = Technique::all();
+    let mut shown: Vec<Knob> = Vec::new();
+    for knob in all.iter().flat_map(Technique::knobs) {
+        if shown.contains(&knob) {
+            continue;
+        }
+        let having: Vec<_> = all.iter().filter(|t| t.knobs().contains(&knob)).collect();
+        let names: Vec<_> = having.iter().map(|t| t.name()).collect();
+        let names =
+            if names.len() == all.len() { "all techniques".into() } else { names.join(", ") };
+        let default = having[0].get(knob.key).unwrap_or_default();
+        let Knob { key, unit, values, about } = knob;
+        let range = match values {
+            Values::Choice(_) | Values::Switch => values.to_string(),
+            _ => format!("{values}, {unit}"),
+        };
+        text.push_str(&format!("  {key:<14} {about} [{range}; default {default}; {names}]\n"));
+        shown.push(knob);
     }
     text
 }
@@ -164,12 +173,11 @@ fn assignments(a: &Arguments) -> Result<Vec<(&str, &str)>, Stop> {
 }
 
 /// The budget of `auto`, or the technique that was asked for: by its name, or by settings that it has.
-fn technique_of(a: &Arguments) -> Result<(Option<Budget>, Settings), Stop> {
-    let of = |technique| Settings { technique, ..Settings::default() };
+fn technique_of(a: &Arguments) -> Result<(Option<Budget>, Technique), Stop> {
     let budget = Budget { max_error: a.max_error, max_ms: a.max_ms };
     let given = assignments(a)?;
     match (a.technique.as_deref(), &given[..]) {
-        (None | Some(AUTO), []) => Ok((Some(budget), Settings::default())),
+        (None | Some(AUTO), []) => Ok((Some(budget), Technique::default())),
         (Some(AUTO), [(key, _), ..]) => {
             Err(wrong("--set", format!("{key} is for auto to choose; name a --technique")))
         }
@@ -177,20 +185,19 @@ fn technique_of(a: &Arguments) -> Result<(Option<Budget>, Settings), Stop> {
             "--max-ms",
             format!("is a budget for --technique auto, and not for {}", named.unwrap_or("--set")),
         )),
-        (Some(name), _) => match name.parse() {
-            Ok(technique) => Ok((None, of(technique))),
-            Err(_) => {
+        (Some(name), _) => match Technique::all().into_iter().find(|t| t.name() == name) {
+            Some(technique) => Ok((None, technique)),
+            None => {
                 let problem = format!("\"{name}\" is not one of {}", techniques());
                 Err(wrong("--technique", problem))
             }
         },
         (None, given) => {
-            let all = std::iter::once(Settings::default().technique)
-                .chain(Technique::ALL.iter().map(|(_, t)| *t));
-            let has = |t: &Technique, key: &str| KNOBS.iter().any(|k| k.key == key && k.serves(*t));
+            let all = std::iter::once(Technique::default()).chain(Technique::all());
+            let has = |t: &Technique, key: &str| t.get(key).is_some();
             let technique = all.into_iter().find(|t| given.iter().all(|(key, _)| has(t, key)));
             // A key that none has is refused by name when it is set.
-            Ok((None, technique.map_or_else(Settings::default, of)))
+            Ok((None, technique.unwrap_or_default()))
         }
     }
 }
@@ -199,7 +206,7 @@ fn technique_of(a: &Arguments) -> Result<(Option<Budget>, Settings), Stop> {
 const AUTO: &str = "auto";
 
 fn techniques() -> String {
-    let names = std::iter::once(AUTO).chain(Technique::ALL.iter().map(|(name, _)| *name));
+    let names = std::iter::once(AUTO).chain(Technique::NAMES.iter().copied());
     names.collect::<Vec<_>>().join(", ")
 }
 

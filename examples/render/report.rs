@@ -3,9 +3,9 @@
 use crate::options::Options;
 use antumbra::auto::Choice;
 use antumbra::effects::Outcome;
+use antumbra::knob::Knob;
 use antumbra::scene::Scene;
-use antumbra::settings::KNOBS;
-use antumbra::{FramePlan, Settings};
+use antumbra::{FramePlan, Technique};
 use antumbra_harness::{FrameTimes, HeadlessDevice};
 use serde_json::{Map, Value, json};
 use std::time::Duration;
@@ -15,7 +15,7 @@ pub struct Report<'a> {
     pub device: &'a HeadlessDevice,
     pub options: &'a Options,
     /// What ran: given, or chosen.
-    pub settings: &'a Settings,
+    pub settings: &'a Technique,
     pub choice: Option<&'a Choice>,
     pub scene: &'a Scene,
     pub plan: &'a FramePlan,
@@ -32,16 +32,14 @@ fn median(mut values: Vec<f64>) -> f64 {
     }
 }
 
-fn settings_of(settings: &Settings) -> Map<String, Value> {
-    KNOBS
-        .iter()
-        .filter_map(|k| {
-            let value = settings.get(k.key)?;
-            // Numbers are numbers, names are strings.
-            let value = serde_json::from_str::<Value>(&value).unwrap_or_else(|_| json!(value));
-            Some((k.key.to_string(), value))
-        })
-        .collect()
+fn settings_of(technique: &Technique) -> Map<String, Value> {
+    let entry = |knob: Knob| {
+        let value = technique.get(knob.key)?;
+        // Numbers are numbers, names are strings.
+        let value = serde_json::from_str::<Value>(&value).unwrap_or_else(|_| json!(value));
+        Some((knob.key.to_string(), value))
+    };
+    technique.knobs().into_iter().filter_map(entry).collect()
 }
 
 impl Report<'_> {
@@ -114,7 +112,7 @@ impl Report<'_> {
             "driver": self.device.name(),
             "auto": model,
             "effects": effects,
-            "technique": self.settings.technique.name(),
+            "technique": self.settings.name(),
             "settings": settings_of(self.settings),
             "size": self.options.size,
             "passes": passes,
@@ -136,7 +134,7 @@ impl Report<'_> {
             "{}: {} triangles, {width}×{height} pixels, {}, {:.1} ms a frame on {}, {:.1} MB",
             self.options.out.join("shaded.png").display(),
             self.scene.triangles(),
-            self.settings.technique.name(),
+            self.settings.name(),
             self.median_ms(|f| f.frame),
             self.device.name(),
             self.gpu_bytes() as f64 / 1e6,

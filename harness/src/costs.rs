@@ -1,9 +1,9 @@
 //! What passes cost on a device, by a small frame of it: under half a second.
 
 use crate::{HeadlessDevice, Stage, View};
+use antumbra::Error;
 use antumbra::auto::{Costs, Measured, Table};
 use antumbra::scene::{Camera, generate};
-use antumbra::{Error, Settings};
 
 /// The probe's pixels.
 const EXTENT: [u32; 2] = [256, 192];
@@ -30,7 +30,7 @@ pub fn probe(device: &HeadlessDevice) -> Result<Measured, Error> {
     let light = scene.light(None)?.clone();
     let camera = Camera::framing(&scene, f64::from(EXTENT[0]) / f64::from(EXTENT[1]));
     let view = View::perspective(&camera, EXTENT);
-    let settings = Settings { map: 128, ..Settings::default() };
+    let settings = "soft-shadow-map map=128".parse()?;
     let mut stage = Stage::new(device, &scene, &view, EXTENT, settings, |_| true)?;
     let plan = stage.plan_under(&light, None)?;
     stage.run(&plan)?;

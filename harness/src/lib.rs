@@ -33,6 +33,7 @@ mod statistics;
 mod submit;
 mod view;
 pub mod whole;
+pub mod words;
 
 pub use buffer::HostBuffer;
 pub use compute::{ComputeProgram, run_compute};
@@ -48,3 +49,4 @@ pub use stage::{FrameTimes, Stage};
 pub use statistics::Invocations;
 pub use submit::Submitted;
 pub use view::View;
+pub use words::{technique, technique_of};

@@ -11,8 +11,8 @@ use antumbra::node::PlanObject;
 use antumbra::scene::{AreaLight, Instance, Scene};
 use antumbra::stages::visibility;
 use antumbra::{
-    Description, Error, Frame, FramePlan, FramePlans, Host, MeshInstance, RectangleLight, Settings,
-    ShadowNode, Visibility,
+    Description, Error, Frame, FramePlan, FramePlans, Host, MeshInstance, RectangleLight,
+    ShadowNode, Technique, Visibility,
 };
 use std::sync::PoisonError;
 use std::time::{Duration, Instant};
@@ -56,7 +56,7 @@ impl Stage {
         scene: &Scene,
         view: &View,
         extent: [u32; 2],
-        settings: Settings,
+        settings: Technique,
         keep: impl Fn(&Instance) -> bool,
     ) -> Result<Self, Error> {
         let buffers = SceneBuffers::new(device, scene)?;
@@ -103,7 +103,7 @@ impl Stage {
     ///
     /// # Errors
     /// As [`ShadowNode::new`]; the stage then has no node until settings that work are given.
-    pub fn configure(&mut self, settings: Settings) -> Result<(), Error> {
+    pub fn configure(&mut self, settings: Technique) -> Result<(), Error> {
         self.configure_with(settings, |_| {})
     }
 
@@ -113,12 +113,12 @@ impl Stage {
     /// As [`ShadowNode::new`]; the stage then has no node until settings that work are given.
     pub fn configure_with(
         &mut self,
-        settings: Settings,
+        settings: Technique,
         change: impl FnOnce(&mut Description),
     ) -> Result<(), Error> {
         self.drop_node();
         let mut description = Description {
-            settings,
+            technique: settings,
             frames_in_flight: 1,
             mask_format: Some(MASK),
             inspect: true,

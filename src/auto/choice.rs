@@ -1,14 +1,14 @@
 //! What `auto` answers.
 
 use crate::frame;
-use crate::settings::{KNOBS, Settings};
+use crate::technique::Technique;
 use std::fmt;
 
 /// What to compute a light's shadow with.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Choice {
-    /// Technique and settings.
-    pub settings: Settings,
+    /// The technique, with its settings.
+    pub technique: Technique,
     /// The mean error over shadow and penumbra that the model promises, a visible fraction; none where nothing can be
     /// shadowed.
     pub error: Option<f64>,
@@ -22,36 +22,27 @@ pub struct Choice {
     pub problem: Option<String>,
 }
 
-/// The settings of some choices, each once and the most accurate first, as many as a node may have.
-pub(crate) fn distinct(choices: &[Choice]) -> (Settings, Vec<Settings>) {
+/// The techniques of some choices, each once and the most accurate first, as many as a node may have.
+pub(crate) fn distinct(choices: &[Choice]) -> (Technique, Vec<Technique>) {
     let mut by_error: Vec<&Choice> = choices.iter().collect();
     by_error.sort_by(|a, b| {
         let [a, b] = [a, b].map(|c| c.error.unwrap_or(f64::INFINITY));
         a.total_cmp(&b)
     });
-    let mut all: Vec<Settings> = Vec::new();
+    let mut all: Vec<Technique> = Vec::new();
     for choice in by_error {
-        if !all.contains(&choice.settings) {
-            all.push(choice.settings);
+        if !all.contains(&choice.technique) {
+            all.push(choice.technique);
         }
     }
-    all.truncate(frame::MOST_SETTINGS);
+    all.truncate(frame::MOST_TECHNIQUES);
     let mut all = all.into_iter();
     (all.next().unwrap_or_default(), all.collect())
 }
 
 impl fmt::Display for Choice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "auto: {}", self.settings.technique.name())?;
-        let plain = Settings { technique: self.settings.technique, ..Settings::default() };
-        for knob in KNOBS {
-            let value = self.settings.get(knob.key);
-            if value != plain.get(knob.key)
-                && let Some(value) = value
-            {
-                write!(f, " {}={value}", knob.key)?;
-            }
-        }
+        write!(f, "auto: {}", self.technique)?;
         if let Some(error) = self.error {
             write!(f, ", error ≤ {error:.4}")?;
         }

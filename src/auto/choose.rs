@@ -16,9 +16,8 @@ use super::{Budget, CANDIDATES, Choice, Costs, Likeness};
 use crate::Error;
 use crate::effects::Situation;
 use crate::frame::{Description, Frame, Looker, Surroundings};
-use crate::settings::{Settings, Technique};
-use crate::techniques::linear_light;
-use crate::techniques::soft_shadow_map::Sides;
+use crate::technique::Technique;
+use crate::techniques::room::HostDraws;
 
 /// How much faster another choice must be to replace one that is good enough.
 const FASTER: f64 = 0.8;
@@ -45,8 +44,8 @@ struct Held {
     /// The error of each candidate, at its worst in the last frames.
     worst: [f64; CANDIDATES.len()],
     /// What the last frame was to take.
-    expected: Option<(Technique, f64)>,
-    settings: Option<Settings>,
+    expected: Option<(&'static str, f64)>,
+    technique: Option<Technique>,
 }
 
 impl Default for Held {
@@ -57,7 +56,7 @@ impl Default for Held {
             waited: 0,
             worst: [0.0; CANDIDATES.len()],
             expected: None,
-            settings: None,
+            technique: None,
         }
     }
 }
@@ -122,7 +121,7 @@ impl Auto {
         let expected = expect(Table::own(), &self.costs, &likeness, pixels, triangles);
         match share(std::slice::from_ref(&expected), &sound)[0] {
             Some(best) => self.settle(0, situation, &expected, best, &sound),
-            None => self.nothing(0, &Settings::default()),
+            None => self.nothing(0, &Technique::default()),
         }
     }
 
@@ -187,13 +186,15 @@ impl Auto {
             choices.push(match (situation, picked[i]) {
                 (Some(s), Some(best)) => self.settle(i, s, &expected[i], best, &sound),
                 // What is there stays where it takes the light, and costs nothing.
-                (None, _) if !is_line(frame) => self.nothing(i, &description.settings),
+                (None, _) if !is_line(frame) => self.nothing(i, &description.technique),
                 (s, _) => self.of_line(i, frame, s.as_ref(), &sound),
             });
         }
         if description.occluder_maps.is_some() {
             // They are as large as the host has them.
-            choices.iter_mut().for_each(|c| c.settings.map = description.settings.map);
+            for choice in &mut choices {
+                choice.technique = choice.technique.with_map(description.technique.map())?;
+            }
         }
         Ok(choices)
     }
@@ -212,11 +213,11 @@ impl Auto {
     }
 
     /// Nothing can be shadowed.
-    fn nothing(&mut self, light: usize, settings: &Settings) -> Choice {
+    fn nothing(&mut self, light: usize, technique: &Technique) -> Choice {
         let held = &mut self.held[light];
         held.expected = None;
-        let settings = held.settings.unwrap_or(*settings);
-        Choice { settings, error: None, ms: None, alike: None, changed: false, problem: None }
+        let technique = held.technique.unwrap_or(*technique);
+        Choice { technique, error: None, ms: None, alike: None, changed: false, problem: None }
     }
 
     /// Keeps what is held where it is good enough, unless another one has been better for long.
@@ -243,14 +244,13 @@ impl Auto {
         if held.candidate != Some(taken.candidate) {
             held.waited = 0;
         }
-        let technique = CANDIDATES[taken.candidate].technique;
         held.candidate = Some(taken.candidate);
-        held.expected = Some((technique, taken.ms));
-        let settings = CANDIDATES[taken.candidate].settings();
-        let changed = held.settings.replace(settings).is_some_and(|before| before != settings);
+        held.expected = Some((CANDIDATES[taken.candidate].technique, taken.ms));
+        let technique = CANDIDATES[taken.candidate].settings();
+        let changed = held.technique.replace(technique).is_some_and(|before| before != technique);
         let (_, like) = alike(Table::own(), &Likeness::of(s));
         Choice {
-            settings,
+            technique,
             error: Some(taken.error),
             ms: Some(taken.ms),
             alike: like.first().map(|v| v.name.clone()),
@@ -272,28 +272,19 @@ impl Auto {
         let open = open + if is_line { 0.0 } else { POLYGON };
         let asked = ((sound.max_error - open) / LINE_SHARE).clamp(0.005, 0.1);
         let error = LINE_SHARE * asked + open;
-        let defaults = Settings::default();
-        let settings = Settings {
-            technique: Technique::LinearLight,
-            linear_light: linear_light::Settings {
-                error: asked as f32,
-                // Of a polygon's lines each has as many samples: no more than its maps have memory for.
-                samples: if is_line { 16 } else { 8 },
-                lines: if is_line { 1 } else { 8 },
-                ..defaults.linear_light
-            },
-            ..defaults
-        };
+        // Of a polygon's lines each has as many samples: no more than its maps have memory for.
+        let (samples, lines) = if is_line { (16, 1) } else { (8, 8) };
+        let technique = Technique::along_lines(asked as f32, samples, lines);
         let held = &mut self.held[light];
         held.candidate = None;
         held.expected = None;
-        let changed = held.settings.replace(settings).is_some_and(|before| before != settings);
+        let changed = held.technique.replace(technique).is_some_and(|before| before != technique);
         let met = error <= sound.max_error * 1.0001 || situation.is_none();
         let problem = (!met).then(|| {
             format!("no error below {error:.3} can be promised for a line or a polygon here")
         });
         Choice {
-            settings,
+            technique,
             error: situation.map(|_| error),
             ms: None,
             alike: None,
@@ -307,20 +298,17 @@ fn is_line(frame: &Frame) -> bool {
     frame.light.is_line() || frame.outline.is_some()
 }
 
-/// Whether settings take what a host gives.
-fn takes(settings: &Settings, description: &Description, frame: &Frame, s: &Situation) -> bool {
-    let technique = settings.technique;
-    let draws = s.host_drawn > 0;
-    let maps = description.occluder_maps.is_some();
+/// Whether a technique takes what a host gives.
+fn takes(technique: &Technique, description: &Description, frame: &Frame, s: &Situation) -> bool {
+    let (takes, maps) = (technique.room().takes(), technique.room().maps());
+    let textured = description.light_texture.is_some();
+    let lent = description.occluder_maps.is_some();
+    let back = frame.occluder_maps.is_some_and(|m| m.back.is_some());
     // A promise holds with finer maps than it was made for, and not with coarser ones.
-    let lent = !maps || settings.map <= description.settings.map;
-    let back = !maps || frame.occluder_maps.is_some_and(|m| m.back.is_some());
-    lent && match technique {
-        _ if description.light_texture.is_some() => technique == Technique::RayMarch && back,
-        Technique::ManyLights => !maps,
-        Technique::OcclusionTextures | Technique::LinearLight => !maps && !draws,
-        Technique::SoftShadowMap => back || settings.soft_shadow_map.sides == Sides::One,
-        Technique::RayMarch => back,
-        Technique::Hard | Technique::Pcss | Technique::BackProjection => true,
-    }
+    let fits = takes.lent_maps.is_ok()
+        && maps.side <= description.technique.map()
+        && (back || !maps.layers.back);
+    (!textured || takes.texture)
+        && (!lent || fits)
+        && (s.host_drawn == 0 || takes.host_draws == HostDraws::Any)
 }

@@ -1,10 +1,10 @@
 //! What passes cost on the device at hand, by what they cost on the one that measured the table.
 
 use super::table::{Measured, PIXELS};
-use crate::settings::Technique;
+use crate::technique::Technique;
 
 /// How many techniques there are.
-const TECHNIQUES: usize = Technique::ALL.len();
+const TECHNIQUES: usize = Technique::NAMES.len();
 
 /// How much of what a frame's own times say is believed at once.
 const BELIEF: f64 = 0.2;
@@ -36,9 +36,9 @@ impl Default for Costs {
     }
 }
 
-/// A technique's place in [`Technique::ALL`].
-fn place(technique: Technique) -> usize {
-    Technique::ALL.iter().position(|(_, t)| *t == technique).unwrap_or(0)
+/// A technique's place in [`Technique::NAMES`]; none for another name.
+fn place(technique: &str) -> Option<usize> {
+    Technique::NAMES.iter().position(|name| *name == technique)
 }
 
 impl Costs {
@@ -51,7 +51,7 @@ impl Costs {
     /// Milliseconds of what took so long in the table, at another size and with other geometry.
     pub(crate) fn ms(
         &self,
-        technique: Technique,
+        technique: &str,
         table: &Measured,
         pixels: f64,
         more_triangles: f64,
@@ -59,12 +59,12 @@ impl Costs {
         let draws = DRAW_MS * more_triangles.max(0.0);
         let ms =
             self.maps * (table.maps_ms + draws) + self.pixels * table.pixels_ms * pixels / PIXELS;
-        ms * self.by_technique[place(technique)]
+        ms * place(technique).map_or(1.0, |i| self.by_technique[i])
     }
 
     /// Learns from a frame that was to take `expected` milliseconds, and took `measured`.
-    pub(crate) fn learn(&mut self, technique: Technique, expected: f64, measured: f64) {
-        let i = place(technique);
+    pub(crate) fn learn(&mut self, technique: &str, expected: f64, measured: f64) {
+        let Some(i) = place(technique) else { return };
         let factor = measured / expected;
         if !(factor.is_finite() && factor > 0.0) {
             return;
@@ -79,8 +79,8 @@ impl Costs {
     /// As text to be kept, one line a factor.
     pub fn to_text(&self) -> String {
         let mut text = format!("maps {}\npixels {}\n", self.maps, self.pixels);
-        for ((name, _), (factor, frames)) in
-            Technique::ALL.iter().zip(self.by_technique.iter().zip(&self.frames))
+        for (name, (factor, frames)) in
+            Technique::NAMES.iter().zip(self.by_technique.iter().zip(&self.frames))
         {
             text.push_str(&format!("{name} {factor} {frames}\n"));
         }
@@ -104,8 +104,7 @@ impl Costs {
                 "maps" => costs.maps = factor,
                 "pixels" => costs.pixels = factor,
                 _ => {
-                    if let Ok(technique) = name.parse::<Technique>() {
-                        let i = place(technique);
+                    if let Some(i) = place(name) {
                         costs.by_technique[i] = factor.clamp(1.0 / MOST, MOST);
                         costs.frames[i] = words.next().and_then(|n| n.parse().ok()).unwrap_or(0);
                     }
@@ -125,17 +124,13 @@ mod tests {
         let mut costs = Costs::new(2.0, 3.0);
         let table = Measured { error: 0.0, maps_ms: 1.0, pixels_ms: 4.0 };
         let ms = |c: &Costs, t| c.ms(t, &table, PIXELS, 0.0);
-        assert_eq!(ms(&costs, Technique::Pcss), 2.0 + 12.0);
+        assert_eq!(ms(&costs, "pcss"), 2.0 + 12.0);
         for _ in 0..20 {
-            let expected = ms(&costs, Technique::Pcss);
-            costs.learn(Technique::Pcss, expected, 28.0);
+            let expected = ms(&costs, "pcss");
+            costs.learn("pcss", expected, 28.0);
         }
-        assert!((ms(&costs, Technique::Pcss) - 28.0).abs() < 0.5);
-        assert_eq!(
-            ms(&costs, Technique::Hard),
-            14.0,
-            "another technique's frames say nothing of it"
-        );
+        assert!((ms(&costs, "pcss") - 28.0).abs() < 0.5);
+        assert_eq!(ms(&costs, "hard"), 14.0, "another technique's frames say nothing of it");
         assert_eq!(Costs::from_text(&costs.to_text()), costs);
         for bad in ["", "maps", "maps x", "pixels -1\nmaps NaN", "unknown 3"] {
             assert_eq!(Costs::from_text(bad), Costs::default(), "{bad}");
@@ -146,11 +141,11 @@ mod tests {
     #[test]
     fn one_slow_frame_changes_little() {
         let mut costs = Costs::default();
-        (0..9).for_each(|_| costs.learn(Technique::Pcss, 10.0, 10.0));
+        (0..9).for_each(|_| costs.learn("pcss", 10.0, 10.0));
         let before = costs;
-        costs.learn(Technique::Pcss, 10.0, 10_000.0);
+        costs.learn("pcss", 10.0, 10_000.0);
         let table = Measured { error: 0.0, maps_ms: 0.0, pixels_ms: 1.0 };
-        let ms = |c: &Costs| c.ms(Technique::Pcss, &table, PIXELS, 0.0);
+        let ms = |c: &Costs| c.ms("pcss", &table, PIXELS, 0.0);
         assert!(ms(&costs) < 2.0 * ms(&before));
     }
 }

@@ -100,8 +100,7 @@ fn row(cells: &[&str]) -> Option<Row> {
         *part = number(3 + i)?;
     }
     let (technique, words) = (*cells.get(10)?, *cells.get(11)?);
-    let candidate =
-        CANDIDATES.iter().position(|c| c.technique.name() == technique && c.words == words)?;
+    let candidate = CANDIDATES.iter().position(|c| c.technique == technique && c.words == words)?;
     let measured = Measured {
         error: (number(12)? - number(13)?).max(0.0),
         maps_ms: number(14)?,

@@ -141,11 +141,11 @@ fn every_effect_has_a_rule_and_a_reason_for_both_outcomes() {
         let row = format!("| {name} | {needed} | {bound} | {passes} |");
         assert!(page.contains(&row), "docs/planner.md lacks this row:\n{row}");
     }
-    let settings = crate::Settings::default();
+    let technique = Technique::default();
     for situation in [None, see(square(0.4), &over(CUBE, 0.5)), see(square(1e-4), &over(CARD, 0.1))]
     {
         for max_error in [None, Some(0.01)] {
-            let verdicts = Verdicts::judge(situation, &settings, max_error, false);
+            let verdicts = Verdicts::judge(situation, technique.room(), max_error, false);
             for v in verdicts.all() {
                 let why = verdicts.why(v.effect);
                 assert!(!why.to_string().is_empty() && why.has_room(), "{why}");
@@ -157,14 +157,15 @@ fn every_effect_has_a_rule_and_a_reason_for_both_outcomes() {
             assert_eq!(verdicts.to_string().lines().count(), COUNT);
         }
     }
-    let hard = Verdicts::judge(see(square(1e-4), &over(CARD, 0.1)), &settings, Some(0.01), false);
+    let hard =
+        Verdicts::judge(see(square(1e-4), &over(CARD, 0.1)), technique.room(), Some(0.01), false);
     assert!(!hard.needs(Effect::Penumbra) && hard.needs(Effect::Shadow));
 }
 
 /// What is left out is never less for a smaller error asked for.
 #[test]
 fn a_stricter_bound_leaves_out_no_more() {
-    let settings = crate::Settings { technique: Technique::RayMarch, ..Default::default() };
+    let technique: Technique = "ray-march".parse().unwrap();
     for (light, meshes) in [
         (0.4, over(CUBE, 2.0)),
         (0.01, over(CARD, 0.1)),
@@ -173,7 +174,7 @@ fn a_stricter_bound_leaves_out_no_more() {
         let situation = see(square(light), &meshes);
         let mut last = COUNT + 1;
         for max_error in [Some(1.0), Some(0.1), Some(0.02), Some(0.001), Some(0.0), None] {
-            let verdicts = Verdicts::judge(situation, &settings, max_error, false);
+            let verdicts = Verdicts::judge(situation, technique.room(), max_error, false);
             let left_out = verdicts.all().iter().filter(|v| v.outcome == Outcome::LeftOut).count();
             assert!(left_out <= last, "{max_error:?}");
             last = left_out;
@@ -212,16 +213,16 @@ fn a_budget_without_sense_or_hope_gets_a_sentence_and_the_nearest() {
     for e in [0.0, -1.0] {
         let c = of(Some(e), None);
         assert!(c.problem.as_ref().unwrap().contains("above 0"), "{c}");
-        assert_eq!(c.settings, best.settings, "{c}");
+        assert_eq!(c.technique, best.technique, "{c}");
     }
     let c = of(Some(f64::NAN), None);
     assert!(c.problem.as_ref().unwrap().contains("not a number"), "{c}");
-    assert_eq!(c.settings, of(None, None).settings);
+    assert_eq!(c.technique, of(None, None).technique);
     let fastest = of(None, Some(1e-9));
     assert!(fastest.problem.as_ref().unwrap().contains("nothing takes less"), "{fastest}");
     for ms in [0.0, -3.0] {
         let c = of(None, Some(ms));
-        assert!(c.problem.is_some() && c.settings == fastest.settings, "{c}");
+        assert!(c.problem.is_some() && c.technique == fastest.technique, "{c}");
     }
     let both = of(Some(0.01), Some(fastest.ms.unwrap() * 1.01));
     assert!(both.problem.as_ref().unwrap().contains("what the time buys"), "{both}");
@@ -254,11 +255,11 @@ fn what_has_been_better_for_long_is_taken_and_told() {
     // Something else under a smaller light, whatever the table's times are.
     let mut others =
         [0.2, 0.1, 0.03, 0.01, 0.003].map(|side| alone(side, &over(CUBE, 0.6))).into_iter();
-    let (mut auto, other) = others.find(|(_, c)| c.settings != now.settings).unwrap();
+    let (mut auto, other) = others.find(|(_, c)| c.technique != now.technique).unwrap();
     assert!(!other.changed, "the first is no change");
     let after = (0..200).find(|_| choose(&mut auto, square(1.0), &over(CARD, 2.0)).changed);
     assert!(after.is_some());
-    assert_eq!(choose(&mut auto, square(1.0), &over(CARD, 2.0)).settings, now.settings);
+    assert_eq!(choose(&mut auto, square(1.0), &over(CARD, 2.0)).technique, now.technique);
 }
 
 #[test]
@@ -301,13 +302,13 @@ fn only_what_takes_the_hosts_meshes_maps_and_textures_is_chosen() {
     meshes[1].geometry = Geometry::HostDrawn(7);
     for e in [0.05, 0.02, 0.005] {
         let c = choose(&mut auto(Some(e), None), square(0.4), &meshes);
-        assert_ne!(c.settings.technique, Technique::OcclusionTextures, "{c}");
+        assert_ne!(c.technique.name(), "occlusion-textures", "{c}");
     }
     let texture = crate::frame::LightTexture { format: vk::Format::R8G8B8A8_UNORM, color: false };
     let d = Description { light_texture: Some(texture), ..description() };
     let meshes = over(CUBE, 2.0);
     let c = auto(Some(0.02), None).choose(&d, &frame(square(0.4), &meshes)).unwrap();
-    assert_eq!(c.settings.technique, Technique::RayMarch);
+    assert_eq!(c.technique.name(), "ray-march");
 }
 
 #[test]
@@ -315,17 +316,17 @@ fn a_line_is_for_linear_light() {
     let line = RectangleLight::line(DVec3::Y * 4.0, DVec3::X * 0.5, DVec3::NEG_Y).unwrap();
     let meshes = over(CUBE, 2.0);
     let c = choose(&mut auto(Some(0.02), None), line, &meshes);
-    assert_eq!(c.settings.technique, Technique::LinearLight);
+    assert_eq!(c.technique.name(), "linear-light");
     assert!(c.problem.is_none() && c.error.unwrap() <= 0.0201, "{c}");
-    c.settings.check().unwrap();
+    c.technique.check().unwrap();
     let corners = [[-0.2, -0.2], [0.2, -0.2], [0.0, 0.2]];
     let polygon = Frame { outline: Some(&corners), ..frame(square(0.4), &meshes) };
     let c = auto(Some(0.05), None).choose(&description(), &polygon).unwrap();
-    assert_eq!((c.settings.technique, c.problem), (Technique::LinearLight, None));
-    c.settings.check().unwrap();
+    assert_eq!((c.technique.name(), c.problem), ("linear-light", None));
+    c.technique.check().unwrap();
     // With nothing to shadow it must still be something that takes a line.
     let c = choose(&mut auto(Some(0.02), None), line, &[ground()]);
-    assert_eq!((c.settings.technique, c.error), (Technique::LinearLight, None));
+    assert_eq!((c.technique.name(), c.error), ("linear-light", None));
     let c = choose(&mut auto(Some(1e-4), None), line, &meshes);
     assert!(c.problem.unwrap().contains("no error below"));
 }
@@ -366,9 +367,9 @@ fn promises_are_kept_in_the_tables_own_views_and_mostly_in_others() {
 fn what_a_texture_cuts_is_said_to_be_drawn_whole() {
     let mut meshes = over(CARD, 2.0);
     meshes[1].cut_out = true;
-    let settings = crate::Settings::default();
+    let technique = Technique::default();
     let judge = |meshes: &[MeshInstance]| {
-        Verdicts::judge(see(square(0.4), meshes), &settings, Some(0.01), false)
+        Verdicts::judge(see(square(0.4), meshes), technique.room(), Some(0.01), false)
     };
     let told = judge(&meshes);
     assert_eq!(told.of(Effect::CutOuts).outcome, Outcome::NotSimulated);

@@ -2,9 +2,7 @@
 
 use super::{COUNT, Effect, RULES, Situation};
 use crate::graph::Why;
-use crate::settings::{Settings, Technique};
-use crate::techniques::soft_shadow_map::Sides;
-use crate::techniques::{occlusion_textures, ray_march};
+use crate::techniques::room::{Noise, Room, Shows};
 use std::fmt;
 
 /// What comes of an effect in one frame.
@@ -34,7 +32,8 @@ pub struct Verdict {
 pub struct Verdicts {
     all: [Verdict; COUNT],
     situation: Option<Situation>,
-    settings: Settings,
+    technique: &'static str,
+    shows: Shows,
 }
 
 /// The widest penumbra that a hard shadow may stand for, pixels: narrower than the pixels that sample it.
@@ -43,9 +42,6 @@ pub const HARD_PIXELS: f64 = 1.0;
 /// Why nothing need be cut.
 const UNCUT: &str = "no occluder is cut out by a texture, or drawn by the host";
 
-/// The Gaussian below which the noise filter changes nothing, pixels (`ray_march/filter.glsl`).
-const LEAST_FILTER: f64 = 0.4;
-
 impl Verdicts {
     /// Decides by a situation, none where nothing can be shadowed.
     ///
@@ -53,17 +49,18 @@ impl Verdicts {
     /// that may show is needed; `texture` says whether the light has one.
     pub fn judge(
         situation: Option<Situation>,
-        settings: &Settings,
+        room: &dyn Room,
         max_error: Option<f64>,
         texture: bool,
     ) -> Self {
+        let shows = room.shows();
         let exceeds = |bound: f64| max_error.is_none_or(|most| bound > most);
         let mut all = RULES.map(|rule| {
             let effect = rule.effect;
             Verdict { effect, outcome: Outcome::LeftOut, bound: 0.0 }
         });
         let mut set = |effect: Effect, needed: bool, bound: f64| {
-            let can = simulates(settings, effect);
+            let can = simulates(&shows, effect);
             all[effect as usize].bound = bound;
             all[effect as usize].outcome = match (needed, can) {
                 (false, _) => Outcome::LeftOut,
@@ -83,17 +80,16 @@ impl Verdicts {
             let fused = soft && exceeds(layers);
             set(Effect::Fusion, fused, layers);
             set(Effect::BackSide, fused, layers);
-            let slices = settings.technique == Technique::OcclusionTextures;
+            let slices = shows.slices.is_some();
             set(Effect::ThinOccluders, soft && slices, if slices { 1.0 } else { 0.0 });
             set(Effect::SelfShadowing, s.both > 0, if s.both > 0 { 1.0 } else { 0.0 });
-            let eye = settings.technique == Technique::RayMarch
-                && settings.ray_march.layers == ray_march::Layers::Eye;
+            let eye = shows.eye_layer;
             set(Effect::EyeLayer, fused && eye, if eye { layers } else { 0.0 });
             let cut = s.host_drawn + s.cut_out > 0;
             set(Effect::CutOuts, cut, if cut { 1.0 } else { 0.0 });
             set(Effect::Emission, texture, if texture { 1.0 } else { 0.0 });
-            if settings.technique == Technique::RayMarch && settings.ray_march.filter {
-                let narrow = s.penumbra_pixels <= filtered_from(&settings.ray_march);
+            if let Noise::FilteredFrom(width) = shows.noise {
+                let narrow = s.penumbra_pixels <= width;
                 set(
                     Effect::Noise,
                     soft && !(narrow && max_error.is_some()),
@@ -105,7 +101,7 @@ impl Verdicts {
             // The node has no textures: these are the host's to draw.
             all[Effect::CutOuts as usize].outcome = Outcome::NotSimulated;
         }
-        Self { all, situation, settings: *settings }
+        Self { all, situation, technique: room.name(), shows }
     }
 
     /// Every verdict, in the order of [`Effect`].
@@ -146,7 +142,7 @@ impl Verdicts {
                     .and(" pixels"),
             };
         }
-        let technique = self.settings.technique.name();
+        let technique = self.technique;
         match effect {
             Effect::Shadow => Why::default()
                 .and(s.occluders)
@@ -195,14 +191,14 @@ impl Verdicts {
             Effect::CutOuts => UNCUT.into(),
             Effect::Emission if needs => "the host lends a texture of the light".into(),
             Effect::Emission => "the light is the same all over".into(),
-            Effect::Noise if self.settings.technique != Technique::RayMarch => {
-                Why::from(technique).and(" has no noise")
-            }
-            Effect::Noise if !self.settings.ray_march.filter => "filter=off".into(),
-            Effect::Noise => Why::from("penumbrae span up to ")
-                .number(s.penumbra_pixels, 2)
-                .and(" pixels, and the filter acts on those of more than ")
-                .number(filtered_from(&self.settings.ray_march), 2),
+            Effect::Noise => match self.shows.noise {
+                Noise::None => Why::from(technique).and(" has no noise"),
+                Noise::Unfiltered => "filter=off".into(),
+                Noise::FilteredFrom(width) => Why::from("penumbrae span up to ")
+                    .number(s.penumbra_pixels, 2)
+                    .and(" pixels, and the filter acts on those of more than ")
+                    .number(width, 2),
+            },
         }
     }
 }
@@ -228,38 +224,14 @@ impl fmt::Display for Verdicts {
     }
 }
 
-/// The width of penumbra from which the noise filter does anything, pixels: its Gaussian's standard deviation a is
-/// given by a³ = N W² / (4 √π), `ray_march/filter.glsl`.
-fn filtered_from(settings: &ray_march::Settings) -> f64 {
-    let random = settings.sampling == ray_march::Sampling::Random;
-    let noise = 0.33 * f64::from(settings.rays).powf(if random { -0.5 } else { -0.75 });
-    (LEAST_FILTER.powi(3) * 7.09 / noise).sqrt()
-}
-
 /// Whether a technique has means for an effect.
-fn simulates(settings: &Settings, effect: Effect) -> bool {
-    use Technique as T;
-    let technique = settings.technique;
-    let soft = technique != T::Hard;
+fn simulates(shows: &Shows, effect: Effect) -> bool {
     match effect {
-        Effect::Penumbra | Effect::InnerPenumbra | Effect::Area => soft,
-        Effect::BackSide => match technique {
-            T::SoftShadowMap => settings.soft_shadow_map.sides != Sides::One,
-            T::RayMarch | T::OcclusionTextures | T::ManyLights | T::LinearLight => true,
-            T::Hard | T::Pcss | T::BackProjection => false,
-        },
-        Effect::Fusion => match technique {
-            T::RayMarch => settings.ray_march.layers == ray_march::Layers::Four,
-            T::SoftShadowMap => settings.soft_shadow_map.sides != Sides::One,
-            T::OcclusionTextures | T::ManyLights | T::LinearLight => true,
-            T::Hard | T::Pcss | T::BackProjection => false,
-        },
-        Effect::ThinOccluders => fills(&settings.occlusion_textures),
-        Effect::SelfShadowing => {
-            technique != T::SoftShadowMap
-                || settings.soft_shadow_map.receivers
-                    == crate::techniques::soft_shadow_map::Receivers::Pixels
-        }
+        Effect::Penumbra | Effect::InnerPenumbra | Effect::Area => shows.penumbra,
+        Effect::BackSide => shows.back_side,
+        Effect::Fusion => shows.fusion,
+        Effect::ThinOccluders => shows.slices == Some(true),
+        Effect::SelfShadowing => shows.self_shadowing,
         Effect::Shadow
         | Effect::OutOfReach
         | Effect::EyeLayer
@@ -267,9 +239,4 @@ fn simulates(settings: &Settings, effect: Effect) -> bool {
         | Effect::Emission
         | Effect::Noise => true,
     }
-}
-
-/// Whether what ends within a slice is seen by the next.
-fn fills(settings: &occlusion_textures::Settings) -> bool {
-    settings.fill || settings.is_correlated()
 }

@@ -4,8 +4,8 @@ use super::boxes::Boxes;
 use super::{Description, Frame};
 use crate::Error;
 use crate::light::outline;
-use crate::settings::{Settings, Technique};
 use crate::stages::depth_layers::LightBox;
+use crate::techniques::room::{HostDraws, Room, Takes};
 
 /// Lengths in metres whose squares, and those over each other, single precision holds with room to spare.
 const LENGTHS: std::ops::RangeInclusive<f64> = 1e-15..=1e15;
@@ -14,40 +14,19 @@ pub(super) fn bad<T>(what: impl Into<String>) -> Result<T, Error> {
     Err(Error::Frame(what.into()))
 }
 
-/// Whether a technique divides by the light's area or works in both of its half-extents, and so has no
-/// meaning for a line.
-fn needs_area(technique: Technique) -> bool {
-    matches!(
-        technique,
-        Technique::Pcss
-            | Technique::BackProjection
-            | Technique::SoftShadowMap
-            | Technique::RayMarch
-            | Technique::OcclusionTextures
-    )
-}
-
-/// Whether a technique looks at the light's outline, and not at its rectangle alone.
-fn takes_outlines(technique: Technique) -> bool {
-    matches!(technique, Technique::LinearLight | Technique::ManyLights)
-}
-
 impl Frame<'_> {
-    /// Whether everything but its meshes suits a node of this description, with these settings.
-    pub(super) fn check(
-        &self,
-        description: &Description,
-        settings: &Settings,
-    ) -> Result<(), Error> {
-        self.check_numbers(description, settings)?;
-        self.check_images(description, settings)
+    /// Whether everything but its meshes suits a node of this description, with its first technique.
+    pub(super) fn check(&self, description: &Description, room: &dyn Room) -> Result<(), Error> {
+        self.check_numbers(description, room.name(), &room.takes())?;
+        self.check_images(description, &room.maps())
     }
 
     /// The same of all but its images.
     pub(super) fn check_numbers(
         &self,
         description: &Description,
-        settings: &Settings,
+        technique: &str,
+        takes: &Takes,
     ) -> Result<(), Error> {
         if self.slot >= description.frames_in_flight {
             return bad(format!(
@@ -61,12 +40,10 @@ impl Frame<'_> {
                 self.light_index, description.lights
             ));
         }
-        let technique = settings.technique;
-        if self.light.is_line() && needs_area(technique) {
+        if self.light.is_line() && !takes.line {
             return bad(format!(
-                "the light is a line, and {} needs an area; choose linear-light, many-lights or \
-                 hard, or give the light a height",
-                technique.name()
+                "the light is a line, and {technique} needs an area; choose linear-light, many-lights or \
+                 hard, or give the light a height"
             ));
         }
         let [width, height] = self.light.half_extents().map(|half| 2.0 * half);
@@ -75,7 +52,7 @@ impl Frame<'_> {
                 "the light is {width:e} by {height:e} m; a side must be from 1e-15 to 1e15 m, so scale the scene"
             ));
         }
-        self.check_outline(technique)?;
+        self.check_outline(technique, takes)?;
         // Of numbers so large or small that it is none, a determinant is not known either.
         if !self.world_from_ndc.is_finite() || !self.world_from_ndc.determinant().is_normal() {
             return bad("world_from_ndc must be finite and invertible");
@@ -102,29 +79,24 @@ impl Frame<'_> {
         Ok(())
     }
 
-    /// Whether the meshes of the frame, whose boxes are placed, suit a technique.
-    pub(super) fn check_meshes(&self, boxes: &Boxes, settings: &Settings) -> Result<(), Error> {
+    /// Whether the meshes of the frame, whose boxes are placed, suit a technique that takes this.
+    pub(super) fn check_meshes(&self, boxes: &Boxes, takes: &Takes) -> Result<(), Error> {
         if let Some(index) = boxes.not_finite {
             return bad(format!("mesh {index}: its transform and bounds must be finite numbers"));
         }
         if let Some((index, problem)) = boxes.unsound {
             return bad(format!("mesh {index}: {problem}"));
         }
-        match settings.technique {
-            // A sample's place on the line is known on the device alone.
-            Technique::LinearLight => boxes.host_drawn.map_or(Ok(()), |index| {
-                bad(format!(
-                    "mesh {index} is drawn by the host, which does not know where linear-light puts its \
-                     samples; give its buffers, or choose another technique"
-                ))
-            }),
-            Technique::OcclusionTextures => boxes.host_drawn_blocker.map_or(Ok(()), |index| {
-                bad(format!(
-                    "mesh {index} is drawn by the host, which cannot sort it into the slices of \
-                     occlusion-textures; give its buffers, or choose another technique"
-                ))
-            }),
-            _ => Ok(()),
+        let refused = match takes.host_draws {
+            HostDraws::Any => None,
+            HostDraws::Receivers(why) => boxes.host_drawn_blocker.zip(Some(why)),
+            HostDraws::None(why) => boxes.host_drawn.zip(Some(why)),
+        };
+        match refused {
+            Some((index, why)) => bad(format!(
+                "mesh {index} is drawn by the host, which {why}; give its buffers, or choose another technique"
+            )),
+            None => Ok(()),
         }
     }
 
@@ -139,13 +111,12 @@ impl Frame<'_> {
         ))
     }
 
-    fn check_outline(&self, technique: Technique) -> Result<(), Error> {
+    fn check_outline(&self, technique: &str, takes: &Takes) -> Result<(), Error> {
         let Some(corners) = self.outline else { return Ok(()) };
-        if !takes_outlines(technique) {
+        if !takes.outline {
             return bad(format!(
-                "the light is a polygon, and {} knows rectangles alone; choose linear-light or \
-                 many-lights, or leave outline out",
-                technique.name()
+                "the light is a polygon, and {technique} knows rectangles alone; choose linear-light or \
+                 many-lights, or leave outline out"
             ));
         }
         if self.light.is_line() {

@@ -2,17 +2,16 @@
 
 use super::boxes::{Boxes, Surroundings};
 use super::hull::Hull;
-use super::rows::{PLACEHOLDER, wanted};
+use super::passes::PLACEHOLDER;
 use super::{Description, Frame};
 use crate::effects::{Seen, Situation};
 use crate::graph::{Need, Why};
 use crate::lent::MeshBounds;
 use crate::lent::MeshInstance;
-use crate::settings::{Settings, Technique};
-use crate::stages::depth_layers::{self, HostMapView, LightBox, MapView};
-use crate::techniques::linear_light;
-use crate::techniques::many_lights::{self, LightPoint};
-use crate::techniques::ray_march::{self, Projection};
+use crate::stages::depth_layers::{self, HostMapView, LightBox, MapView, Projection};
+use crate::stages::views::Views;
+use crate::technique::Technique;
+use crate::techniques::room::{Maps, Room, Seen as ViewsSeen, Takes};
 use crate::{Error, RectangleLight};
 use glam::DMat4;
 
@@ -72,8 +71,27 @@ struct Inputs {
     light: RectangleLight,
     reach: Option<f64>,
     window: Option<[[f64; 2]; 2]>,
-    settings: Settings,
+    request: FitRequest,
     meshes: usize,
+}
+
+/// What a technique asks of a fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct FitRequest {
+    /// The technique that views are made for; none where there are to be none.
+    pub technique: Option<Technique>,
+    /// What it takes.
+    pub takes: Takes,
+    /// The maps that it has drawn.
+    pub maps: Maps,
+}
+
+impl FitRequest {
+    /// What a technique asks of a fit.
+    pub fn of(technique: &Technique) -> Self {
+        let room = technique.room();
+        Self { technique: Some(*technique), takes: room.takes(), maps: room.maps() }
+    }
 }
 
 /// Which meshes matter to a light, and how its maps look at them.
@@ -98,7 +116,7 @@ pub(super) struct Fit {
     /// Another one each time that meshes are looked at.
     number: u64,
     /// Views for techniques that look from all over the light, once they are asked for.
-    views: Option<(Vec<LightPoint>, Vec<linear_light::Line>)>,
+    views: Option<Views>,
 }
 
 impl Default for Fit {
@@ -128,11 +146,11 @@ impl Fit {
     pub fn update(
         &mut self,
         description: &Description,
-        settings: &Settings,
+        request: &FitRequest,
         frame: &Frame,
         surroundings: &mut Surroundings,
     ) -> Result<(), Error> {
-        let of = Inputs::of(settings, frame);
+        let of = Inputs::of(request, frame);
         if of.is_some() && self.of == of {
             return Ok(());
         }
@@ -140,8 +158,8 @@ impl Fit {
         self.views = None;
         self.number += 1;
         let (boxes, near) = surroundings.of(frame.meshes);
-        frame.check_meshes(boxes, settings)?;
-        self.make(description, settings, frame, boxes, near)?;
+        frame.check_meshes(boxes, &request.takes)?;
+        self.make(description, &request.maps, frame, boxes, near)?;
         self.of = of;
         Ok(())
     }
@@ -149,7 +167,7 @@ impl Fit {
     fn make(
         &mut self,
         description: &Description,
-        settings: &Settings,
+        maps: &Maps,
         frame: &Frame,
         boxes: &Boxes,
         near: &mut Vec<u32>,
@@ -157,8 +175,8 @@ impl Fit {
         let (light, half) = (&frame.light, frame.light.half_extents());
         self.light_from_world = light.light_from_world();
         self.host_maps = match (&frame.occluder_maps, description.occluder_maps) {
-            (Some(maps), Some(format)) => {
-                Some(HostMapView::new(light, &maps.clip_from_world, settings.map, format)?)
+            (Some(lent), Some(format)) => {
+                Some(HostMapView::new(light, &lent.clip_from_world, maps.side, format)?)
             }
             _ => None,
         };
@@ -167,24 +185,20 @@ impl Fit {
         let Placed { places, boxes: placed } = &self.occluders;
         places.iter().zip(placed).try_for_each(|(&place, of)| Frame::check_reach(place, of))?;
         self.centre = match &self.host_maps {
-            Some(maps) => Some(maps.view),
-            None => depth_layers::fit_boxes(&self.occluders.boxes, frame.window, settings.map),
+            Some(lent) => Some(lent.view),
+            None => depth_layers::fit_boxes(&self.occluders.boxes, frame.window, maps.side),
         };
         let receivers = &self.receivers.boxes;
         self.shadowed = self.centre.as_ref().and_then(|view| {
-            let side = wanted(settings).receiver_map.unwrap_or(settings.map);
+            let side = maps.layers.receiver_map.unwrap_or(maps.side);
             depth_layers::fit_receiver_boxes(half, receivers, view, side)
         });
         self.need = self.need_of(boxes.blockers, gone);
-        // Ray marching and slices look from behind the light.
-        let projection = match settings.technique {
-            Technique::RayMarch if self.host_maps.is_none() => settings.ray_march.projection,
-            Technique::OcclusionTextures => Projection::Behind,
-            _ => Projection::Centre,
-        };
-        self.behind = match projection {
+        // The host's maps are seen from the light's centre.
+        let eye = if self.host_maps.is_some() { Projection::Centre } else { maps.eye };
+        self.behind = match eye {
             Projection::Centre => None,
-            _ => ray_march::view_of(half, &self.occluders.boxes, projection, settings.map),
+            _ => depth_layers::view_from(half, &self.occluders.boxes, eye, maps.side),
         };
         self.situation = match (self.need, &self.centre, &self.shadowed) {
             (Need::Yes(_), Some(centre), Some(shadowed)) => {
@@ -270,55 +284,33 @@ impl Fit {
         self.number
     }
 
-    /// The views of techniques that look from all over the light; empty for others.
+    /// The technique's own views.
     ///
     /// # Errors
-    /// [`Error::Setting`] where a light takes more lines than there may be.
-    pub fn views(
-        &mut self,
-        settings: &Settings,
-        frame: &Frame,
-    ) -> Result<(&[LightPoint], &[linear_light::Line]), Error> {
-        if self.views.is_none() {
-            self.views = Some(self.make_views(settings, frame)?);
-        }
-        let (points, lines) = self.views.as_ref().map_or((&[][..], &[][..]), |(p, l)| (p, l));
-        Ok((points, lines))
+    /// [`Error::Setting`] where a light takes more of them than there may be.
+    pub fn views(&mut self, room: &dyn Room, frame: &Frame) -> Result<&Views, Error> {
+        let views = match self.views.take() {
+            Some(views) => views,
+            None => self.make_views(room, frame)?,
+        };
+        Ok(self.views.insert(views))
     }
 
-    fn make_views(
-        &self,
-        settings: &Settings,
-        frame: &Frame,
-    ) -> Result<(Vec<LightPoint>, Vec<linear_light::Line>), Error> {
-        let light = &frame.light;
-        match (settings.technique, &self.shadowed) {
-            (Technique::ManyLights, _) => {
-                let centre = self.centre.as_ref().unwrap_or(&PLACEHOLDER);
-                let boxes = self.occluders.bounds(frame.meshes);
-                let baseline = &settings.baseline;
-                let points = many_lights::points(light, frame.outline, &boxes, baseline, centre);
-                Ok((points, Vec::new()))
-            }
-            (Technique::LinearLight, Some(receivers)) => {
-                let seen = linear_light::Seen {
-                    light,
-                    outline: frame.outline,
-                    occluders: &self.occluders.bounds(frame.meshes),
-                    receivers: &self.receivers.bounds(frame.meshes),
-                    side: settings.map,
-                    w_far: 1.0 / receivers.far,
-                };
-                Ok((Vec::new(), linear_light::lines(&settings.linear_light, &seen)?))
-            }
-            _ => Ok((Vec::new(), Vec::new())),
-        }
+    fn make_views(&self, room: &dyn Room, frame: &Frame) -> Result<Views, Error> {
+        room.views(&ViewsSeen {
+            light: &frame.light,
+            outline: frame.outline,
+            occluders: &self.occluders.bounds(frame.meshes),
+            receivers: &self.receivers.bounds(frame.meshes),
+            centre: self.centre.as_ref().unwrap_or(&PLACEHOLDER),
+            w_far: self.shadowed.as_ref().map_or(0.0, |receivers| 1.0 / receivers.far),
+        })
     }
 }
 
 impl Inputs {
     /// None where the host gives no number; a camera of the host's maps is looked at each time.
-    fn of(settings: &Settings, frame: &Frame) -> Option<Self> {
+    fn of(request: &FitRequest, frame: &Frame) -> Option<Self> {
         if frame.occluder_maps.is_some() {
             return None;
         }
@@ -327,7 +319,7 @@ impl Inputs {
             light: frame.light,
             reach: frame.reach,
             window: frame.window,
-            settings: *settings,
+            request: *request,
             meshes: frame.meshes.len(),
         })
     }

@@ -1,13 +1,12 @@
 //! What the images that a host lends for a frame must be, each refusal a sentence in its words.
 
 use super::check::bad;
-use super::rows::wanted;
 use super::{Description, Frame};
 use crate::Error;
 use crate::graph::{Scope, is_depth_format};
 use crate::lent::{HostImage, Visibility};
-use crate::settings::Settings;
 use crate::stages::visibility;
+use crate::techniques::room::Maps;
 use ash::vk::{self, ImageLayout as Layout, ImageUsageFlags as Usage};
 
 /// What one of the host's images must be.
@@ -21,11 +20,11 @@ struct Wanted {
 }
 
 impl Frame<'_> {
-    /// Whether its images are what the description and the settings need.
+    /// Whether the frame's images are what the description and a technique with these maps need.
     pub(super) fn check_images(
         &self,
         description: &Description,
-        settings: &Settings,
+        drawn: &Maps,
     ) -> Result<(), Error> {
         let Description { extent, depth_format, mask_format, .. } = *description;
         let read = |name, format, extent| Wanted {
@@ -91,12 +90,11 @@ impl Frame<'_> {
         if self.window.is_some() {
             return bad("the occluder maps have a window of their own; give no other");
         }
-        let wanted = wanted(settings);
-        let sides = [wanted.map; 2];
+        let sides = [drawn.side; 2];
         check_image(&maps.front, &read("occluder_maps.front", format, sides))?;
         match &maps.back {
             Some(back) => check_image(back, &read("occluder_maps.back", format, sides)),
-            None if !wanted.back => Ok(()),
+            None if !drawn.layers.back => Ok(()),
             None => bad("occluder_maps.back is missing; lend it, or set sides=one"),
         }
     }

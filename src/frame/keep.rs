@@ -202,7 +202,6 @@ impl Ties {
 mod tests {
     use super::super::{Description, full_graph};
     use super::*;
-    use crate::{Settings, Technique};
 
     /// What stands for a technique where it is not needed.
     const STAND_INS: [&str; 2] = ["visibility.lit", "baseline.hard"];
@@ -210,13 +209,9 @@ mod tests {
     /// The kinds of row that run again while light and meshes stay: those of pixels alone.
     #[test]
     fn only_pixels_are_looked_at_again() {
-        let again = |words: &str, technique| {
-            let mut settings = Settings { technique, ..Settings::default() };
-            for word in words.split_whitespace() {
-                let (key, value) = word.split_once('=').unwrap();
-                settings.set(key, value).unwrap();
-            }
-            let graph = full_graph(&Description { settings, ..Description::new([64, 64]) });
+        let again = |words: &str| {
+            let technique = words.parse().unwrap();
+            let graph = full_graph(&Description { technique, ..Description::new([64, 64]) });
             let depth = (0..graph.resources().len())
                 .map(|i| graph.id(i))
                 .find(|id| graph.resource(*id).name == "gbuffer.depth")
@@ -233,19 +228,18 @@ mod tests {
             names.dedup();
             names
         };
-        use Technique as T;
-        for (words, technique) in [
-            ("", T::SoftShadowMap),
-            ("receivers=map", T::SoftShadowMap),
-            ("receivers=map accumulate=blend", T::SoftShadowMap),
-            ("", T::LinearLight),
-            ("", T::Hard),
-            ("", T::Pcss),
-            ("", T::BackProjection),
-            ("", T::OcclusionTextures),
+        for words in [
+            "soft-shadow-map",
+            "soft-shadow-map receivers=map",
+            "soft-shadow-map receivers=map accumulate=blend",
+            "linear-light",
+            "hard",
+            "pcss",
+            "back-projection",
+            "occlusion-textures",
         ] {
-            let names = again(words, technique);
-            if technique == T::Hard {
+            let names = again(words);
+            if words == "hard" {
                 assert!(names.is_empty(), "{names:?}");
                 continue;
             }
@@ -254,9 +248,9 @@ mod tests {
             assert_eq!(names.len() - tiles, 1, "{words}: {names:?}");
         }
         // Each point's map is drawn where the one before was.
-        let many = again("samples=2", T::ManyLights);
+        let many = again("many-lights samples=2");
         assert!(many.contains(&"baseline.point_depth"), "{many:?}");
-        let rays = again("", T::RayMarch);
+        let rays = again("ray-march");
         assert!(!rays.contains(&"ray_march.columns") && rays.len() == 5, "{rays:?}");
     }
 }

@@ -2,23 +2,24 @@
 
 use super::boxes::Surroundings;
 use super::check::bad;
-use super::fit::Fit;
-use super::rows::{Needs, PLACEHOLDER, Views};
+use super::fit::{Fit, FitRequest};
+use super::passes::{Looks, Needs, PLACEHOLDER};
 use super::{Description, Frame};
 use crate::Error;
 use crate::effects::{Camera, Situation, Verdicts};
-use crate::settings::{Settings, Technique};
+use crate::stages::views::Views;
+use crate::techniques::room::{Maps, Takes};
 
-/// What is needed of a frame whose meshes are fitted, and the views of the rows that run.
+/// What is needed of a frame whose meshes are fitted, and the views of the passes that run.
 pub(super) fn look<'a>(
     description: &Description,
     frame: &Frame,
     fit: &'a mut Fit,
-) -> Result<(Views<'a>, Verdicts), Error> {
-    let settings = &description.settings;
+) -> Result<(Looks<'a>, Verdicts), Error> {
+    let room = description.technique.room();
     let texture = description.light_texture.is_some();
     let situation = seen(fit, frame, description.extent);
-    let verdicts = Verdicts::judge(situation, settings, description.max_error, texture);
+    let verdicts = Verdicts::judge(situation, room, description.max_error, texture);
     let needs = Needs::of(description, fit.need, &verdicts);
     let is_soft = needs.technique.is_yes();
     let light_from_ndc = fit.light_from_world * frame.world_from_ndc;
@@ -31,14 +32,13 @@ pub(super) fn look<'a>(
         );
     }
     let (behind, centre, host_maps) = (fit.behind, fit.centre, fit.host_maps);
-    let receivers = Some(fit.shadowed.unwrap_or(PLACEHOLDER));
-    let (points, lines) = match is_soft {
-        true => fit.views(settings, frame)?,
-        false => (&[][..], &[][..]),
+    let receivers = fit.shadowed.unwrap_or(PLACEHOLDER);
+    let views = match is_soft {
+        true => fit.views(room, frame)?,
+        false => &Views::Centre,
     };
-    let views = Views {
-        points,
-        lines,
+    let looks = Looks {
+        views,
         occluders: behind.filter(|_| is_soft).or(centre).unwrap_or(PLACEHOLDER),
         host_maps,
         receivers,
@@ -48,7 +48,7 @@ pub(super) fn look<'a>(
         ndc_from_light: from_light.to_cols_array(),
         background: frame.background,
     };
-    Ok((views, verdicts))
+    Ok((looks, verdicts))
 }
 
 /// A fit's situation with what the frame's pixels are to it; none where nothing can be shadowed.
@@ -62,6 +62,12 @@ fn seen(fit: &Fit, frame: &Frame, extent: [u32; 2]) -> Option<Situation> {
     let map = fit.behind.as_ref().unwrap_or(centre);
     Some(fit.situation?.seen_by(&camera, shadowed, map))
 }
+
+/// The side of the map that a situation is told by, texels.
+const SITUATION_MAP: u32 = 256;
+
+/// What a refusal calls the technique where none is chosen yet.
+const ANY: &str = "auto";
 
 /// Looks at a light's frames for what no technique changes, in the same memory from frame to frame.
 #[derive(Clone, Debug, Default)]
@@ -80,16 +86,16 @@ impl Looker {
         frame: &Frame,
         surroundings: &mut Surroundings,
     ) -> Result<Option<Situation>, Error> {
-        // Every technique's own refusals are its own affair: hard takes any light.
-        let settings = Settings { technique: Technique::Hard, ..Settings::default() };
-        let map = description.settings.map;
-        let settings = Settings {
-            map: if frame.occluder_maps.is_some() { map } else { settings.map },
-            ..settings
+        // What a technique takes is checked once it is chosen; the situation is seen from the light's centre.
+        let takes = Takes { line: true, outline: true, ..Takes::RECTANGLES };
+        let side = match frame.occluder_maps {
+            Some(_) => description.technique.map(),
+            None => SITUATION_MAP,
         };
+        let request = FitRequest { technique: None, takes, maps: Maps::front(side) };
         let frame = Frame { outline: None, ..*frame };
-        frame.check_numbers(description, &settings)?;
-        self.fit.update(description, &settings, &frame, surroundings)?;
+        frame.check_numbers(description, ANY, &takes)?;
+        self.fit.update(description, &request, &frame, surroundings)?;
         Ok(seen(&self.fit, &frame, description.extent))
     }
 }

@@ -2,22 +2,18 @@
 
 use super::accesses::{HostAccess, NodeUse};
 use super::boxes::Surroundings;
-use super::fit::Fit;
+use super::fit::{Fit, FitRequest};
 use super::keep::{self, Kept, Revisions, Ties};
 use super::look::look;
+use super::passes::{Ids, Limits, build};
 use super::plan::{FramePlan, Stamp};
-use super::rows::{Ids, Limits, build, wanted};
 use super::{Description, Frame, FramePlans};
+use crate::Error;
 use crate::graph::{self, Border, Compiler, Draw, Graph, MeshList, ResourceId, Work};
 use crate::lent::{BorderBarriers, HostImage, MeshInstance, Visibility};
-use crate::light::outline;
-use crate::settings::Technique;
-use crate::techniques::linear_light;
-use crate::{Error, RectangleLight};
 use ash::vk;
 use glam::DMat4;
 use smallvec::{SmallVec, smallvec};
-use std::borrow::Cow;
 
 /// Memory that planning uses again from frame to frame, for all lights.
 #[derive(Debug, Default)]
@@ -46,8 +42,7 @@ type Clips = SmallVec<[DMat4; 1]>;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Shape {
     needs: u8,
-    points: usize,
-    lines: usize,
+    views: usize,
     kept: [bool; 3],
 }
 
@@ -75,7 +70,7 @@ pub fn plan_all(
     plans.begin();
     let kept = Kept::default();
     frames.iter().try_for_each(|frame| {
-        let description = &*description.choosing(frame.settings_index)?;
+        let description = &*description.choosing(frame.technique_index)?;
         plans.add(|workspace, memory, plan| {
             plan_into(description, limits, frame, &kept, workspace, memory, plan)
         })
@@ -89,7 +84,7 @@ pub(crate) fn plan_with(
     frame: &Frame,
     kept: &Kept,
 ) -> Result<FramePlan, Error> {
-    let description = &*description.choosing(frame.settings_index)?;
+    let description = &*description.choosing(frame.technique_index)?;
     let (mut plan, mut memory) = (FramePlan::default(), Memory::default());
     let workspace = &mut Workspace::default();
     plan_into(description, limits, frame, kept, workspace, &mut memory, &mut plan)?;
@@ -109,33 +104,28 @@ pub(crate) fn plan_into(
 ) -> Result<(), Error> {
     // Where it fails, nothing of the frame before is left to build on.
     plan.stamp = Stamp::default();
-    let settings = &description.settings;
-    frame.check(description, settings)?;
-    let (light, outline) = match settings.technique {
-        Technique::LinearLight => along(frame),
-        _ => (frame.light, frame.outline.map(Cow::Borrowed)),
-    };
+    let room = description.technique.room();
+    frame.check(description, room)?;
+    let (light, outline) = room.turned(&frame.light, frame.outline);
     let frame = &Frame { light, outline: outline.as_deref(), ..*frame };
     let Workspace { graph, compiler, borders, surroundings } = workspace;
     let Memory { fit, ties, rows, drawn } = memory;
-    fit.update(description, settings, frame, surroundings)?;
-    let (views, verdicts) = look(description, frame, fit)?;
+    fit.update(description, &FitRequest::of(&description.technique), frame, surroundings)?;
+    let (looks, verdicts) = look(description, frame, fit)?;
     graph.clear();
-    let ids = build(graph, description, limits, &light, &views);
-    let occluder_clips = views.occluder_clips();
-    let receiver_view = views.receivers;
-    let (points, lines) = (views.points.len(), views.lines.len());
-    let needs = views.needs.bits();
+    let ids = build(graph, description, limits, &light, &looks);
+    let occluder_clips = looks.occluder_clips();
+    let (receiver_view, views, needs) = (looks.receivers, looks.views.count(), looks.needs.bits());
     // Which rows there are is told by description and needs, before it is told what of them is kept.
-    let before = rows.take().filter(|(of, shape)| {
-        of == description && (shape.needs, shape.points, shape.lines) == (needs, points, lines)
-    });
+    let before = rows
+        .take()
+        .filter(|(of, shape)| of == description && (shape.needs, shape.views) == (needs, views));
     if before.is_none() {
         ties.find(graph, ids.pixels());
     }
     let revisions = Revisions { scene: frame.revision, view: frame.view_revision };
     plan.keeping = keep::apply(graph, ties, &frame.visibility, revisions, kept);
-    let shape = Shape { needs, points, lines, kept: plan.keeping.uses() };
+    let shape = Shape { needs, views, kept: plan.keeping.uses() };
     plan.imports.clear();
     plan.imports.extend(imports(&ids, frame));
     fill_borders(borders, &plan.imports, ids.visibility, frame);
@@ -154,12 +144,13 @@ pub(crate) fn plan_into(
     plan.visibility = ids.visibility;
     plan.verdicts = verdicts;
     plan.slot = frame.slot;
-    (plan.light_index, plan.settings_index) = (frame.light_index, frame.settings_index);
+    (plan.light_index, plan.technique_index) = (frame.light_index, frame.technique_index);
 
-    let receiver_clips = match (wanted(settings).receiver_map, &receiver_view) {
-        (Some(_), Some(view)) => smallvec![view.clip_from_light()],
-        _ if settings.technique == Technique::LinearLight => occluder_clips.clone(),
-        _ => SmallVec::new(),
+    let maps = room.maps();
+    let receiver_clips = match maps.layers.receiver_map {
+        Some(_) => smallvec![receiver_view.clip_from_light()],
+        None if maps.receivers_in_views => occluder_clips.clone(),
+        None => SmallVec::new(),
     };
     let of = (fit.number(), occluder_clips, receiver_clips);
     if !same || drawn.as_ref() != Some(&of) {
@@ -207,16 +198,6 @@ fn fill_borders(
     if let Visibility::Own { before, after } = frame.visibility {
         borders.push(Border { resource: visibility, before, after });
     }
-}
-
-/// Light and outline as linear lights take them, longer along x.
-fn along<'a>(frame: &Frame<'a>) -> (RectangleLight, Option<Cow<'a, [[f64; 2]]>>) {
-    let turned = linear_light::turned(&frame.light);
-    let outline = match turned == frame.light {
-        true => frame.outline.map(Cow::Borrowed),
-        false => frame.outline.map(|corners| Cow::Owned(outline::quarter_turned(corners))),
-    };
-    (turned, outline)
 }
 
 /// The host's images by resource.

@@ -11,9 +11,9 @@ mod keep;
 mod left;
 mod look;
 mod make;
+mod passes;
 mod plan;
 mod plans;
-mod rows;
 #[cfg(test)]
 mod tests;
 
@@ -26,39 +26,38 @@ pub(crate) use look::Looker;
 pub(crate) use look::situation;
 pub(crate) use make::{Memory, Workspace, plan_into};
 pub use make::{plan, plan_all};
+pub(crate) use passes::all_passes;
+pub use passes::{Limits, full_graph};
 pub use plan::FramePlan;
 pub(crate) use plan::Stamp;
 pub use plans::FramePlans;
-pub(crate) use rows::nominal;
-pub use rows::{Limits, full_graph};
 
 use crate::graph::{self, Scope};
 use crate::lent::{BorderBarriers, HostImage, MeshInstance, OccluderMaps, Visibility};
-use crate::settings::{Settings, Technique};
-use crate::techniques::ray_march;
+use crate::technique::Technique;
+use crate::techniques::room;
 use crate::{Error, RectangleLight};
 use ash::vk;
 use glam::DMat4;
 use std::borrow::Cow;
 
-/// The most settings that a node may have: [`Description::settings`] and its others.
-pub(crate) const MOST_SETTINGS: usize = 8;
+/// The most techniques that a node may have: [`Description::technique`] and the others.
+pub(crate) const MOST_TECHNIQUES: usize = 8;
 
 /// What stays the same from frame to frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Description {
     /// The G-buffer's width and height in pixels, 1 to 16384.
     pub extent: [u32; 2],
-    /// The technique and its knobs.
-    pub settings: Settings,
+    /// The technique and its settings.
+    pub technique: Technique,
     /// What leaving an effect out may add to the mean error at most, 0 to 1, as a mean of visible fractions over the
     /// pixels that shadow touches: see [`crate::effects::RULES`]. 1/256 by default, a step of an 8-bit image; 0 leaves
     /// out what cannot matter and nothing else; none leaves out nothing, for studying what it costs.
     pub max_error: Option<f64>,
-    /// Further settings that a frame may choose ([`Frame::settings_index`]), up to 7: another technique
-    /// or another resolution for some of the lights. Each has pipelines, maps and buffers of its own,
-    /// which its lights share.
-    pub other_settings: Vec<Settings>,
+    /// Further techniques that a frame may choose ([`Frame::technique_index`]), up to 7: for some of the lights another
+    /// one, or the same with other settings. Each has pipelines, maps and buffers of its own, which its lights share.
+    pub other_techniques: Vec<Technique>,
     /// How many lights there are, 1 to 64: each has its frames ([`Frame::light_index`]), and a layer of
     /// the node's own visibility image, which is an array where there are several.
     pub lights: u32,
@@ -100,33 +99,33 @@ impl Description {
         self.light_texture.is_some_and(|t| t.color)
     }
 
-    /// All settings that a frame may choose, [`Self::settings`] first.
-    pub fn all_settings(&self) -> impl Iterator<Item = &Settings> {
-        std::iter::once(&self.settings).chain(&self.other_settings)
+    /// All techniques that a frame may choose, [`Self::technique`] first.
+    pub fn all_techniques(&self) -> impl Iterator<Item = &Technique> {
+        std::iter::once(&self.technique).chain(&self.other_techniques)
     }
 
-    /// The same with one of its settings alone.
-    pub(crate) fn choosing(&self, settings_index: u32) -> Result<Cow<'_, Self>, Error> {
-        if settings_index == 0 {
+    /// The description with one of its techniques alone.
+    pub(crate) fn choosing(&self, technique_index: u32) -> Result<Cow<'_, Self>, Error> {
+        if technique_index == 0 {
             return Ok(Cow::Borrowed(self));
         }
-        let settings = *self.all_settings().nth(settings_index as usize).ok_or_else(|| {
+        let technique = *self.all_techniques().nth(technique_index as usize).ok_or_else(|| {
             Error::Frame(format!(
-                "settings {settings_index} do not exist; the description has {}, counted from 0",
-                1 + self.other_settings.len()
+                "technique {technique_index} does not exist; the description has {}, counted from 0",
+                1 + self.other_techniques.len()
             ))
         })?;
-        Ok(Cow::Owned(Self { settings, other_settings: Vec::new(), ..self.clone() }))
+        Ok(Cow::Owned(Self { technique, other_techniques: Vec::new(), ..self.clone() }))
     }
 
-    /// The default settings for one light, a D32_SFLOAT G-buffer without a mask, two frames in flight
+    /// The default technique for one light, a D32_SFLOAT G-buffer without a mask, two frames in flight
     /// and tightly packed positions.
     pub fn new(extent: [u32; 2]) -> Self {
         Self {
             extent,
-            settings: Settings::default(),
+            technique: Technique::default(),
             max_error: Some(1.0 / 256.0),
-            other_settings: Vec::new(),
+            other_techniques: Vec::new(),
             lights: 1,
             frames_in_flight: 2,
             depth_format: vk::Format::D32_SFLOAT,
@@ -142,10 +141,10 @@ impl Description {
     /// # Errors
     /// [`Error::Setting`] or [`Error::Frame`] for the first thing out of its range.
     pub fn check(&self) -> Result<(), Error> {
-        if self.other_settings.len() >= MOST_SETTINGS {
+        if self.other_techniques.len() >= MOST_TECHNIQUES {
             return Err(Error::Frame(format!(
-                "{} other settings are more than the 7 that a node may have",
-                self.other_settings.len()
+                "{} other techniques are more than the 7 that a node may have",
+                self.other_techniques.len()
             )));
         }
         if !(1..=64).contains(&self.lights) {
@@ -154,7 +153,7 @@ impl Description {
                 self.lights
             )));
         }
-        self.all_settings().try_for_each(|settings| self.check_settings(settings))?;
+        self.all_techniques().try_for_each(|technique| self.check_technique(technique))?;
         if self.extent.iter().any(|e| !(1..=16384).contains(e)) {
             let [w, h] = self.extent;
             return Err(Error::Frame(format!(
@@ -197,44 +196,21 @@ impl Description {
         }
     }
 
-    /// Whether one of the settings works, alone and with the rest.
-    fn check_settings(&self, settings: &Settings) -> Result<(), Error> {
-        settings.check()?;
-        if self.occluder_maps.is_some() && settings.technique == Technique::ManyLights {
-            return Err(Error::Frame(
-                "many-lights sees the occluders from points all over the light, and occluder maps \
-                 from its centre alone; lend meshes, or choose another technique"
-                    .into(),
-            ));
-        }
-        if self.occluder_maps.is_some() && settings.technique == Technique::LinearLight {
-            return Err(Error::Frame(
-                "linear-light sees the occluders from points all along the light, and occluder maps from \
-                 its centre alone; lend meshes, or choose another technique"
-                    .into(),
-            ));
-        }
-        if self.occluder_maps.is_some() && settings.technique == Technique::OcclusionTextures {
-            return Err(Error::Frame(
-                "occlusion-textures sorts every face of the occluders into slices, and occluder maps hold \
-                 two of them; lend meshes, or choose another technique"
-                    .into(),
-            ));
-        }
-        if settings.technique == Technique::RayMarch
-            && ray_march::list_bytes(self.extent) > graph::STORAGE_BYTES
-        {
-            let [w, h] = self.extent;
+    /// Whether one of the techniques works, alone and with the rest.
+    fn check_technique(&self, technique: &Technique) -> Result<(), Error> {
+        technique.check()?;
+        let (room, name) = (technique.room(), technique.name());
+        let takes = room.takes();
+        if let (Some(_), Err(why)) = (self.occluder_maps, takes.lent_maps) {
             return Err(Error::Frame(format!(
-                "ray-march keeps a list of pixels that for {w}×{h} takes more than the 128 MiB that \
-                 every device binds; up to 11 million pixels work"
+                "{name} {why}; lend meshes, or choose another technique"
             )));
         }
-        if self.light_texture.is_some() && settings.technique != Technique::RayMarch {
+        room::check_extent(room, self.extent)?;
+        if self.light_texture.is_some() && !takes.texture {
             return Err(Error::Frame(format!(
-                "{} does not weigh what the light emits where; choose ray-march, or leave \
-                 light_texture out",
-                settings.technique.name()
+                "{name} does not weigh what the light emits where; choose ray-march, or leave \
+                 light_texture out"
             )));
         }
         Ok(())
@@ -249,9 +225,9 @@ pub struct Frame<'a> {
     /// Which of the description's lights it is, 0 and up. Each has frames of its own, recorded in the
     /// order in which they were planned; where a light casts no shadow in them they cost nothing.
     pub light_index: u32,
-    /// Which of the description's settings this frame uses: 0 is [`Description::settings`], n the nth of
-    /// [`Description::other_settings`].
-    pub settings_index: u32,
+    /// Which of the description's techniques this frame uses: 0 is [`Description::technique`], n the nth of
+    /// [`Description::other_techniques`].
+    pub technique_index: u32,
     /// The polygon that the light has instead of its rectangle: 3 to 16 corners in light space, as x and y in
     /// metres from the rectangle's centre, within it, counter-clockwise as seen from the side that the light
     /// shines to. It need not be convex, and neither touches nor crosses itself.
@@ -310,7 +286,7 @@ pub struct Frame<'a> {
 }
 
 impl<'a> Frame<'a> {
-    /// A frame of light 0 with the first settings, the whole rectangle, reversed depth, no mask, the node's own visibility image sampled by fragment and
+    /// A frame of light 0 with the first technique, the whole rectangle, reversed depth, no mask, the node's own visibility image sampled by fragment and
     /// compute shaders, a fitted window, slot 0, and barriers placed by the node.
     pub fn new(
         light: RectangleLight,
@@ -325,7 +301,7 @@ impl<'a> Frame<'a> {
         Self {
             light,
             light_index: 0,
-            settings_index: 0,
+            technique_index: 0,
             outline: None,
             reach: None,
             world_from_ndc,

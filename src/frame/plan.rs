@@ -7,7 +7,7 @@ use super::left::Whose;
 use crate::effects::Verdicts;
 use crate::graph::{self, MeshList, ResourceId};
 use crate::lent::{Geometry, HostImage};
-use crate::settings::Settings;
+use crate::technique::Technique;
 use ash::vk;
 
 /// Which node a plan was made by, and since which resize; none for a plan made without a node.
@@ -30,7 +30,7 @@ pub struct FramePlan {
     /// Which of the description's lights it is for.
     pub light_index: u32,
     /// Which of the description's settings it uses.
-    pub settings_index: u32,
+    pub technique_index: u32,
     pub(crate) stamp: Stamp,
     pub(crate) keeping: Keeping,
     pub(super) accesses: Vec<HostAccess>,
@@ -46,9 +46,9 @@ impl Default for FramePlan {
             imports: Vec::new(),
             visibility: ResourceId::default(),
             slot: 0,
-            verdicts: Verdicts::judge(None, &Settings::default(), None, false),
+            verdicts: Verdicts::judge(None, Technique::default().room(), None, false),
             light_index: 0,
-            settings_index: 0,
+            technique_index: 0,
             stamp: Stamp::default(),
             keeping: Keeping::default(),
             accesses: Vec::new(),
@@ -123,7 +123,7 @@ impl FramePlan {
 
     /// Whose pixels it writes, by which settings.
     pub(crate) fn whose(&self) -> Whose {
-        Whose { light: self.light_index, settings: self.settings_index }
+        Whose { light: self.light_index, settings: self.technique_index }
     }
 
     /// Puts the node's mark on it, and the image that the node owns.

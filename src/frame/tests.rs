@@ -66,7 +66,7 @@ fn frame(meshes: &[MeshInstance]) -> Frame<'_> {
 fn description(words: &[(&str, &str)]) -> Description {
     let mut description = Description::new([64, 48]);
     for (key, value) in words {
-        description.settings.set(key, value).unwrap();
+        description.technique.set(key, value).unwrap();
     }
     description
 }
@@ -172,7 +172,10 @@ fn every_bad_description_is_one_sentence() {
     assert!(refuse(|d| d.frames_in_flight = 0).contains("1 to 8"));
     assert!(refuse(|d| d.depth_format = vk::Format::R8_UNORM).contains("no depth"));
     assert!(refuse(|d| d.position_strides = vec![12, 8]).contains("8 bytes"));
-    assert!(refuse(|d| d.settings.map = 0).contains("1 to 4096"));
+    let tiny = |d: &mut Description| {
+        d.technique = crate::techniques::pcss::Settings { map: 0, ..Default::default() }.into();
+    };
+    assert!(refuse(tiny).contains("1 to 4096"));
 }
 
 /// What a host may get wrong of an image, each named by the image, what it is and what it should be.
@@ -339,19 +342,14 @@ fn a_plan_is_shown_as_a_table_and_as_a_picture() {
     assert_eq!(dot.matches("shape=box").count(), plan.steps.len());
 }
 
-fn of_technique(technique: Technique, words: &[(&str, &str)]) -> Description {
-    let mut description = Description::new([64, 48]);
-    description.settings.technique = technique;
-    for (key, value) in words {
-        description.settings.set(key, value).unwrap();
-    }
-    description
+fn of_technique(words: &str) -> Description {
+    Description { technique: words.parse().unwrap(), ..Description::new([64, 48]) }
 }
 
 #[test]
 fn every_point_of_many_lights_has_a_view_of_its_own() {
     let meshes = meshes();
-    let description = of_technique(Technique::ManyLights, &[("samples", "9")]);
+    let description = of_technique("many-lights samples=9");
     let plan = make(&description, &frame(&meshes));
     let rows = ran(&plan);
     assert_eq!(rows.len(), 2 + 2 * 9);
@@ -372,7 +370,7 @@ fn every_point_of_many_lights_has_a_view_of_its_own() {
 
 #[test]
 fn many_lights_take_no_ready_made_maps() {
-    let mut description = of_technique(Technique::ManyLights, &[]);
+    let mut description = of_technique("many-lights");
     description.occluder_maps = Some(vk::Format::D32_SFLOAT);
     let error = description.check().unwrap_err().to_string();
     assert!(error.contains("lend meshes"), "{error}");
@@ -382,7 +380,7 @@ fn many_lights_take_no_ready_made_maps() {
 #[test]
 fn slices_take_no_host_draws_and_no_ready_made_maps() {
     let mut meshes = meshes();
-    let mut description = of_technique(Technique::OcclusionTextures, &[]);
+    let mut description = of_technique("occlusion-textures");
     let rows = ran(&make(&description, &frame(&meshes)));
     assert!(rows.contains(&"occlusion_textures.front_slices"), "{rows:?}");
     for mesh in &mut meshes {

@@ -4,9 +4,7 @@ use super::layouts::SharedLayouts;
 use crate::Error;
 use crate::frame::Description;
 use crate::graph::{INVOCATIONS, PUSH_BYTES};
-use crate::settings::Technique;
 use crate::stages::{depth_layers, visibility};
-use crate::techniques::soft_shadow_map::Accumulate;
 use ash::{ext, vk};
 use std::ffi::CStr;
 use std::sync::Arc;
@@ -219,10 +217,7 @@ impl Requirements {
     /// # Errors
     /// [`Error::Setting`] for settings that it cannot run; [`Error::Frame`] for a G-buffer larger than its images.
     pub fn allow(&self, description: &Description) -> Result<(), Error> {
-        let blends = description.all_settings().any(|settings| {
-            settings.technique == Technique::SoftShadowMap
-                && settings.soft_shadow_map.accumulate == Accumulate::Blend
-        });
+        let blends = description.all_techniques().any(|technique| technique.room().blends_f32());
         if blends && !self.blends_f32 {
             return Err(Error::Setting {
                 key: "accumulate".into(),
@@ -289,9 +284,8 @@ mod tests {
         let refuse = |d: &Description| found.allow(d).unwrap_err().to_string();
         description.extent = [1, 4097];
         assert!(refuse(&description).contains("1×4097"), "{}", refuse(&description));
-        let mut blend = description.settings;
-        blend.soft_shadow_map.accumulate = Accumulate::Blend;
-        description.other_settings.push(blend);
+        let blend = "soft-shadow-map receivers=map accumulate=blend".parse().unwrap();
+        description.other_techniques.push(blend);
         assert!(refuse(&description).contains("set accumulate=gather"));
     }
 

@@ -108,7 +108,7 @@ impl NodeObjects {
         plan: &FramePlan,
         draw: &mut dyn FnMut(&HostDraw),
     ) {
-        let index = plan.settings_index as usize;
+        let index = plan.technique_index as usize;
         let Some(settings) = self.settings.get(index) else { return };
         Recorder {
             host,

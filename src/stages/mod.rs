@@ -3,5 +3,6 @@
 pub mod depth_layers;
 pub mod nbuffer;
 pub(crate) mod nearest;
-pub(crate) mod tiles;
+pub mod tiles;
+pub mod views;
 pub mod visibility;

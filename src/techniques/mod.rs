@@ -8,4 +8,5 @@ pub mod many_lights;
 pub mod occlusion_textures;
 pub mod pcss;
 pub mod ray_march;
+pub mod room;
 pub mod soft_shadow_map;

@@ -1,7 +1,7 @@
 //! A small engine whose world changes all the time.
 
 use antumbra::scene::{Role, Scene};
-use antumbra::{Description, FramePlan, MeshInstance, RetireQueue, Settings};
+use antumbra::{Description, FramePlan, MeshInstance, RetireQueue, Technique};
 use antumbra_harness::{
     GBuffer, GBufferPainter, HeadlessDevice, SceneBuffers, Stage, Submitted, View,
 };
@@ -94,13 +94,13 @@ impl Cases {
 
 fn description(node: usize, extent: [u32; 2], plain: &Description) -> Description {
     let (lights, frames_in_flight, words) = NODES[node];
-    let all: Vec<Settings> = words.iter().map(|w| settings(w)).collect();
+    let all: Vec<Technique> = words.iter().map(|w| settings(w)).collect();
     Description {
         extent,
         lights,
         frames_in_flight,
-        settings: all[0],
-        other_settings: all[1..].to_vec(),
+        technique: all[0],
+        other_techniques: all[1..].to_vec(),
         ..plain.clone()
     }
 }
@@ -249,12 +249,12 @@ impl<'d> Engine<'d> {
     }
 
     fn plan(&mut self, light: usize, slot: u32, number: [Option<u64>; 2]) -> FramePlan {
-        let (lamp, settings_index, _) = self.lamps[light];
+        let (lamp, technique_index, _) = self.lamps[light];
         let world_from_ndc = self.case.clip_from_world.inverse();
         let Self { stage, instances, gbuffer, .. } = self;
         let planned = stage.plan_with(&lamp.light(), |frame| {
             frame.light_index = light as u32;
-            frame.settings_index = settings_index;
+            frame.technique_index = technique_index;
             frame.meshes = instances;
             frame.world_from_ndc = world_from_ndc;
             frame.depth = gbuffer.depth_for_node();
@@ -331,7 +331,7 @@ impl<'d> Engine<'d> {
             Stage::new(self.device, &self.scene, &view, extent, settings("map=16"), |_| false)
                 .unwrap();
         fresh
-            .configure_with(Settings::default(), |d| *d = description(self.node, extent, d))
+            .configure_with(Technique::default(), |d| *d = description(self.node, extent, d))
             .unwrap();
         std::mem::swap(&mut self.stage, &mut fresh);
         let plans: Vec<_> = (0..images.len()).map(|l| self.plan(l, 0, [None, None])).collect();

@@ -2,7 +2,6 @@
 
 use super::compare::{beyond_edges, difference, differences, mean_of};
 use super::{Case, OBJECTS, judge, promises};
-use antumbra::Technique;
 use antumbra_tests::random::{case, case_under, lamp_of};
 use antumbra_tests::rig::Rig;
 
@@ -30,7 +29,7 @@ fn the_halves_of_a_light_average_to_the_whole() {
                 tally.add(settings, "difference", absolute / touched, promises::halves(settings));
                 tally.add(settings, "signed difference", signed / touched, promises::BRIGHTER);
                 // One half instead of both.
-                if settings.technique != Technique::Hard {
+                if settings.room().shows().penumbra {
                     tally.add(settings, "difference of one half", difference(one, whole), 1.0);
                 }
             }

@@ -1,8 +1,8 @@
 //! What each technique promises of a law, and why.
 
+use antumbra::Technique;
 use antumbra::techniques::occlusion_textures::{Combine, Placement};
 use antumbra::techniques::soft_shadow_map::Accumulate;
-use antumbra::{Settings, Technique};
 
 /// What is continuous changes by less when its inputs are rounded otherwise. A position 5 m away is rounded to
 /// 2⁻²⁴ of that, and the closest occluders are seen ten times as large and more on the light: under 2⁻¹² of it.
@@ -14,11 +14,10 @@ pub const A_BIN: f64 = 1.0 / 128.0;
 
 /// How much is rounding; where a gather may be off by its tolerance, it may be so on either side, as other texels
 /// make a node.
-pub fn smooth(settings: &Settings) -> f64 {
-    let fitted = settings.occlusion_textures.placement == Placement::Fitted;
-    match settings.technique {
-        Technique::OcclusionTextures if fitted => A_BIN,
-        Technique::SoftShadowMap => SMOOTH + 2.0 * f64::from(settings.soft_shadow_map.tolerance),
+pub fn smooth(settings: &Technique) -> f64 {
+    match settings {
+        Technique::OcclusionTextures(s) if s.placement == Placement::Fitted => A_BIN,
+        Technique::SoftShadowMap(s) => SMOOTH + 2.0 * f64::from(s.tolerance),
         _ => SMOOTH,
     }
 }
@@ -48,25 +47,22 @@ pub enum Likeness {
 }
 
 /// A scene mirrored, or a light whose axes are told of otherwise.
-pub fn turned(settings: &Settings) -> Likeness {
-    match settings.technique {
-        Technique::Hard | Technique::OcclusionTextures => Likeness::Rounding,
-        Technique::SoftShadowMap
-            if settings.soft_shadow_map.accumulate != Accumulate::BlendFp16 =>
-        {
-            Likeness::Rounding
-        }
+pub fn turned(settings: &Technique) -> Likeness {
+    match settings {
+        Technique::Hard(_) | Technique::OcclusionTextures(_) => Likeness::Rounding,
+        Technique::SoftShadowMap(s) if s.accumulate != Accumulate::BlendFp16 => Likeness::Rounding,
         // Patches are added in another order: up to map² times half a step of 2⁻¹¹ off, an eighth of that here.
-        Technique::SoftShadowMap => Likeness::Mean(0.02),
+        Technique::SoftShadowMap(_) => Likeness::Mean(0.02),
         // Samples are where others were: the disc's taps and the points have no symmetry.
-        Technique::Pcss => Likeness::Mean(0.1),
-        Technique::ManyLights => Likeness::Noise(settings.baseline.samples),
-        Technique::RayMarch => Likeness::Noise(settings.ray_march.rays),
+        Technique::Pcss(_) => Likeness::Mean(0.1),
+        Technique::ManyLights(s) => Likeness::Noise(s.samples),
+        Technique::RayMarch(s) => Likeness::Noise(s.rays),
         // A texel is widened to its right and lower neighbours, which were its left and upper ones: an occluder's
         // edge moves by part of a texel.
-        Technique::BackProjection => Likeness::Mean(0.03),
+        Technique::BackProjection(_) => Likeness::Mean(0.03),
         // Samples are put one after the other, the first of two as good ones first.
-        Technique::LinearLight => Likeness::Mean(0.03),
+        Technique::LinearLight(_) => Likeness::Mean(0.03),
+        other => panic!("{other}: no promise yet"),
     }
 }
 
@@ -82,16 +78,14 @@ pub enum Rise {
 }
 
 /// Another occluder anywhere.
-pub fn with_another(settings: &Settings) -> Rise {
-    let textures = &settings.occlusion_textures;
-    match settings.technique {
+pub fn with_another(settings: &Technique) -> Rise {
+    match settings {
         // Nearer surfaces hide what is behind them for one point of the light, and so they should.
-        Technique::Hard | Technique::ManyLights => Rise::By(SUMMED),
+        Technique::Hard(_) | Technique::ManyLights(_) => Rise::By(SUMMED),
         // Every face is counted, in slices that stay. What lies behind slices that hide all but 1/1024 is not asked
         // for. Fitted ones move, and what slices have in common is a guess.
-        Technique::OcclusionTextures
-            if textures.placement == Placement::Uniform
-                && textures.combine != Combine::Correlated =>
+        Technique::OcclusionTextures(s)
+            if s.placement == Placement::Uniform && s.combine != Combine::Correlated =>
         {
             Rise::By(1.0 / 1024.0 + SUMMED)
         }
@@ -106,27 +100,28 @@ pub const HIDES: f64 = 0.01;
 /// three. Halves are seen from elsewhere, so each of the three images is off by an error of its own on such scenes:
 /// maps of 16² to 33² texels, things that cross and touch, are open and lie one behind the other. Half as much again
 /// as was measured on either driver.
-pub fn halves(settings: &Settings) -> f64 {
-    match settings.technique {
+pub fn halves(settings: &Technique) -> f64 {
+    match settings {
         // It sees the light's centre alone, and halves have others: a known fault, small where lights are.
-        Technique::Hard => 0.11,
-        Technique::Pcss => 0.14,
+        Technique::Hard(_) => 0.11,
+        Technique::Pcss(_) => 0.14,
         // Up to twelve points, and others for the halves: the noise of a dozen is 0.16.
-        Technique::ManyLights => 0.16,
+        Technique::ManyLights(_) => 0.16,
         // Nearest faces alone, of which each half sees others.
-        Technique::BackProjection | Technique::SoftShadowMap => 0.21,
-        Technique::RayMarch => 0.14,
-        Technique::OcclusionTextures => 0.15,
-        Technique::LinearLight => 0.08,
+        Technique::BackProjection(_) | Technique::SoftShadowMap(_) => 0.21,
+        Technique::RayMarch(_) => 0.14,
+        Technique::OcclusionTextures(_) => 0.15,
+        Technique::LinearLight(_) => 0.08,
+        other => panic!("{other}: no promise yet"),
     }
 }
 
 /// The share of pixels beyond a texel of a hard shadow's edges where a light of 0.1 mm differs from it.
-pub fn shrunk(settings: &Settings) -> f64 {
-    match settings.technique {
-        Technique::Hard => 0.0,
+pub fn shrunk(settings: &Technique) -> f64 {
+    match settings {
+        Technique::Hard(_) => 0.0,
         // Slices flatten what is in them: contacts are lost, and edges move by half a slice.
-        Technique::OcclusionTextures => 0.1,
+        Technique::OcclusionTextures(_) => 0.1,
         _ => 0.05,
     }
 }
@@ -139,21 +134,21 @@ pub const APART: f64 = 0.1;
 
 /// The most that an occluder which shares no texel with others may raise a pixel; none where neighbours, slices or
 /// samples depend on it all the same.
-pub fn with_another_elsewhere(settings: &Settings) -> Option<f64> {
+pub fn with_another_elsewhere(settings: &Technique) -> Option<f64> {
     if let Rise::By(bound) = with_another(settings) {
         return Some(bound);
     }
-    match settings.technique {
+    match settings {
         // Texels are added up. A node's closed form is off by the tolerance at most on either side.
-        Technique::SoftShadowMap => match settings.soft_shadow_map.accumulate {
-            Accumulate::Gather => Some(2.0 * f64::from(settings.soft_shadow_map.tolerance) + 1e-5),
+        Technique::SoftShadowMap(s) => match s.accumulate {
+            Accumulate::Gather => Some(2.0 * f64::from(s.tolerance) + 1e-5),
             // Of map² additions each rounds to 2⁻²⁴.
             Accumulate::Blend => Some(1e-4),
             Accumulate::BlendFp16 => None,
         },
-        Technique::BackProjection => Some(1e-5),
+        Technique::BackProjection(_) => Some(1e-5),
         // Each ray stays where it is. What a filter makes of them does not.
-        Technique::RayMarch if !settings.ray_march.filter => Some(SUMMED),
+        Technique::RayMarch(s) if !s.filter => Some(SUMMED),
         _ => None,
     }
 }

@@ -1,6 +1,6 @@
 //! What laws measure, technique by technique.
 
-use antumbra::Settings;
+use antumbra::Technique;
 use std::collections::BTreeMap;
 
 /// One measure of one technique.
@@ -28,8 +28,8 @@ impl Tally {
     }
 
     /// Adds what one image gave, that is to be at most `bound` in the mean of all images.
-    pub fn add(&mut self, settings: &Settings, measure: &'static str, value: f64, bound: f64) {
-        let m = self.measured.entry((measure, settings.technique.name())).or_default();
+    pub fn add(&mut self, settings: &Technique, measure: &'static str, value: f64, bound: f64) {
+        let m = self.measured.entry((measure, settings.name())).or_default();
         m.images += 1;
         m.sum += value;
         m.squares += value * value;

@@ -91,7 +91,7 @@ impl Bench {
     /// A description that fits the G-buffer.
     pub fn description(words: &str, change: fn(&mut Description)) -> Description {
         let mut description = Description {
-            settings: settings(words),
+            technique: settings(words),
             frames_in_flight: 1,
             mask_format: Some(vk::Format::R8_UNORM),
             ..Description::new(EXTENT)

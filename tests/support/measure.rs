@@ -6,8 +6,8 @@ use antumbra::truth::{
     ErrorSummary, Exact, ExactLine, PolygonLight, Receiver, Sampling, Tracer,
     visible_fraction_of_quad,
 };
-use antumbra::{RectangleLight, Settings};
-use antumbra_harness::{HeadlessDevice, Stage, View};
+use antumbra::{RectangleLight, Technique};
+use antumbra_harness::{HeadlessDevice, Stage, View, technique_of};
 use glam::DVec3;
 
 /// Settings from the words of a command line: `"map=64 sides=one"`, or with a technique first:
@@ -15,17 +15,8 @@ use glam::DVec3;
 ///
 /// # Panics
 /// If a setting is refused.
-pub fn settings(words: &str) -> Settings {
-    let mut settings = Settings::default();
-    for word in words.split_whitespace() {
-        let (key, value) = word.split_once('=').expect("KEY=VALUE");
-        if key == "technique" {
-            settings.technique = value.parse().unwrap_or_else(|e| panic!("{e}"));
-        } else {
-            settings.set(key, value).unwrap_or_else(|e| panic!("{e}"));
-        }
-    }
-    settings
+pub fn settings(words: &str) -> Technique {
+    technique_of(words).unwrap_or_else(|e| panic!("{words}: {e}"))
 }
 
 /// The card's corners in the world.

@@ -1,10 +1,10 @@
 //! One stage that evaluates random scenes: a node of several settings, its lights a batch of images in one submit.
 
 use crate::random::{Case, Lamp, Object, SIDE, Shape, meshes};
+use antumbra::knob::{Knob, Values};
 use antumbra::scene::{Role, Scene};
-use antumbra::settings::{KNOBS, Knob};
 use antumbra::techniques::linear_light::Across;
-use antumbra::{MeshInstance, Settings, Technique};
+use antumbra::{MeshInstance, Technique};
 use antumbra_harness::{GBufferPainter, HeadlessDevice, SceneBuffers, Stage, View};
 use glam::DMat4;
 
@@ -68,7 +68,7 @@ pub struct Rig {
     buffers: SceneBuffers,
     /// A mesh a shape, at the origin.
     shapes: Vec<MeshInstance>,
-    settings: Vec<Settings>,
+    settings: Vec<Technique>,
 }
 
 impl Rig {
@@ -76,7 +76,7 @@ impl Rig {
     ///
     /// # Panics
     /// If the device refuses.
-    pub fn new(device: &HeadlessDevice, settings: &[Settings], max_error: Option<f64>) -> Self {
+    pub fn new(device: &HeadlessDevice, settings: &[Technique], max_error: Option<f64>) -> Self {
         let mut scene = Scene { meshes: meshes(), ..Scene::default() };
         let buffers = SceneBuffers::new(device, &scene).unwrap();
         let identity = DMat4::IDENTITY;
@@ -88,7 +88,7 @@ impl Rig {
         let mut stage =
             Stage::new(device, &scene, &view, [SIDE; 2], settings[0], |_| false).unwrap();
         let made = stage.configure_with(settings[0], |description| {
-            description.other_settings = settings[1..].to_vec();
+            description.other_techniques = settings[1..].to_vec();
             description.lights = BATCH;
             description.max_error = max_error;
         });
@@ -98,7 +98,7 @@ impl Rig {
     }
 
     /// The settings, in their order.
-    pub fn settings(&self) -> &[Settings] {
+    pub fn settings(&self) -> &[Technique] {
         &self.settings
     }
 
@@ -147,7 +147,7 @@ impl Rig {
             let plan = |(light, shot): (u32, &Shot)| {
                 let planned = self.stage.plan_with(&shot.lamp.light(), |frame| {
                     frame.light_index = light;
-                    frame.settings_index = shot.settings as u32;
+                    frame.technique_index = shot.settings as u32;
                     frame.meshes = &shot.meshes;
                     frame.world_from_ndc = shot.world_from_ndc;
                 });
@@ -191,39 +191,38 @@ const MOST: [(&str, f64); 4] =
 ///
 /// # Panics
 /// Where a range is none.
-pub fn random_settings(technique: Technique, random: &mut Random) -> Settings {
+pub fn random_settings(plain: Technique, random: &mut Random) -> Technique {
     loop {
-        let mut settings = Settings { technique, ..Settings::default() };
-        settings.map = 16 + random.below(18) as u32;
-        for knob in KNOBS.iter().filter(|k| k.serves(technique) && k.key != "map") {
-            settings.set(knob.key, &random_value(knob, random)).unwrap_or_else(|e| panic!("{e}"));
+        let mut technique = plain.with_map(16 + random.below(18) as u32).unwrap();
+        for knob in plain.knobs().iter().filter(|k| k.key != "map") {
+            technique.set(knob.key, &random_value(knob, random)).unwrap_or_else(|e| panic!("{e}"));
         }
         // A rectangle has four edges.
-        if settings.linear_light.across == Across::Edges {
-            settings.linear_light.lines = 4;
-            settings.linear_light.samples = settings.linear_light.samples.min(3);
+        if let Technique::LinearLight(lines) = &mut technique
+            && lines.across == Across::Edges
+        {
+            lines.lines = 4;
+            lines.samples = lines.samples.min(3);
         }
-        if settings.check().is_ok() {
-            return settings;
+        if technique.check().is_ok() {
+            return technique;
         }
     }
 }
 
 fn random_value(knob: &Knob, random: &mut Random) -> String {
-    let Some((least, most)) = knob.range.split_once(" to ") else {
-        let choices: Vec<_> = match knob.range {
-            "on, off" => vec!["on", "off"],
-            range => range.split(", ").collect(),
-        };
-        return choices[random.below(choices.len())].into();
+    let (least, mut most) = match knob.values {
+        Values::Switch => return ["on", "off"][random.below(2)].into(),
+        Values::Choice(names) => return names[random.below(names.len())].into(),
+        Values::Whole(least, most) => (f64::from(least), f64::from(most)),
+        // As the range is written: its ends are decimal.
+        Values::Real(least, most) => [least, most].map(|x| x.to_string().parse().unwrap()).into(),
     };
-    let number = |words: &str| words.parse::<f64>().unwrap();
-    let (least, mut most) = (number(least), number(most));
     if let Some((_, cap)) = MOST.iter().find(|(key, _)| *key == knob.key) {
         most = most.min(*cap);
     }
     let t = random.unit();
-    if matches!(knob.key, "tolerance" | "error") {
+    if matches!(knob.values, Values::Real(..)) {
         // Real numbers from 0 up: each power as often, and 0 itself.
         return if t < 0.2 {
             "0".into()
@@ -237,9 +236,6 @@ fn random_value(knob: &Knob, random: &mut Random) -> String {
 }
 
 /// The technique and its knobs as a command line has them.
-pub fn words(settings: &Settings) -> String {
-    let of = |k: &Knob| settings.get(k.key).map(|value| format!("{}={value}", k.key));
-    let knobs: Vec<_> =
-        KNOBS.iter().filter(|k| k.serves(settings.technique)).filter_map(of).collect();
-    format!("technique={} {}", settings.technique.name(), knobs.join(" "))
+pub fn words(technique: &Technique) -> String {
+    format!("technique={technique}")
 }

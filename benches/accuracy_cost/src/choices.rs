@@ -4,11 +4,11 @@ use crate::Problem;
 use crate::groups::{self, Group};
 use crate::options::Options;
 use crate::store::{Row, Store};
+use antumbra::Technique;
 use antumbra::auto::{Auto, Budget, CANDIDATES, COLUMNS, Costs, Likeness, Measured, PROBE};
 use antumbra::effects::Situation;
 use antumbra::scene::Instance;
-use antumbra::{Settings, Technique};
-use antumbra_harness::{HeadlessDevice, HeadlessOptions, Stage, probe};
+use antumbra_harness::{HeadlessDevice, HeadlessOptions, Stage, probe, technique};
 use std::path::Path;
 
 /// Passes in light space, by what their names begin with; all others run at the pixels.
@@ -99,10 +99,10 @@ pub fn exam(options: &Options) -> Result<(), Problem> {
         let (mut promised, mut kept, mut right) = (0, 0, 0);
         let mut ratios = Vec::new();
         for (key, situation, rows) in &views {
-            let of = |settings: &Settings| {
+            let of = |settings: &Technique| {
                 let same = |r: &&&Row| {
                     CANDIDATES.iter().any(|c| {
-                        c.technique.name() == r.technique
+                        c.technique == r.technique
                             && c.words == r.settings
                             && c.settings() == *settings
                     })
@@ -121,7 +121,7 @@ pub fn exam(options: &Options) -> Result<(), Problem> {
                 continue;
             }
             promised += 1;
-            let Some((error, ms)) = of(&choice.settings) else { continue };
+            let Some((error, ms)) = of(&choice.technique) else { continue };
             if error <= asked {
                 kept += 1;
             } else {
@@ -156,7 +156,7 @@ fn write_to(path: &Path, text: &str) -> Result<(), Problem> {
 pub fn situation(device: &HeadlessDevice, group: &Group) -> Result<Situation, Problem> {
     let told = |e: antumbra::Error| e.to_string();
     let ready = group.ready()?;
-    let settings = Settings { technique: Technique::Hard, ..Settings::default() };
+    let settings = technique("hard");
     let keep = |i: &Instance| ready.keeps(i);
     let mut stage = Stage::new(device, &ready.scene, &ready.view, group.extent, settings, keep)
         .map_err(told)?;

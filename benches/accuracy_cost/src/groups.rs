@@ -248,8 +248,8 @@ const MORE_SCENES: [&str; 4] =
 /// Everything that `auto` chooses among, in every view.
 pub fn choices(scale: &Scale) -> Vec<Group> {
     let entry = |c: &Candidate| Entry {
-        technique: c.technique.name(),
-        curve: c.technique.name().into(),
+        technique: c.technique,
+        curve: c.technique.into(),
         words: c.words.into(),
         x: 0.0,
         light_scale: 1.0,

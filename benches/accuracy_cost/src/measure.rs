@@ -11,7 +11,7 @@ use crate::techniques::method;
 use crate::truth::{self, Truth, mask};
 use antumbra::scene::{AreaLight, Instance};
 use antumbra::truth::{ErrorSummary, Receiver, Tracer};
-use antumbra::{RectangleLight, Settings};
+use antumbra::{RectangleLight, Technique};
 use antumbra_harness::shade;
 use antumbra_harness::{FrameTimes, HeadlessDevice, Stage};
 use rayon::prelude::*;
@@ -66,7 +66,7 @@ impl Bench<'_> {
         tell("scene");
         let ready = group.ready()?;
         let light = ready.scene.light(None).map_err(|e| e.to_string())?.clone();
-        let pixels = self.stage(&ready, group.extent, Settings::default())?;
+        let pixels = self.stage(&ready, group.extent, Technique::default())?;
         let receivers = truth::receivers(pixels.gbuffer())?;
         let tracer = Tracer::new(&ready.scene).map_err(|e| e.to_string())?;
         let mut candidates: Vec<Candidate> = Vec::new();
@@ -113,7 +113,7 @@ impl Bench<'_> {
         &self,
         ready: &Ready,
         extent: [u32; 2],
-        settings: Settings,
+        settings: Technique,
     ) -> Result<Stage, Problem> {
         let keep = |i: &Instance| ready.keeps(i);
         Stage::new(self.device, &ready.scene, &ready.view, extent, settings, keep)

@@ -176,7 +176,7 @@ fn levels(scale: &Scale) -> Vec<Group> {
     };
     let group = |&model: &&'static str| {
         let entries = maps.iter().flat_map(|map| {
-            Kind::ALL.iter().map(move |(kind, _)| Entry {
+            Kind::NAMES.iter().map(move |kind| Entry {
                 technique: "ray-march",
                 ..entry(kind, format!("levels={kind} map={map}"), f64::from(*map))
             })

@@ -4,7 +4,7 @@
 //! says so, and fills in by itself when `Technique::from_str` knows its name.
 
 use crate::Problem;
-use antumbra::{Settings, Technique};
+use antumbra::Technique;
 
 /// The name of the technique that is not the node's: rays on all cores of the processor.
 pub const RAY_TRACER: &str = "cpu-rays";
@@ -203,9 +203,9 @@ pub const CURVES: &[Curve] = &[
 #[derive(Clone, Debug, PartialEq)]
 pub enum Method {
     /// By the node.
-    Node(Box<Settings>),
+    Node(Box<Technique>),
     /// By the node's maps, at fragments as they are drawn.
-    Forward(Box<Settings>),
+    Forward(Box<Technique>),
     /// By so many rays a pixel on the processor.
     Rays(u32),
     /// By the paper's own scheme, with maps of this side.
@@ -218,9 +218,6 @@ pub enum Method {
 /// # Errors
 /// A sentence for a setting that is refused.
 pub fn method(technique: &str, words: &str) -> Result<Option<Method>, Problem> {
-    let pairs = words
-        .split_whitespace()
-        .map(|word| word.split_once('=').ok_or_else(|| format!("\"{word}\" is not KEY=VALUE")));
     if technique == RAY_TRACER {
         let rays = words.strip_prefix("rays=").and_then(|rays| rays.parse().ok());
         return rays.map(|rays| Some(Method::Rays(rays))).ok_or(format!("{words}: no rays"));
@@ -230,16 +227,18 @@ pub fn method(technique: &str, words: &str) -> Result<Option<Method>, Problem> {
         return side.map(|side| Some(Method::Readback(side))).ok_or(format!("{words}: no map"));
     }
     let is_forward = technique == FORWARD;
-    let technique = if is_forward { Ok(Technique::RayMarch) } else { technique.parse() };
-    let Ok(technique) = technique else { return Ok(None) };
-    let mut settings = Settings { technique, ..Settings::default() };
-    for pair in pairs {
-        let (key, value) = pair?;
-        settings.set(key, value).map_err(|e| e.to_string())?;
+    let technique = if is_forward { "ray-march" } else { technique };
+    if !Technique::NAMES.contains(&technique) {
+        return Ok(None);
     }
-    settings.check().map_err(|e| e.to_string())?;
+    let settings: Technique = format!("{technique} {words}").parse().map_err(told)?;
+    settings.check().map_err(told)?;
     let settings = Box::new(settings);
     Ok(Some(if is_forward { Method::Forward(settings) } else { Method::Node(settings) }))
+}
+
+fn told(error: antumbra::Error) -> Problem {
+    error.to_string()
 }
 
 /// The value of a setting among the words, as a number; its place among the steps where it is none.

@@ -1,6 +1,6 @@
 //! The command line.
 
-use antumbra::Settings;
+use antumbra::Technique;
 use clap::Parser;
 use std::path::PathBuf;
 
@@ -39,7 +39,7 @@ pub struct Options {
     pub lie: bool,
     /// What the assignments amount to.
     #[arg(skip)]
-    pub settings: Settings,
+    pub settings: Technique,
 }
 
 /// Reads and checks the command line; the error is one line.

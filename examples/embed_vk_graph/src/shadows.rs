@@ -12,7 +12,7 @@ use crate::geometry::{Model, STRIDE};
 use crate::shot::Shot;
 use crate::targets::{DEPTH, MASK};
 use antumbra::{BorderBarriers, Description, Error, Frame, FramePlan, Geometry, Host, HostImage};
-use antumbra::{MeshBuffers, MeshInstance, RetireQueue, Scope, Settings, ShadowNode, Visibility};
+use antumbra::{MeshBuffers, MeshInstance, RetireQueue, Scope, ShadowNode, Technique, Visibility};
 use gpu_allocator::vulkan::Allocator;
 use std::sync::{Arc, mpsc};
 use vk_graph::Graph;
@@ -35,7 +35,7 @@ pub type Recorded = mpsc::Receiver<Result<(), Error>>;
 
 impl Shadows {
     /// Lends the device and makes the node for pictures of a size.
-    pub fn new(gpu: &Gpu, extent: [u32; 2], settings: Settings) -> Outcome<Self> {
+    pub fn new(gpu: &Gpu, extent: [u32; 2], settings: Technique) -> Outcome<Self> {
         let instance = ash::Instance::clone(&gpu.device.physical.instance);
         let device = ash::Device::clone(&gpu.device);
         let physical_device = gpu.device.physical.handle;
@@ -46,7 +46,7 @@ impl Shadows {
         // vk-graph has an allocator too, but keeps it to itself.
         let mut allocator = host.new_allocator()?;
         let description = Description {
-            settings,
+            technique: settings,
             frames_in_flight: FRAMES_IN_FLIGHT,
             depth_format: DEPTH,
             mask_format: Some(MASK),

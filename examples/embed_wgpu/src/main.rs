@@ -115,7 +115,7 @@ fn run(options: &Options) -> Outcome<()> {
     let mut targets = Targets::new(&gpu, &gbuffer_pass, options.size)?;
     let mut shadows = Shadows::new(&gpu, options.size, options.own_shadow_map)?;
     let meshes = objects.iter().map(shadows::mesh).collect::<Outcome<Vec<_>>>()?;
-    let side = shadows.node.description().settings.map;
+    let side = shadows.node.description().technique.map();
     let own_maps = match options.own_shadow_map {
         true => Some((
             OccluderPass::new(&gpu, objects.len()),

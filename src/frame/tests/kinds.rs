@@ -1,36 +1,24 @@
 //! What a node makes its objects from is the same kinds of row as any frame of it has.
 
 use super::*;
-use crate::settings::Settings;
 
 /// Every technique, and those settings that have rows of their own.
 pub(super) const WAYS: [&str; 14] = [
-    "technique=hard",
-    "technique=pcss",
-    "technique=back-projection",
-    "technique=many-lights samples=4",
-    "technique=soft-shadow-map",
-    "technique=soft-shadow-map sides=one",
-    "technique=soft-shadow-map receivers=map sides=two",
-    "technique=soft-shadow-map receivers=map accumulate=blend",
-    "technique=ray-march",
-    "technique=ray-march layers=3 filter=off",
-    "technique=ray-march layers=2 levels=mip",
-    "technique=occlusion-textures",
-    "technique=occlusion-textures combine=product placement=uniform prefilter=mip",
-    "technique=linear-light",
+    "hard",
+    "pcss",
+    "back-projection",
+    "many-lights samples=4",
+    "soft-shadow-map",
+    "soft-shadow-map sides=one",
+    "soft-shadow-map receivers=map sides=two",
+    "soft-shadow-map receivers=map accumulate=blend",
+    "ray-march",
+    "ray-march layers=3 filter=off",
+    "ray-march layers=2 levels=mip",
+    "occlusion-textures",
+    "occlusion-textures combine=product placement=uniform prefilter=mip",
+    "linear-light",
 ];
-
-pub(super) fn settings(words: &str) -> Settings {
-    let mut settings = Settings::default();
-    for word in words.split_whitespace() {
-        match word.split_once('=').unwrap() {
-            ("technique", name) => settings.technique = name.parse().unwrap(),
-            (key, value) => settings.set(key, value).unwrap(),
-        }
-    }
-    settings
-}
 
 #[test]
 fn frames_have_the_kinds_that_the_node_was_made_for() {
@@ -38,7 +26,8 @@ fn frames_have_the_kinds_that_the_node_was_made_for() {
     let sheet = vec![cube[0], mesh(GROUND, DVec3::new(0.0, 1.5, 0.0), Role::Occluder)];
     let low = vec![cube[0], mesh(CUBE, DVec3::new(0.0, 0.01, 0.0), Role::Occluder)];
     for words in WAYS {
-        let description = Description { settings: settings(words), ..Description::new([64, 48]) };
+        let description =
+            Description { technique: words.parse().unwrap(), ..Description::new([64, 48]) };
         let full = full_graph(&description);
         let names = |graph: &graph::Graph| graph.kinds().map(|p| p.name).collect::<Vec<_>>();
         for (meshes, side) in

@@ -8,9 +8,8 @@ use crate::lent::*;
 fn a_line_is_refused_by_what_needs_an_area() {
     let meshes = meshes();
     let light = generate::line_light(1.0, 0.3).unwrap();
-    for (name, technique) in Technique::ALL {
-        let mut d = description(&[]);
-        d.settings.technique = *technique;
+    for name in Technique::NAMES {
+        let d = of_technique(name);
         let planned = plan(&d, Limits::default(), &Frame { light, ..frame(&meshes) });
         if ["hard", "many-lights", "linear-light"].contains(name) {
             assert!(ran(&planned.unwrap()).len() > 1, "{name}");
@@ -54,9 +53,8 @@ fn an_outline_is_refused_by_what_knows_rectangles_alone() {
     let meshes = meshes();
     let corners = [[-0.25, -0.25], [0.25, -0.25], [0.0, 0.25]];
     let outline = Some(&corners[..]);
-    for (name, technique) in Technique::ALL {
-        let mut d = description(&[]);
-        d.settings.technique = *technique;
+    for name in Technique::NAMES {
+        let d = of_technique(name);
         let planned = plan(&d, Limits::default(), &Frame { outline, ..frame(&meshes) });
         if ["many-lights", "linear-light"].contains(name) {
             assert!(ran(&planned.unwrap()).len() > 1, "{name}");
@@ -88,7 +86,7 @@ fn an_outline_is_refused_by_what_knows_rectangles_alone() {
 /// A host cannot draw what only the device knows the place of, receivers included.
 #[test]
 fn lines_take_no_host_draws() {
-    let description = of_technique(Technique::LinearLight, &[]);
+    let description = of_technique("linear-light");
     let mut meshes = meshes();
     assert!(plan(&description, Limits::default(), &frame(&meshes)).is_ok());
     for (role, mesh) in [Role::Occluder, Role::Receiver].into_iter().zip(&mut meshes) {

@@ -1,6 +1,6 @@
 //! Plans in memory that is kept are those that are made anew.
 
-use super::kinds::{WAYS, settings};
+use super::kinds::WAYS;
 use super::*;
 
 /// A frame of each of three lights: one over the scene, one aside, one that shines away from it.
@@ -32,8 +32,11 @@ fn plans_that_are_kept_are_those_made_anew() {
     let empty = Vec::new();
     let far = DMat4::from_scale(DVec3::splat(3.0));
     for words in WAYS {
-        let description =
-            Description { settings: settings(words), lights: 3, ..Description::new([64, 48]) };
+        let description = Description {
+            technique: words.parse().unwrap(),
+            lights: 3,
+            ..Description::new([64, 48])
+        };
         let mut plans = FramePlans::new();
         let mut check = |what: &str, frames: &[Frame]| {
             plan_all(&description, Limits::default(), frames, &mut plans).unwrap();

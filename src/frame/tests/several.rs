@@ -15,15 +15,15 @@ struct Node {
 }
 
 impl Node {
-    fn new(lights: u32, other_settings: Vec<Settings>) -> Self {
-        let left = Left::new(lights, 1 + other_settings.len());
-        let description = Description { lights, other_settings, ..description(&[]) };
+    fn new(lights: u32, other_techniques: Vec<Technique>) -> Self {
+        let left = Left::new(lights, 1 + other_techniques.len());
+        let description = Description { lights, other_techniques, ..description(&[]) };
         description.check().unwrap();
         Self { description, left }
     }
 
     fn plan(&mut self, frame: &Frame) -> FramePlan {
-        let whose = Whose { light: frame.light_index, settings: frame.settings_index };
+        let whose = Whose { light: frame.light_index, settings: frame.technique_index };
         let kept = self.left.for_plan(whose);
         let plan = plan_with(&self.description, Limits::default(), frame, &kept).unwrap();
         self.left.planned(whose, &plan.keeping);
@@ -87,54 +87,51 @@ fn barriers_name_the_lights_layer_of_the_result_and_nothing_else() {
 }
 
 #[test]
-fn every_bad_number_of_lights_or_settings_is_one_sentence() {
+fn every_bad_number_of_lights_or_techniques_is_one_sentence() {
     let meshes = meshes();
     let d =
-        Description { lights: 4, other_settings: vec![Settings::default()], ..description(&[]) };
+        Description { lights: 4, other_techniques: vec![Technique::default()], ..description(&[]) };
     let f = frame(&meshes);
     let refuse = |d: &Description, frame: Frame| {
         plan(d, Limits::default(), &frame).map(|p| ran(&p)).unwrap_err().to_string()
     };
     let sentence = refuse(&d, Frame { light_index: 4, ..f });
     assert!(sentence.contains("light 4 does not exist; the description has 4"), "{sentence}");
-    let sentence = refuse(&d, Frame { settings_index: 2, ..f });
-    assert!(sentence.contains("settings 2 do not exist; the description has 2"), "{sentence}");
+    let sentence = refuse(&d, Frame { technique_index: 2, ..f });
+    assert!(sentence.contains("technique 2 does not exist; the description has 2"), "{sentence}");
     for lights in [0, 65] {
         let sentence = Description { lights, ..d.clone() }.check().unwrap_err().to_string();
         assert!(sentence.contains(&format!("1 to 64 lights, not for {lights}")), "{sentence}");
     }
-    let other_settings = vec![Settings::default(); 8];
-    let sentence = Description { other_settings, ..d.clone() }.check().unwrap_err().to_string();
-    assert!(sentence.contains("8 other settings are more than the 7"), "{sentence}");
-    // Each of the settings is held against the rest of the description, and against its frames.
-    let many = Settings { technique: Technique::ManyLights, ..Settings::default() };
-    let d = Description { other_settings: vec![many], ..d };
+    let other_techniques = vec![Technique::default(); 8];
+    let sentence = Description { other_techniques, ..d.clone() }.check().unwrap_err().to_string();
+    assert!(sentence.contains("8 other techniques are more than the 7"), "{sentence}");
+    // Each of the techniques is held against the rest of the description, and against its frames.
+    let many = "many-lights".parse().unwrap();
+    let d = Description { other_techniques: vec![many], ..d };
     let maps = Description { occluder_maps: Some(vk::Format::D32_SFLOAT), ..d.clone() };
     assert!(maps.check().unwrap_err().to_string().contains("many-lights"));
-    let small = Settings { map: 0, ..Settings::default() };
-    let small = Description { other_settings: vec![small], ..d.clone() };
+    let small = crate::techniques::hard::Settings { map: 0 }.into();
+    let small = Description { other_techniques: vec![small], ..d.clone() };
     assert!(small.check().unwrap_err().to_string().contains("1 to 4096"));
     let line = generate::line_light(1.0, 0.3).unwrap();
     assert!(refuse(&d, Frame { light: line, ..f }).contains("soft-shadow-map needs an area"));
-    make(&d, &Frame { light: line, settings_index: 1, ..f });
+    make(&d, &Frame { light: line, technique_index: 1, ..f });
 }
 
 #[test]
-fn a_frame_has_the_rows_of_the_settings_that_it_chooses() {
+fn a_frame_has_the_passes_of_the_technique_that_it_chooses() {
     let meshes = meshes();
     let d = description(&[]);
-    let others: Vec<_> = Technique::ALL
-        .iter()
-        .filter(|(_, t)| *t != Technique::SoftShadowMap)
-        .map(|&(_, technique)| Settings { technique, ..Settings::default() })
-        .collect();
-    let several = Description { other_settings: others.clone(), ..d.clone() };
-    for (index, settings) in others.into_iter().enumerate() {
-        let settings_index = 1 + index as u32;
-        let mut chosen = make(&several, &Frame { settings_index, ..frame(&meshes) });
-        let alone = make(&Description { settings, ..d.clone() }, &frame(&meshes));
-        assert_eq!(chosen.settings_index, settings_index);
-        chosen.settings_index = 0;
+    let mut others = Technique::all();
+    others.retain(|technique| *technique != Technique::default());
+    let several = Description { other_techniques: others.clone(), ..d.clone() };
+    for (index, technique) in others.into_iter().enumerate() {
+        let technique_index = 1 + index as u32;
+        let mut chosen = make(&several, &Frame { technique_index, ..frame(&meshes) });
+        let alone = make(&Description { technique, ..d.clone() }, &frame(&meshes));
+        assert_eq!(chosen.technique_index, technique_index);
+        chosen.technique_index = 0;
         assert_eq!(chosen, alone);
     }
 }
@@ -161,11 +158,11 @@ fn all_lights_may_be_planned_before_the_first_is_recorded() {
 #[test]
 fn maps_are_kept_for_a_light_that_has_settings_to_itself() {
     let meshes = meshes();
-    let hard = Settings { technique: Technique::Hard, ..Settings::default() };
+    let hard = "hard".parse().unwrap();
     let mut node = Node::new(2, vec![hard]);
     let both = |view| {
         let mut both = frames(&meshes, 2, 1, view);
-        both[1].settings_index = 1;
+        both[1].technique_index = 1;
         both
     };
     assert_eq!(node.all(&both(1)), [ALL, 2]);
@@ -212,7 +209,7 @@ fn maps_of_one_light_are_never_anothers() {
 fn what_is_lit_stays_lit_whatever_the_numbers_say() {
     let shadowed = meshes();
     for lights in [1, 2] {
-        let mut node = Node::new(lights, vec![Settings::default()]);
+        let mut node = Node::new(lights, vec![Technique::default()]);
         let light_index = lights - 1;
         let lit = Frame { light_index, ..frame(&[]) };
         assert_eq!(node.all(&[lit]), [1]);
@@ -220,7 +217,7 @@ fn what_is_lit_stays_lit_whatever_the_numbers_say() {
         assert!(again.plan.steps.is_empty());
         assert!(again.plan.reasons().any(|(_, why)| why == "every pixel is lit already".into()));
         // Other numbers and other settings leave every pixel lit as well.
-        let other = Frame { settings_index: 1, revision: Some(3), view_revision: Some(4), ..lit };
+        let other = Frame { technique_index: 1, revision: Some(3), view_revision: Some(4), ..lit };
         assert_eq!(node.all(&[other]), [0]);
         assert_eq!(node.all(&[lit, other]), [0, 0]);
         // What forgets or writes the image leaves nothing to count on.

@@ -22,10 +22,13 @@
 //! layer then brings them into the form above, whatever their depth convention and window.
 
 mod boxes;
+mod eye;
 mod host_maps;
 mod view;
 
 pub(crate) use boxes::LightBox;
+pub(crate) use eye::view_from;
+pub use eye::{Projection, view};
 pub(crate) use host_maps::HostMapView;
 pub use view::{Eye, MapView, fit_from, fit_occluders, fit_receivers, is_aside};
 pub(crate) use view::{fit_boxes, fit_boxes_from, fit_receiver_boxes, tangents_of, window_of};
@@ -72,7 +75,7 @@ pub struct TakePush {
 }
 
 /// Which layers a technique reads, and at which size.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wanted {
     /// The occluder maps' side in texels.
     pub map: u32,
@@ -106,6 +109,12 @@ pub(crate) enum Occluders<'a> {
     Maps { front: ResourceId, back: Option<ResourceId>, camera: &'a HostMapView },
 }
 
+/// How a frame makes the layers of a light.
+pub struct LightLayers<'a> {
+    pub(crate) occluders: Occluders<'a>,
+    pub(crate) needs: Needs<'a>,
+}
+
 /// Which layers a frame needs.
 #[derive(Clone, Copy)]
 pub(crate) struct Needs<'a> {
@@ -117,12 +126,8 @@ pub(crate) struct Needs<'a> {
 
 /// Adds the layers and the passes that make them. Those that a frame does without are `None`, though their rows
 /// and images are there.
-pub(crate) fn declare(
-    graph: &mut Graph,
-    wanted: Wanted,
-    occluders: &Occluders,
-    needs: &Needs,
-) -> DepthLayers {
+pub(crate) fn declare(graph: &mut Graph, wanted: Wanted, layers: &LightLayers) -> DepthLayers {
+    let LightLayers { occluders, needs } = layers;
     let map = wanted.map;
     let need = needs.front;
     let (front, back) = match occluders {

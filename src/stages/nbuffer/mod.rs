@@ -31,6 +31,8 @@
 
 pub mod twin;
 
+use crate::knob::choices;
+
 /// Which windows there are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Kind {
@@ -43,11 +45,9 @@ pub enum Kind {
     Mip,
 }
 
-impl Kind {
-    /// Every kind, with the name it has as a setting.
-    pub const ALL: &[(&str, Self)] =
-        &[("n-buffer", Self::NBuffer), ("thirds", Self::Thirds), ("mip", Self::Mip)];
+choices! { Kind: "n-buffer" => NBuffer, "thirds" => Thirds, "mip" => Mip }
 
+impl Kind {
     /// As shaders have it.
     pub fn code(self) -> i32 {
         match self {

@@ -4,8 +4,6 @@
 //! receives. Techniques that work at the pixels write it themselves; those that work in the light's
 //! space are resolved onto the pixels here.
 
-pub mod twin;
-
 use crate::graph::{Access, Graph, Need, Owner, Pass, Push, ResourceId, Use, Work};
 use crate::shaders;
 use crate::stages::depth_layers::MapView;
@@ -44,6 +42,16 @@ pub struct GBuffer {
     pub light_from_ndc: [f32; 16],
     /// The depth of a pixel that shows no surface.
     pub background: f32,
+}
+
+impl GBuffer {
+    /// Depth and mask at bindings 0 and 1; without a mask the shaders do not read the second.
+    pub fn bound(&self) -> [Use; 2] {
+        [
+            Use::bound(0, self.depth, Access::SampledCompute),
+            Use::bound(1, self.mask.unwrap_or(self.depth), Access::SampledCompute),
+        ]
+    }
 }
 
 /// `lit.comp`

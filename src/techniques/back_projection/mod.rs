@@ -27,10 +27,61 @@
 
 pub mod twin;
 
+use super::common::{FinestLevel, one_map};
+use super::room::{Maps, PassInputs, Room, Shows, Takes};
 use crate::graph::{Access, Graph, Pass, Push, ResourceId, Use};
+use crate::knob::{Field, Knobs};
 use crate::shaders;
-use crate::techniques::common::{Inputs, one_map, push};
+use bytemuck::{Pod, Zeroable};
 use smallvec::smallvec;
+
+/// The knobs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// The map's side, texels, 1 to 4096; 256 by default.
+    pub map: u32,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { map: 256 }
+    }
+}
+
+impl Knobs for Settings {
+    const NAME: &'static str = "back-projection";
+    const FIELDS: &'static [Field<Self>] = &[Field::map(|s| s.map, |s, map| s.map = map)];
+}
+
+impl Room for Settings {
+    fn takes(&self) -> Takes {
+        Takes::RECTANGLES
+    }
+
+    fn shows(&self) -> Shows {
+        Shows::SOFT
+    }
+
+    fn maps(&self) -> Maps {
+        Maps::front(self.map)
+    }
+
+    fn declare(&self, graph: &mut Graph, inputs: &PassInputs) -> Option<ResourceId> {
+        let front = inputs.depth_layers(graph, self.maps().layers).front;
+        declare(graph, front, inputs);
+        Some(front)
+    }
+}
+
+/// What `next_level.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct NextLevel {
+    /// The map's side in texels.
+    pub map: i32,
+    /// The level to make, 2 and up.
+    pub level: i32,
+}
 
 /// Nodes a side of a level of a map.
 fn level_side(map: u32, level: u32) -> u32 {
@@ -47,8 +98,8 @@ fn top(map: u32) -> u32 {
     map.next_power_of_two().trailing_zeros()
 }
 
-/// Adds the rows that turn the map `front` into `visibility`.
-pub fn declare(graph: &mut Graph, front: ResourceId, visibility: ResourceId, inputs: &Inputs) {
+/// Adds the passes that turn the map `front` into the visible fraction.
+fn declare(graph: &mut Graph, front: ResourceId, inputs: &PassInputs) {
     let map = inputs.occluders.side;
     let nodes = u64::from(level_start(map, top(map) + 1));
     let levels = graph.buffer("baseline.levels", nodes * size_of::<[f32; 2]>() as u64);
@@ -60,10 +111,7 @@ pub fn declare(graph: &mut Graph, front: ResourceId, visibility: ResourceId, inp
         "baseline.finest_level",
         shaders::FINEST_LEVEL,
         grid(1),
-        Push::new(&push::FinestLevel {
-            map: map as i32,
-            inv_near: (1.0 / inputs.occluders.near) as f32,
-        }),
+        Push::new(&FinestLevel { map: map as i32, inv_near: (1.0 / inputs.occluders.near) as f32 }),
         smallvec![
             Use::bound(0, front, Access::SampledCompute),
             Use::bound(1, levels, Access::BufferWriteCompute),
@@ -75,13 +123,12 @@ pub fn declare(graph: &mut Graph, front: ResourceId, visibility: ResourceId, inp
             "baseline.next_level",
             shaders::NEXT_LEVEL,
             grid(level),
-            Push::new(&push::NextLevel { map: map as i32, level: level as i32 }),
+            Push::new(&NextLevel { map: map as i32, level: level as i32 }),
             smallvec![Use::bound(0, levels, Access::BufferUpdate)],
             inputs.need,
         ));
     }
     let more = [Use::bound(4, levels, Access::BufferReadCompute)];
     let name = "baseline.back_projection";
-    let maps = (front, visibility);
-    one_map(graph, name, shaders::BACK_PROJECTION, maps, top(map), &more, inputs);
+    one_map(graph, name, shaders::BACK_PROJECTION, front, top(map), &more, inputs);
 }

@@ -1,14 +1,4 @@
-//! What users would pick instead: the techniques that soft shadows are measured against.
-//!
-//! Each is done as its authors would, at the G-buffer's pixels, with the meaning of the result, the
-//! roles and the mask that every technique here has:
-//!
-//! | | | |
-//! |---|---|---|
-//! | [`hard`] | a shadow map from the light's centre, 3×3 percentage-closer filtered | Reeves 1987 |
-//! | [`pcss`] | a filter as wide as the blockers' mean distance says | Fernando 2005 |
-//! | [`back_projection`] | occluder texels projected back onto the light, gaps filled | Guennebaud 2006 |
-//! | [`many_lights`] | the mean of hard shadow maps from points all over the light | the GPU's own truth |
+//! What techniques with one map from the light's centre share.
 //!
 //! **One bias for all of them.** A texel's surface hides a pixel where it lies above the pixel's own
 //! plane, which the G-buffer's depth gives: the receiver-plane bias, exact for flat receivers at any
@@ -18,42 +8,60 @@
 //! texel's diagonal where a texel stands for itself, and how far away it is where it stands for a whole
 //! filter. Nothing is to be tuned.
 //!
-//! **Limits.** The maps of all but [`many_lights`] see what the light's centre sees.
+//! **Limits.** A map from the light's centre shows what the centre sees.
 
-pub mod push;
-mod settings;
 pub mod twin;
 
-pub use settings::Settings;
-
-use crate::RectangleLight;
-use crate::graph::{Access, Graph, Need, Pass, Push, ResourceId, Use, Uses};
+use super::room::PassInputs;
+use crate::graph::{Access, Graph, Pass, Push, ResourceId, Use, Uses};
 use crate::shaders::Module;
-use crate::stages::depth_layers::MapView;
 use crate::stages::visibility::{GBuffer, grid};
-use smallvec::smallvec;
+use bytemuck::{Pod, Zeroable};
 
-/// What a frame gives the techniques.
-#[derive(Clone, Copy, Debug)]
-pub struct Inputs<'a> {
-    /// The light.
-    pub light: &'a RectangleLight,
-    /// How the occluder map looks at the scene.
-    pub occluders: &'a MapView,
-    /// The host's pixels.
-    pub gbuffer: &'a GBuffer,
-    /// 2^−(sub-pixel bits): how far the device's rasters move a vertex, in texels.
+/// What passes over the pixels with one occluder map are given (`push.glsl`).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Pixels {
+    /// Normalized device coordinates to light space.
+    pub light_from_ndc: [f32; 16],
+    /// Map texels a unit of u and v.
+    pub texels_per_uv: [f32; 2],
+    /// Texel coordinates of u = v = 0.
+    pub first: [f32; 2],
+    /// Half the light's width and height, m.
+    pub half_light: [f32; 2],
+    /// The G-buffer's width and height.
+    pub extent: [i32; 2],
+    /// The depth of a pixel that shows no surface.
+    pub background: f32,
+    /// 1 over the map's near plane, 1/m; no occluder is nearer.
+    pub inv_near: f32,
+    /// How far a raster moves a vertex, in texels.
     pub snap: f32,
-    /// How far off the w of an occluder may be beyond its rounding, 1/m.
-    pub depth_error: f64,
-    /// Whether anything can be shadowed.
-    pub need: &'a Need,
+    /// How far off an occluder's w may be beyond its rounding, 1/m.
+    pub depth_error: f32,
+    /// The map's side in texels.
+    pub map: i32,
+    /// 1 where the mask is there.
+    pub masked: i32,
+    /// Of taps or levels.
+    pub count: i32,
 }
 
-/// What `push.glsl` says; `count` is the technique's own.
-pub(crate) fn pixel_push(count: u32, inputs: &Inputs) -> Push {
-    let Inputs { occluders, gbuffer, .. } = inputs;
-    Push::new(&push::Pixels {
+/// What `finest_level.comp` and `nearest.comp` are given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct FinestLevel {
+    /// The map's side in texels.
+    pub map: i32,
+    /// 1 over the map's near plane, 1/m.
+    pub inv_near: f32,
+}
+
+/// The push constants of a pass over the pixels; `count` is the technique's own.
+pub(crate) fn pixel_push(count: u32, inputs: &PassInputs) -> Push {
+    let PassInputs { occluders, gbuffer, .. } = inputs;
+    Push::new(&Pixels {
         light_from_ndc: gbuffer.light_from_ndc,
         texels_per_uv: occluders.texels_per_uv().map(|x| x as f32),
         first: occluders.first().map(|x| x as f32),
@@ -69,28 +77,26 @@ pub(crate) fn pixel_push(count: u32, inputs: &Inputs) -> Push {
     })
 }
 
-/// What the passes over the pixels read: `pixels.glsl`, but for the image that they write.
+/// What a pass over the pixels reads, as `pixels.glsl` binds it; the image that it writes comes behind.
 pub(crate) fn pixel_uses(front: ResourceId, gbuffer: &GBuffer) -> Uses {
-    smallvec![
-        Use::bound(0, gbuffer.depth, Access::SampledCompute),
-        Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
-        Use::bound(2, front, Access::SampledCompute),
-    ]
+    let mut uses = Uses::from_slice(&gbuffer.bound());
+    uses.push(Use::bound(2, front, Access::SampledCompute));
+    uses
 }
 
-/// Adds the row that turns the map from the light's centre into visibility, as `pixels.glsl` has it;
-/// `count` and the uses beyond the common ones are the technique's own.
+/// Adds the pass that turns the map from the light's centre into the visible fraction, as `pixels.glsl` has it;
+/// `count` and the uses in `more` are the technique's own.
 pub(crate) fn one_map(
     graph: &mut Graph,
     name: &'static str,
     shader: Module,
-    (front, visibility): (ResourceId, ResourceId),
+    front: ResourceId,
     count: u32,
     more: &[Use],
-    inputs: &Inputs,
+    inputs: &PassInputs,
 ) {
     let mut uses = pixel_uses(front, inputs.gbuffer);
-    uses.push(Use::bound(3, visibility, Access::ImageWrite));
+    uses.push(Use::bound(3, inputs.visibility, Access::ImageWrite));
     uses.extend_from_slice(more);
     let (groups, push) = (grid(inputs.gbuffer.extent), pixel_push(count, inputs));
     graph.push(Pass::compute(name, shader, groups, push, uses, inputs.need));

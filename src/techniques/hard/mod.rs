@@ -7,9 +7,49 @@
 //!
 //! **Limits.** The light is a point: no penumbra but the filter's three texels.
 
-use crate::graph::{Graph, ResourceId};
+use super::common::one_map;
+use super::room::{Maps, PassInputs, Room, Shows, Takes};
+use crate::graph::{Graph, Need, ResourceId};
+use crate::knob::{Field, Knobs};
 use crate::shaders;
-use crate::techniques::common::{Inputs, one_map};
+
+/// The knobs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// The map's side, texels, 1 to 4096; 256 by default.
+    pub map: u32,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { map: 256 }
+    }
+}
+
+impl Knobs for Settings {
+    const NAME: &'static str = "hard";
+    const FIELDS: &'static [Field<Self>] = &[Field::map(|s| s.map, |s, map| s.map = map)];
+}
+
+impl Room for Settings {
+    fn takes(&self) -> Takes {
+        Takes { line: true, ..Takes::RECTANGLES }
+    }
+
+    fn shows(&self) -> Shows {
+        Shows { penumbra: false, ..Shows::SOFT }
+    }
+
+    fn maps(&self) -> Maps {
+        Maps::front(self.map)
+    }
+
+    fn declare(&self, graph: &mut Graph, inputs: &PassInputs) -> Option<ResourceId> {
+        let front = inputs.depth_layers(graph, self.maps().layers).front;
+        declare(graph, front, Filter::Three, inputs.need, inputs);
+        Some(front)
+    }
+}
 
 /// How many comparisons along each axis are averaged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,14 +60,22 @@ pub enum Filter {
     One,
 }
 
-/// Adds the row that turns the map `front` into `visibility`.
-pub fn declare(
+/// Adds the pass that turns the map `front` into the visible fraction, where `need` says so.
+pub(crate) fn declare(
     graph: &mut Graph,
     front: ResourceId,
-    visibility: ResourceId,
     filter: Filter,
-    inputs: &Inputs,
+    need: &Need,
+    inputs: &PassInputs,
 ) {
     let count = u32::from(filter == Filter::One);
-    one_map(graph, "baseline.hard", shaders::HARD, (front, visibility), count, &[], inputs);
+    one_map(
+        graph,
+        "baseline.hard",
+        shaders::HARD,
+        front,
+        count,
+        &[],
+        &PassInputs { need, ..*inputs },
+    );
 }

@@ -63,15 +63,74 @@ mod settings;
 pub mod twin;
 mod view;
 
-pub use passes::{Inputs, declare};
 pub use settings::{Across, Settings, Transition};
-pub use view::{Line, Seen, lines, turned};
+pub use view::{lines, turned};
+
+use self::passes::declare;
+use super::room::{HostDraws, Maps, PassInputs, Room, Seen, Shows, Takes, Turned};
+use crate::graph::{Graph, ResourceId};
+use crate::light::outline::quarter_turned;
+use crate::stages::depth_layers::MapView;
+use crate::stages::views::{Line, Views};
+use crate::{Error, RectangleLight};
+use std::borrow::Cow;
+
+impl Room for Settings {
+    fn takes(&self) -> Takes {
+        Takes {
+            line: true,
+            outline: true,
+            // A sample's place on the line is known on the device alone.
+            host_draws: HostDraws::None("does not know where linear-light puts its samples"),
+            lent_maps: Err(
+                "sees the occluders from points all along the light, and occluder maps from its centre alone",
+            ),
+            ..Takes::RECTANGLES
+        }
+    }
+
+    fn shows(&self) -> Shows {
+        Shows { back_side: true, fusion: true, ..Shows::SOFT }
+    }
+
+    fn maps(&self) -> Maps {
+        Maps { receivers_in_views: true, ..Maps::own_views(self.map) }
+    }
+
+    fn turned<'a>(&self, light: &RectangleLight, outline: Option<&'a [[f64; 2]]>) -> Turned<'a> {
+        let along = turned(light);
+        let outline = match along == *light {
+            true => outline.map(Cow::Borrowed),
+            false => outline.map(|corners| Cow::Owned(quarter_turned(corners))),
+        };
+        (along, outline)
+    }
+
+    fn views(&self, seen: &Seen) -> Result<Views, Error> {
+        Ok(Views::Lines(lines(self, seen)?))
+    }
+
+    fn most_views(&self, _view: MapView) -> Views {
+        Views::Lines(vec![Line::NONE; self.lines as usize])
+    }
+
+    fn declare(&self, graph: &mut Graph, inputs: &PassInputs) -> Option<ResourceId> {
+        declare(graph, self, inputs);
+        None
+    }
+
+    fn check_agreement(&self) -> Result<(), Error> {
+        self.check_together()
+    }
+}
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::RectangleLight;
     use crate::lent::MeshBounds;
+    use crate::stages::depth_layers::{Eye, MapView};
+    use crate::techniques::room::Seen;
     use glam::{DMat4, DVec3};
 
     /// What the shaders declare for themselves.
@@ -94,13 +153,20 @@ mod tests {
         let card: MeshBounds = [[-0.5, 0.0, -0.5], [0.5, 0.0, 0.5]];
         let ground: MeshBounds = [[-4.0, 0.0, -4.0], [4.0, 0.0, 4.0]];
         for lines_of in [1, 3, 8] {
-            let settings = Settings { lines: lines_of, error: 0.0, ..Settings::default() };
+            let settings = Settings { map: 64, lines: lines_of, error: 0.0, ..Settings::default() };
             let seen = Seen {
                 light: &light,
                 outline: Some(&outline),
                 occluders: &[(card, DMat4::from_translation(DVec3::Y * 2.0))],
                 receivers: &[(ground, DMat4::IDENTITY)],
-                side: 64,
+                centre: &MapView {
+                    eye: Eye::Behind(0.0),
+                    min: [-1.0; 2],
+                    max: [1.0; 2],
+                    near: 1.0,
+                    far: 4.0,
+                    side: 64,
+                },
                 w_far: 0.25,
             };
             let lines = lines(&settings, &seen).unwrap();

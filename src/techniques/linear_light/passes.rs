@@ -4,33 +4,17 @@ use super::push;
 use super::samples::{self, Layers};
 use super::segments::{self, Skins};
 use super::settings::{MOST_SAMPLES, Settings, skin_bytes};
-use super::view::Line;
-use crate::graph::{Access, Graph, Need, Owner, Pass, Push, ResourceId, Use};
+use crate::graph::{Access, Graph, Owner, Pass, Push, ResourceId, Use};
 use crate::shaders;
 use crate::stages::depth_layers;
-use crate::stages::visibility::{GBuffer, grid};
+use crate::stages::views::Line;
+use crate::stages::visibility::grid;
+use crate::techniques::room::PassInputs;
 use ash::vk;
 use smallvec::smallvec;
 
 /// Texels of the image of places before a line's samples.
 pub(super) const SAMPLES_AT: u32 = 4;
-
-/// What a frame gives the technique.
-#[derive(Clone, Copy, Debug)]
-pub struct Inputs<'a> {
-    /// The light's lines.
-    pub lines: &'a [Line],
-    /// The maps' side in texels.
-    pub side: u32,
-    /// The w of the furthest receiver, 1/m.
-    pub w_far: f64,
-    /// The host's pixels.
-    pub gbuffer: &'a GBuffer,
-    /// How far a raster moves a vertex, in texels.
-    pub snap: f32,
-    /// Whether anything can be shadowed.
-    pub need: &'a Need,
-}
 
 /// What a line's maps and channels are made in, and what is made of all of them.
 pub(super) struct Made {
@@ -53,15 +37,15 @@ pub(super) struct Made {
 pub(super) struct OfLine<'a> {
     pub made: &'a Made,
     pub settings: &'a Settings,
-    pub inputs: &'a Inputs<'a>,
+    pub inputs: &'a PassInputs<'a>,
     pub line: &'a Line,
     /// Which line it is: its row of places, its view of the meshes.
     pub row: u32,
 }
 
-/// Adds the rows that turn the meshes, as the samples see them, into `visibility`.
-pub fn declare(graph: &mut Graph, visibility: ResourceId, settings: &Settings, inputs: &Inputs) {
-    let side = inputs.side;
+/// Adds the passes that turn the meshes, as the samples see them, into the visible fraction.
+pub(super) fn declare(graph: &mut Graph, settings: &Settings, inputs: &PassInputs) {
+    let (side, visibility) = (settings.map, inputs.visibility);
     let format = vk::Format::R32G32B32A32_SFLOAT;
     let depth = |graph: &mut Graph, name| {
         graph.image(name, depth_layers::FORMAT, [side; 2], Owner::Transient)
@@ -109,7 +93,10 @@ pub fn declare(graph: &mut Graph, visibility: ResourceId, settings: &Settings, i
     };
 
     let none = [Line::NONE];
-    let lines = if inputs.lines.is_empty() { &none } else { inputs.lines };
+    let lines = match inputs.views.lines() {
+        [] => &none,
+        lines => lines,
+    };
     for (row, line) in lines.iter().enumerate() {
         let of = OfLine { made: &made, settings, inputs, line, row: row as u32 };
         samples::place(graph, &of);

@@ -51,7 +51,7 @@ pub(super) fn place(graph: &mut Graph, of: &OfLine) {
     graph.push(Pass {
         name: "linear_light.middle_take",
         uses: taken.uses.iter().copied().filter(|u| u.access != Access::Indirect).collect(),
-        work: Work::Dispatch { shader: shaders::LINE_TAKE, groups: grid([inputs.side; 2]) },
+        work: Work::Dispatch { shader: shaders::LINE_TAKE, groups: grid([settings.map; 2]) },
         ..taken
     });
     graph.push(Pass::compute(
@@ -61,7 +61,7 @@ pub(super) fn place(graph: &mut Graph, of: &OfLine) {
         Push::new(&push::Mask {
             u_window: line.u_window(),
             line: line.length(),
-            map: inputs.side as i32,
+            map: settings.map as i32,
         }),
         smallvec![
             Use::bound(0, layers.seen, Access::SampledCompute),
@@ -137,7 +137,7 @@ pub(super) fn take(of: &OfLine, layer: u32) -> Pass {
         ],
         push: Push::new(&push::Take {
             inv_near: (1.0 / of.line.near) as f32,
-            map: of.inputs.side as i32,
+            map: of.settings.map as i32,
             layer: layer as i32,
         }),
         work: Work::Indirect { shader: shaders::LINE_TAKE, arguments: of.made.groups, offset: 0 },

@@ -36,7 +36,7 @@ pub(super) fn declare(graph: &mut Graph, of: &OfLine, nth: u32) {
 
 /// Adds the row that says which of the rows of a sample and of the segment before it have anything to do.
 pub(super) fn start(graph: &mut Graph, of: &OfLine, nth: u32) {
-    let OfLine { made, inputs, line, row, .. } = *of;
+    let OfLine { made, settings, inputs, line, row } = *of;
     let [c, s] = line.along;
     let [x, y] = line.middle;
     graph.push(Pass::compute(
@@ -51,7 +51,7 @@ pub(super) fn start(graph: &mut Graph, of: &OfLine, nth: u32) {
             weight: line.weight as f32,
             nth: nth as i32,
             row: row as i32,
-            groups: grid([inputs.side; 2])[0] as i32,
+            groups: grid([settings.map; 2])[0] as i32,
         }),
         smallvec![
             Use::bound(0, made.layers.of, Access::BufferReadCompute),
@@ -67,7 +67,7 @@ pub(super) fn start(graph: &mut Graph, of: &OfLine, nth: u32) {
 /// Adds the rows that find where occluders end as one sample sees them, and draw that into the other's channel.
 fn skins(graph: &mut Graph, of: &OfLine, skins: &Skins) {
     let OfLine { made, settings, inputs, line, .. } = *of;
-    let map = inputs.side as i32;
+    let map = settings.map as i32;
     graph.push(Pass {
         name: skins.edges,
         work: Work::Indirect { shader: shaders::EDGES, arguments: made.groups, offset: SEGMENT },
@@ -93,7 +93,7 @@ fn skins(graph: &mut Graph, of: &OfLine, skins: &Skins) {
         push: Push::new(&push::Skins {
             u_window: line.u_window(),
             line: line.length(),
-            w_far: inputs.w_far as f32,
+            w_far: (1.0 / inputs.receivers.far) as f32,
             map,
             side: skins.side,
             rational: i32::from(settings.transition == Transition::Rational),
@@ -125,7 +125,7 @@ pub(super) fn keep(graph: &mut Graph, of: &OfLine, nth: u32) {
             arguments: made.groups,
             offset: SAMPLE_BEFORE,
         },
-        push: Push::new(&push::Keep { map: inputs.side as i32, layer: layer as i32 }),
+        push: Push::new(&push::Keep { map: settings.map as i32, layer: layer as i32 }),
         uses: smallvec![
             Use::fixed(made.groups, Access::Indirect),
             Use::bound(0, made.layers.seen, Access::SampledCompute),

@@ -2,14 +2,15 @@
 
 use crate::Error;
 use crate::graph::STORAGE_BYTES;
+use crate::knob::{Field, Knobs, choice, choices};
 
-/// On a line.
+/// The most samples on a line.
 pub(super) const MOST_SAMPLES: u32 = 16;
 
-/// Of the samples' maps.
+/// The most bytes that all of the samples' maps may take.
 const MOST_BYTES: u64 = 1 << 28;
 
-/// Of one side's skins: any texel may end an occluder.
+/// Bytes of the buffer of one side's skins: in the worst case every texel ends an occluder.
 pub(super) fn skin_bytes(map: u32) -> u64 {
     16 * u64::from(map).pow(2)
 }
@@ -24,10 +25,7 @@ pub enum Transition {
     Rational,
 }
 
-impl Transition {
-    /// Every choice and its name.
-    pub const ALL: &[(&str, Self)] = &[("linear", Self::Linear), ("rational", Self::Rational)];
-}
+choices! { Transition: "linear" => Linear, "rational" => Rational }
 
 /// Which lines a light with an area is taken for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -39,17 +37,16 @@ pub enum Across {
     Edges,
 }
 
-impl Across {
-    /// Every choice and its name.
-    pub const ALL: &[(&str, Self)] = &[("stack", Self::Stack), ("edges", Self::Edges)];
-}
+choices! { Across: "stack" => Stack, "edges" => Edges }
 
-/// Every knob of linear lights but the maps' side, which all techniques share.
+/// The knobs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
+    /// The side of each sample's maps, texels, 1 to 4096; 256 by default.
+    pub map: u32,
     /// The most samples on a line, 2 to 16; 8 by default.
     pub samples: u32,
-    /// The most lines that a light with an area is taken for, 1 to 16; 4 by default. A line light is one.
+    /// The most lines that stand for a light with an area, 1 to 16; 4 by default. A line light is one.
     pub lines: u32,
     /// Which lines.
     pub across: Across,
@@ -64,6 +61,7 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
+            map: 256,
             samples: 8,
             lines: 4,
             across: Across::default(),
@@ -73,15 +71,72 @@ impl Default for Settings {
     }
 }
 
+impl Knobs for Settings {
+    const NAME: &'static str = "linear-light";
+    const FIELDS: &'static [Field<Self>] = &[
+        Field::map(|s| s.map, |s, map| s.map = map),
+        Field::whole(
+            "samples",
+            "points",
+            [2, MOST_SAMPLES],
+            "most points on a line, each with maps of its own, between which skins are drawn; any whole number",
+            |s| s.samples,
+            |s, samples| s.samples = samples,
+        ),
+        Field::whole(
+            "lines",
+            "lines",
+            [1, 16],
+            "most lines that stand for a light with an area; a line light is one. Any whole number",
+            |s| s.lines,
+            |s, lines| s.lines = lines,
+        ),
+        choice!(
+            "across",
+            Across,
+            "which lines stand for a light with an area: lines side by side all over it, or its edges, as published \
+             for polygons, which is coarse",
+            across
+        ),
+        Field::real(
+            "error",
+            "visible fraction",
+            [0.0, 1.0],
+            "mean error asked for: points are added where light is lost between others, and lines to a light with an \
+             area, until what is missed is no more; 0 uses as many as there may be, evenly",
+            |s| s.error,
+            |s, error| s.error = error,
+        ),
+        choice!(
+            "transition",
+            Transition,
+            "how visibility grows behind a skin: evenly up to the receiver beside the occluder's edge, as published, \
+             or by the receiver's own distance, which is exact",
+            transition
+        ),
+    ];
+}
+
 impl Settings {
-    /// Whether the knob with this key is within its range; keys of other techniques pass.
-    pub(crate) fn in_range(&self, key: &str) -> bool {
-        match key {
-            "samples" => (2..=MOST_SAMPLES).contains(&self.samples),
-            "lines" => (1..=16).contains(&self.lines),
-            "error" => (0.0..=1.0).contains(&self.error),
-            _ => true,
+    /// Checks the knobs that must agree with each other.
+    pub(super) fn check_together(&self) -> Result<(), Error> {
+        let layers = u64::from(self.lines * self.samples + 2);
+        let fits = |map: u32| {
+            16 * u64::from(map).pow(2) * layers <= MOST_BYTES && skin_bytes(map) <= STORAGE_BYTES
+        };
+        if fits(self.map) {
+            return Ok(());
         }
+        let most = (1..self.map).rev().find(|&m| fits(m)).unwrap_or(1);
+        Err(Error::Setting {
+            key: "map".into(),
+            problem: format!(
+                "{} lines of {} samples with maps of {} texels a side take more than the 256 MiB that they \
+                 may have, or one's skins more than the 128 MiB that every device can bind; set map={most}, \
+                 fewer lines or fewer samples",
+                self.lines, self.samples, self.map
+            ),
+        })
     }
 
     /// Whether samples are evenly spaced, whatever they see.
@@ -92,26 +147,5 @@ impl Settings {
     /// The fewest samples that a line may have.
     pub(super) fn fewest(&self) -> u32 {
         if self.is_even() { self.samples } else { 2 }
-    }
-
-    /// Checks the knobs that must agree with the maps' side.
-    pub(crate) fn check_agreement(&self, map: u32) -> Result<(), Error> {
-        let layers = u64::from(self.lines * self.samples + 2);
-        let fits = |map: u32| {
-            16 * u64::from(map).pow(2) * layers <= MOST_BYTES && skin_bytes(map) <= STORAGE_BYTES
-        };
-        if fits(map) {
-            return Ok(());
-        }
-        let most = (1..map).rev().find(|&m| fits(m)).unwrap_or(1);
-        Err(Error::Setting {
-            key: "map".into(),
-            problem: format!(
-                "{} lines of {} samples with maps of {map} texels a side take more than the 256 MiB that they \
-                 may have, or one's skins more than the 128 MiB that every device can bind; set map={most}, \
-                 fewer lines or fewer samples",
-                self.lines, self.samples
-            ),
-        })
     }
 }

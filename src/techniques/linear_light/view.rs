@@ -1,81 +1,12 @@
 //! Which lines a light is, and what their samples see.
 
-use super::Settings;
 use super::settings::Across;
-use crate::lent::MeshBounds;
+use super::settings::Settings;
 use crate::stages::depth_layers::{fit_occluders, tangents_of};
+use crate::stages::views::Line;
+use crate::techniques::room::Seen;
 use crate::{Error, RectangleLight};
-use glam::{DMat4, DVec2, DVec3, DVec4};
-
-/// A line of a light. Its own space is light space turned about the light's axis, its middle the origin.
-///
-/// What bounds boxes' tangents from below is a concave function of a sample's place, and from above a convex one, so
-/// between two ends a straight line holds them all.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Line {
-    /// Its x along the light's x and y: a unit vector.
-    pub along: [f64; 2],
-    /// Its middle, metres from the light's centre.
-    pub middle: [f64; 2],
-    /// Half its length, metres.
-    pub half: f64,
-    /// Its share of the light, 0 to 1.
-    pub weight: f64,
-    /// Least and largest u at its first end and at its last.
-    pub u: [[f64; 2]; 2],
-    /// Least and largest v.
-    pub v: [f64; 2],
-    /// Distance of its maps' near plane, metres.
-    pub near: f64,
-}
-
-impl Line {
-    /// What stands where a frame has no line.
-    pub const NONE: Self = Self {
-        along: [1.0, 0.0],
-        middle: [0.0; 2],
-        half: 0.5,
-        weight: 1.0,
-        u: [[-1.0, 1.0]; 2],
-        v: [-1.0, 1.0],
-        near: 1.0,
-    };
-
-    /// Least and largest u at its first end, at its last.
-    pub(super) fn u_window(&self) -> [f32; 4] {
-        let [[a, b], [c, d]] = self.u;
-        [a, b, c, d].map(|x| x as f32)
-    }
-
-    /// Whether an occluder may come nearer to it than a tenth of its length: what ends there may be further aside than
-    /// any map looks, and the line's middle does not tell what its other parts see.
-    pub(super) fn is_touched(&self) -> bool {
-        self.near < 0.2 * self.half
-    }
-
-    /// Its length in metres.
-    pub(super) fn length(&self) -> f32 {
-        (2.0 * self.half) as f32
-    }
-
-    /// Light space to what `view.glsl` takes: x in metres from the line's middle, and y, z and w of the clip space that
-    /// all maps of the line share.
-    pub fn line_from_light(&self) -> DMat4 {
-        let [c, s] = self.along;
-        let [x, y] = self.middle;
-        let height = self.v[1] - self.v[0];
-        let tall = 2.0 / height;
-        let project = DMat4::from_cols(
-            DVec4::X,
-            DVec4::Y * tall,
-            DVec4::new(0.0, -(self.v[1] + self.v[0]) / height, 0.0, 1.0),
-            DVec4::new(0.0, 0.0, self.near, 0.0),
-        );
-        project
-            * DMat4::from_rotation_z(-s.atan2(c))
-            * DMat4::from_translation(DVec3::new(-x, -y, 0.0))
-    }
-}
+use glam::DVec2;
 
 /// How much longer one side must be to be the longer one, as a share: more than rounding makes of equal ones, or the
 /// lines of a square would jump from one direction to the other as it turns.
@@ -85,23 +16,6 @@ const LONGER: f64 = 1e-6;
 pub fn turned(light: &RectangleLight) -> RectangleLight {
     let [a, b] = light.half_extents();
     if b > a * (1.0 + LONGER) { light.quarter_turned() } else { *light }
-}
-
-/// What lines are fitted to.
-#[derive(Clone, Copy, Debug)]
-pub struct Seen<'a> {
-    /// The light, longer along x than along y.
-    pub light: &'a RectangleLight,
-    /// Its corners, where it is a polygon.
-    pub outline: Option<&'a [[f64; 2]]>,
-    /// What blocks it.
-    pub occluders: &'a [(MeshBounds, DMat4)],
-    /// What shows its shadows.
-    pub receivers: &'a [(MeshBounds, DMat4)],
-    /// The maps' side in texels.
-    pub side: u32,
-    /// The w of the furthest receiver, 1/m.
-    pub w_far: f64,
 }
 
 /// A segment of the light's plane.
@@ -162,7 +76,7 @@ fn stack_height(settings: &Settings, seen: &Seen) -> u32 {
     }
     let height = 2.0 * seen.light.half_extents()[1];
     let share = |occluder| {
-        let view = fit_occluders(seen.light, std::slice::from_ref(occluder), None, seen.side)?;
+        let view = fit_occluders(seen.light, std::slice::from_ref(occluder), None, settings.map)?;
         let penumbra = height * (1.0 / view.near - seen.w_far).max(0.0);
         Some(penumbra / (view.max[1] - view.min[1] + penumbra))
     };
@@ -204,7 +118,7 @@ fn chords(light: &RectangleLight, corners: &[[f64; 2]], rows: u32) -> Vec<Segmen
 /// sides see holds what all of them do.
 fn stacked(seen: &Seen, settings: &Settings, segments: &[Segment]) -> Option<Vec<Line>> {
     let [a, b] = seen.light.half_extents();
-    let from = |x, y| fit_occluders(&seen.light.moved([x, y]), seen.occluders, None, seen.side);
+    let from = |x, y| fit_occluders(&seen.light.moved([x, y]), seen.occluders, None, settings.map);
     let (first, last) = (from(-a, 0.0)?, from(a, 0.0)?);
     let (low, high) = (from(0.0, -b)?, from(0.0, b)?);
     let mix = |t: f64, a: f64, b: f64| a + t * (b - a);
@@ -237,7 +151,7 @@ fn turned_each(seen: &Seen, settings: &Settings, segments: &[Segment]) -> Option
         let middle = s.ends[0].midpoint(s.ends[1]);
         let half = 0.5 * s.ends[0].distance(s.ends[1]);
         let turned = seen.light.moved(middle.to_array()).turned(along);
-        let from = |x| fit_occluders(&turned.moved([x, 0.0]), seen.occluders, None, seen.side);
+        let from = |x| fit_occluders(&turned.moved([x, 0.0]), seen.occluders, None, settings.map);
         let (first, last) = (from(-half)?, from(half)?);
         let u = [[first.min[0], first.max[0]], [last.min[0], last.max[0]]];
         let reach = [-half, half].map(|x| reach(&turned.moved([x, 0.0]), first.near, seen));
@@ -275,7 +189,7 @@ fn widened(
     [0, 1].map(|i| {
         let ([min, max], [least, most]) = (ends[i], reach[i]);
         let (min, max) = ((min - more).max(least).min(min), (max + more).min(most).max(max));
-        let texel = (max - min) / f64::from(seen.side);
+        let texel = (max - min) / f64::from(settings.map);
         [min - texel, max + texel]
     })
 }

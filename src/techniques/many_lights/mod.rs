@@ -24,43 +24,140 @@
 mod places;
 pub use places::{places, places_within};
 
-use crate::RectangleLight;
+use super::room::{Maps, PassInputs, Room, Seen, Shows, Takes};
+use crate::Error;
 use crate::graph::{Access, Graph, Layer, Owner, Pass, Push, ResourceId, Use};
-use crate::lent::MeshBounds;
+use crate::knob::{Field, Knobs};
 use crate::shaders;
 use crate::stages::depth_layers::{self, MapView};
+use crate::stages::views::{LightPoint, Views};
 use crate::stages::visibility::grid;
-use crate::techniques::common::{Inputs, Settings, push};
 use ash::vk;
-use glam::{DMat4, DVec3};
+use bytemuck::{Pod, Zeroable};
 use smallvec::smallvec;
 
-/// A point on the light and how it sees the occluders.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LightPoint {
-    /// Metres from the light's centre along its x and y.
-    pub at: [f64; 2],
-    /// Its map.
-    pub view: MapView,
+/// The knobs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// The side of each point's map, texels, 1 to 4096; 256 by default.
+    pub map: u32,
+    /// Points on the light, 1 to 4096; 256 by default.
+    pub samples: u32,
+    /// Which random places the points take; 0 puts them into the middle of their cells.
+    pub seed: u32,
 }
 
-impl LightPoint {
-    /// Light space to the map's clip space.
-    pub fn clip_from_light(&self) -> DMat4 {
-        let [x, y] = self.at;
-        self.view.clip_from_light() * DMat4::from_translation(DVec3::new(-x, -y, 0.0))
+impl Default for Settings {
+    fn default() -> Self {
+        Self { map: 256, samples: 256, seed: 1 }
     }
+}
+
+impl Knobs for Settings {
+    const NAME: &'static str = "many-lights";
+    const FIELDS: &'static [Field<Self>] = &[
+        Field::map(|s| s.map, |s, map| s.map = map),
+        Field::whole(
+            "samples",
+            "points",
+            [1, 4096],
+            "points on the light, each with a map of its own; any whole number",
+            |s| s.samples,
+            |s, samples| s.samples = samples,
+        ),
+        Field::whole(
+            "seed",
+            "whole number",
+            [0, u32::MAX],
+            "which random places of the light have points; 0 puts the points into the middle of their cells",
+            |s| s.seed,
+            |s, seed| s.seed = seed,
+        ),
+    ];
+}
+
+impl Room for Settings {
+    fn takes(&self) -> Takes {
+        Takes {
+            line: true,
+            outline: true,
+            lent_maps: Err(
+                "sees the occluders from points all over the light, and occluder maps from its centre alone",
+            ),
+            ..Takes::RECTANGLES
+        }
+    }
+
+    fn shows(&self) -> Shows {
+        Shows { back_side: true, fusion: true, ..Shows::SOFT }
+    }
+
+    fn maps(&self) -> Maps {
+        Maps::own_views(self.map)
+    }
+
+    fn views(&self, seen: &Seen) -> Result<Views, Error> {
+        Ok(Views::Points(points(self, seen)))
+    }
+
+    fn most_views(&self, view: MapView) -> Views {
+        Views::Points(vec![LightPoint { at: [0.0; 2], view }; self.samples as usize])
+    }
+
+    fn declare(&self, graph: &mut Graph, inputs: &PassInputs) -> Option<ResourceId> {
+        declare(graph, inputs.views.points(), inputs);
+        None
+    }
+}
+
+/// What `receivers.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Receivers {
+    /// Normalized device coordinates to light space.
+    pub light_from_ndc: [f32; 16],
+    /// The G-buffer's width and height.
+    pub extent: [i32; 2],
+    /// The depth of a pixel that shows no surface.
+    pub background: f32,
+    /// 1 where the mask is there.
+    pub masked: i32,
+}
+
+/// What `add_point.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct AddPoint {
+    /// The point on the light, m from its centre.
+    pub point: [f32; 2],
+    /// Map texels a unit of u and v, as the point has them.
+    pub texels_per_uv: [f32; 2],
+    /// Texel coordinates of u = v = 0.
+    pub first: [f32; 2],
+    /// The G-buffer's width and height.
+    pub extent: [i32; 2],
+    /// 1 over the map's near plane, 1/m.
+    pub inv_near: f32,
+    /// How far a raster moves a vertex, in texels.
+    pub snap: f32,
+    /// The map's side in texels.
+    pub map: i32,
+}
+
+/// What `average.comp` is given.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Average {
+    /// The G-buffer's width and height.
+    pub extent: [i32; 2],
+    /// How many points there were.
+    pub points: f32,
 }
 
 /// The points of a frame, each with a map of `side` texels fitted to the occluders; where a point sees
 /// none of them, as its maps have it that see nothing.
-pub(crate) fn points(
-    light: &RectangleLight,
-    outline: Option<&[[f64; 2]]>,
-    occluders: &[(MeshBounds, DMat4)],
-    settings: &Settings,
-    centre: &MapView,
-) -> Vec<LightPoint> {
+fn points(settings: &Settings, seen: &Seen) -> Vec<LightPoint> {
+    let Seen { light, outline, occluders, centre, .. } = *seen;
     let Settings { samples, seed, .. } = *settings;
     let places = match outline {
         Some(corners) => places_within(corners, samples, seed),
@@ -76,9 +173,9 @@ pub(crate) fn points(
         .collect()
 }
 
-/// Adds the rows that turn the meshes, as `points` see them, into `visibility`.
-pub fn declare(graph: &mut Graph, visibility: ResourceId, points: &[LightPoint], inputs: &Inputs) {
-    let Inputs { gbuffer, need, .. } = *inputs;
+/// Adds the passes that turn the meshes, as `points` see them, into the visible fraction.
+fn declare(graph: &mut Graph, points: &[LightPoint], inputs: &PassInputs) {
+    let PassInputs { gbuffer, visibility, need, .. } = *inputs;
     let extent = gbuffer.extent.map(|e| e as i32);
     let image = |graph: &mut Graph, name, format| {
         graph.image(name, format, gbuffer.extent, Owner::Transient)
@@ -92,7 +189,7 @@ pub fn declare(graph: &mut Graph, visibility: ResourceId, points: &[LightPoint],
         "baseline.receivers",
         shaders::RECEIVERS,
         grid(gbuffer.extent),
-        Push::new(&push::Receivers {
+        Push::new(&Receivers {
             light_from_ndc: gbuffer.light_from_ndc,
             extent,
             background: gbuffer.background,
@@ -116,7 +213,7 @@ pub fn declare(graph: &mut Graph, visibility: ResourceId, points: &[LightPoint],
             "baseline.add_point",
             shaders::ADD_POINT,
             grid(gbuffer.extent),
-            Push::new(&push::AddPoint {
+            Push::new(&AddPoint {
                 point: point.at.map(|x| x as f32),
                 texels_per_uv: point.view.texels_per_uv().map(|x| x as f32),
                 first: point.view.first().map(|x| x as f32),
@@ -138,7 +235,7 @@ pub fn declare(graph: &mut Graph, visibility: ResourceId, points: &[LightPoint],
         "baseline.average",
         shaders::AVERAGE,
         grid(gbuffer.extent),
-        Push::new(&push::Average { extent, points: points.len() as f32 }),
+        Push::new(&Average { extent, points: points.len() as f32 }),
         smallvec![
             Use::bound(0, hidden, Access::SampledCompute),
             Use::bound(1, visibility, Access::ImageWrite),

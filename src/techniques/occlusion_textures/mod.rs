@@ -105,5 +105,52 @@ pub mod push;
 mod settings;
 pub mod twin;
 
-pub use passes::{Inputs, declare, wanted};
 pub use settings::{Combine, Placement, Prefilter, Settings};
+
+use self::passes::{declare, histogram_layers};
+use super::room::{HostDraws, Maps, PassInputs, Room, Shows, Takes};
+use crate::Error;
+use crate::graph::{Graph, ResourceId};
+use crate::stages::depth_layers::Projection;
+
+impl Room for Settings {
+    fn takes(&self) -> Takes {
+        Takes {
+            host_draws: HostDraws::Receivers(
+                "cannot sort it into the slices of occlusion-textures",
+            ),
+            lent_maps: Err(
+                "sorts every face of the occluders into slices, and occluder maps hold two of them",
+            ),
+            ..Takes::RECTANGLES
+        }
+    }
+
+    fn shows(&self) -> Shows {
+        Shows {
+            back_side: true,
+            fusion: true,
+            slices: Some(self.fill || self.is_correlated()),
+            ..Shows::SOFT
+        }
+    }
+
+    fn maps(&self) -> Maps {
+        Maps {
+            layers: histogram_layers(self, self.map),
+            eye: Projection::Behind,
+            ..Maps::own_views(self.map)
+        }
+    }
+
+    fn declare(&self, graph: &mut Graph, inputs: &PassInputs) -> Option<ResourceId> {
+        let wanted = self.maps().layers;
+        let layers = self.is_fitted().then(|| inputs.depth_layers(graph, wanted));
+        declare(graph, layers.as_ref(), self, inputs);
+        None
+    }
+
+    fn check_agreement(&self) -> Result<(), Error> {
+        self.check_together()
+    }
+}

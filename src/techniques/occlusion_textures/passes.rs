@@ -3,15 +3,14 @@
 use super::pixels::{Filtered, declare_pixels};
 use super::push;
 use super::settings::{Prefilter, Settings};
-use crate::RectangleLight;
 use crate::graph::{
-    Access, COLOR_ATTACHMENTS, Draw, Graph, Layer, Need, Owner, Pass, Push, ResourceId, Target,
-    Use, Work,
+    Access, COLOR_ATTACHMENTS, Draw, Graph, Layer, Owner, Pass, Push, ResourceId, Target, Use, Work,
 };
 use crate::shaders::{self, Module};
-use crate::stages::depth_layers::{self, DepthLayers, Eye, MapView, Wanted};
+use crate::stages::depth_layers::{self, DepthLayers, Eye, Wanted};
 use crate::stages::nbuffer::Levels;
-use crate::stages::visibility::{GBuffer, grid};
+use crate::stages::visibility::grid;
+use crate::techniques::room::PassInputs;
 use ash::vk;
 use smallvec::{SmallVec, smallvec};
 
@@ -30,42 +29,26 @@ const HISTOGRAM_MAP: u32 = 128;
 /// Slices that one draw counts.
 const SLICES_A_DRAW: u32 = 4 * COLOR_ATTACHMENTS as u32;
 
-/// What a frame gives the technique.
-#[derive(Clone, Copy, Debug)]
-pub struct Inputs<'a> {
-    /// The light.
-    pub light: &'a RectangleLight,
-    /// How the slices look at the scene.
-    pub view: &'a MapView,
-    /// The host's pixels.
-    pub gbuffer: &'a GBuffer,
-    /// Whether anything can be shadowed.
-    pub need: &'a Need,
-}
-
-impl Inputs<'_> {
-    /// How far behind the light the projection point is, m.
-    pub(super) fn eye(&self) -> f64 {
-        match self.view.eye {
-            Eye::Behind(behind) => behind,
-            Eye::Infinity => 0.0,
-        }
+/// How far behind the light the projection point is, m.
+pub(super) fn eye(inputs: &PassInputs) -> f64 {
+    match inputs.occluders.eye {
+        Eye::Behind(behind) => behind,
+        Eye::Infinity => 0.0,
     }
 }
 
 /// The layers that the histogram is made of: few texels tell as much.
-pub fn wanted(settings: &Settings, map: u32) -> Wanted {
+pub(super) fn histogram_layers(settings: &Settings, map: u32) -> Wanted {
     let back = settings.is_fitted();
     Wanted { map: map.min(HISTOGRAM_MAP), back, inner: false, receiver_map: None }
 }
 
-/// Adds the rows that turn meshes into `visibility`; `layers` where slices are fitted to them.
-pub fn declare(
+/// Adds the passes that turn meshes into the visible fraction; `layers` where slices are fitted to them.
+pub(super) fn declare(
     graph: &mut Graph,
     layers: Option<&DepthLayers>,
-    visibility: ResourceId,
     settings: &Settings,
-    inputs: &Inputs,
+    inputs: &PassInputs,
 ) {
     let placement = declare_placement(graph, layers, settings, inputs);
     let mask = declare_mask(graph, placement, settings, inputs);
@@ -76,23 +59,23 @@ pub fn declare(
         declare_levels(graph, mask, settings, inputs)
     };
     let made = Filtered { placement, mask, filtered };
-    declare_pixels(graph, &made, visibility, settings, inputs);
+    declare_pixels(graph, &made, settings, inputs);
 }
 
 fn declare_placement(
     graph: &mut Graph,
     layers: Option<&DepthLayers>,
     settings: &Settings,
-    inputs: &Inputs,
+    inputs: &PassInputs,
 ) -> ResourceId {
     let format = vk::Format::R32G32B32A32_SFLOAT;
     let name = "occlusion_textures.placement";
     let placement = graph.image(name, format, PLACEMENT, Owner::Transient);
-    let eye = inputs.eye();
+    let behind = eye(inputs);
     let pushed = Push::new(&push::Place {
-        near: (inputs.view.near - eye) as f32,
-        far: (inputs.view.far - eye) as f32,
-        eye: eye as f32,
+        near: (inputs.occluders.near - behind) as f32,
+        far: (inputs.occluders.far - behind) as f32,
+        eye: behind as f32,
         // Published at the bottom; in the middle the error is smaller.
         plane: if settings.is_correlated() { 0.5 } else { 1.0 },
         slices: settings.slices as i32,
@@ -114,7 +97,7 @@ fn declare_histogram(
     graph: &mut Graph,
     layers: &DepthLayers,
     settings: &Settings,
-    inputs: &Inputs,
+    inputs: &PassInputs,
 ) -> ResourceId {
     let histogram = graph.buffer("occlusion_textures.histogram", 4 * u64::from(BINS));
     graph.push(Pass::compute(
@@ -125,15 +108,15 @@ fn declare_histogram(
         smallvec![Use::bound(0, histogram, Access::BufferWriteCompute)],
         inputs.need,
     ));
-    let map = wanted(settings, inputs.view.side).map;
+    let map = histogram_layers(settings, inputs.occluders.side).map;
     graph.push(Pass::compute(
         "occlusion_textures.histogram",
         shaders::HISTOGRAM,
         grid([map; 2]),
         Push::new(&push::Histogram {
             map: map as i32,
-            near: inputs.view.near as f32,
-            span: (inputs.view.far - inputs.view.near) as f32,
+            near: inputs.occluders.near as f32,
+            span: (inputs.occluders.far - inputs.occluders.near) as f32,
         }),
         smallvec![
             Use::bound(0, layers.front, Access::SampledCompute),
@@ -206,7 +189,7 @@ fn draw(
     drawn: &Drawn,
     placement: ResourceId,
     settings: &Settings,
-    inputs: &Inputs,
+    inputs: &PassInputs,
 ) -> Slabs {
     let draws = settings.slices.div_ceil(SLICES_A_DRAW) as usize;
     let raster = depth_layers::raster_of(drawn.layer);
@@ -216,7 +199,7 @@ fn draw(
             .iter()
             .map(|name| {
                 let format = vk::Format::R8G8B8A8_UNORM;
-                graph.image(name, format, [inputs.view.side; 2], Owner::Transient)
+                graph.image(name, format, [inputs.occluders.side; 2], Owner::Transient)
             })
             .collect();
         let mut uses = smallvec![Use::bound(0, placement, Access::SampledFragment)];
@@ -244,7 +227,7 @@ fn declare_mask(
     graph: &mut Graph,
     placement: ResourceId,
     settings: &Settings,
-    inputs: &Inputs,
+    inputs: &PassInputs,
 ) -> ResourceId {
     let (fronts, backs) = if settings.is_correlated() {
         let fronts = draw(graph, &FRONTS, placement, settings, inputs);
@@ -253,7 +236,7 @@ fn declare_mask(
         let faces = draw(graph, &ALL_FACES, placement, settings, inputs);
         (faces.clone(), faces)
     };
-    let side = inputs.view.side;
+    let side = inputs.occluders.side;
     let format = vk::Format::R32_UINT;
     let mask = graph.image("occlusion_textures.mask", format, [side; 2], Owner::Transient);
     let mut uses = smallvec![Use::bound(0, mask, Access::ImageWrite)];
@@ -286,9 +269,9 @@ fn declare_sums(
     graph: &mut Graph,
     mask: ResourceId,
     settings: &Settings,
-    inputs: &Inputs,
+    inputs: &PassInputs,
 ) -> ResourceId {
-    let side = inputs.view.side;
+    let side = inputs.occluders.side;
     let tiles = settings.tiles();
     let (values, format) = (tiles * side * side, vk::Format::R32G32B32A32_UINT);
     let extent = [IMAGE_WIDTH.min(values), values.div_ceil(IMAGE_WIDTH)];
@@ -322,9 +305,9 @@ fn declare_levels(
     graph: &mut Graph,
     mask: ResourceId,
     settings: &Settings,
-    inputs: &Inputs,
+    inputs: &PassInputs,
 ) -> ResourceId {
-    let side = inputs.view.side;
+    let side = inputs.occluders.side;
     let tiles = settings.tiles();
     let levels = Levels { map: side, kind: settings.level_kind() };
     let format = vk::Format::R16G16B16A16_SFLOAT;

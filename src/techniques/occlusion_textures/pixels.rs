@@ -1,6 +1,6 @@
 //! The rows over the pixels: at all of them, or at those of tiles that meet something.
 
-use super::passes::Inputs;
+use super::passes::eye;
 use super::push;
 use super::settings::{Combine, Prefilter, Settings};
 use crate::graph::{Access, Graph, Owner, Pass, Push, ResourceId, Use};
@@ -8,6 +8,7 @@ use crate::shaders;
 use crate::stages::nearest::nodes_a_row;
 use crate::stages::tiles::Tiles;
 use crate::stages::visibility::grid;
+use crate::techniques::room::PassInputs;
 use ash::vk;
 use smallvec::smallvec;
 
@@ -27,12 +28,11 @@ pub(super) struct Filtered {
 pub(super) fn declare_pixels(
     graph: &mut Graph,
     of: &Filtered,
-    visibility: ResourceId,
     settings: &Settings,
-    inputs: &Inputs,
+    inputs: &PassInputs,
 ) {
     let sums = settings.prefilter == Prefilter::Sat;
-    let gbuffer = inputs.gbuffer;
+    let (gbuffer, visibility) = (inputs.gbuffer, inputs.visibility);
     let push = Push::new(&pixel_push(settings, inputs));
     let write = if settings.classify { Access::ImageUpdate } else { Access::ImageWrite };
     let mut uses = smallvec![
@@ -77,8 +77,8 @@ pub(super) fn declare_pixels(
 }
 
 /// Adds the row that says what blocks in squares of the mask.
-fn squares(graph: &mut Graph, mask: ResourceId, inputs: &Inputs) -> ResourceId {
-    let side = inputs.view.side;
+fn squares(graph: &mut Graph, mask: ResourceId, inputs: &PassInputs) -> ResourceId {
+    let side = inputs.occluders.side;
     let row = nodes_a_row(side);
     let name = "occlusion_textures.squares";
     let squares = graph.image(name, vk::Format::R32_UINT, [row; 2], Owner::Transient);
@@ -96,8 +96,8 @@ fn squares(graph: &mut Graph, mask: ResourceId, inputs: &Inputs) -> ResourceId {
     squares
 }
 
-fn pixel_push(settings: &Settings, inputs: &Inputs) -> push::Visibility {
-    let Inputs { view, gbuffer, light, .. } = inputs;
+fn pixel_push(settings: &Settings, inputs: &PassInputs) -> push::Visibility {
+    let PassInputs { occluders: view, gbuffer, light, .. } = inputs;
     let combine = match settings.combine {
         Combine::Product | Combine::Correlated => 0,
         Combine::Sum => 1,
@@ -110,7 +110,7 @@ fn pixel_push(settings: &Settings, inputs: &Inputs) -> push::Visibility {
         half_light: light.half_extents().map(|x| x as f32),
         extent: gbuffer.extent.map(|e| e as i32),
         background: gbuffer.background,
-        eye: inputs.eye() as f32,
+        eye: eye(inputs) as f32,
         map: view.side as i32,
         flags: settings.slices as i32
             | i32::from(gbuffer.mask.is_some()) << 8

@@ -1,6 +1,7 @@
 //! The knobs of occlusion textures.
 
 use crate::Error;
+use crate::knob::{Field, Knobs, choice, choices};
 use crate::stages::nbuffer::{self, Levels};
 
 /// How means of rectangles are made ready.
@@ -15,11 +16,7 @@ pub enum Prefilter {
     Sat,
 }
 
-impl Prefilter {
-    /// Every choice and its name.
-    pub const ALL: &[(&str, Self)] =
-        &[("mip", Self::Mip), ("n-buffer", Self::NBuffer), ("sat", Self::Sat)];
-}
+choices! { Prefilter: "mip" => Mip, "n-buffer" => NBuffer, "sat" => Sat }
 
 /// Where slices begin and end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -31,10 +28,7 @@ pub enum Placement {
     Fitted,
 }
 
-impl Placement {
-    /// Every choice and its name.
-    pub const ALL: &[(&str, Self)] = &[("uniform", Self::Uniform), ("fitted", Self::Fitted)];
-}
+choices! { Placement: "uniform" => Uniform, "fitted" => Fitted }
 
 /// What slices hide together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -50,36 +44,31 @@ pub enum Combine {
     Correlated,
 }
 
-impl Combine {
-    /// Every choice and its name.
-    pub const ALL: &[(&str, Self)] = &[
-        ("product", Self::Product),
-        ("sum", Self::Sum),
-        ("max", Self::Max),
-        ("correlated", Self::Correlated),
-    ];
-}
+choices! { Combine: "product" => Product, "sum" => Sum, "max" => Max, "correlated" => Correlated }
 
-/// Every knob of occlusion textures but the maps' side, which all techniques share.
+/// The knobs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
+    /// The side of the slices, texels, 1 to 4096; 256 by default.
+    pub map: u32,
     /// How many slices, 4 to 32; 16 by default.
     pub slices: u32,
-    /// Where they begin and end.
+    /// Where slices begin and end.
     pub placement: Placement,
-    /// How they are filtered.
+    /// How slices are filtered.
     pub prefilter: Prefilter,
-    /// How they are combined.
+    /// How slices are combined.
     pub combine: Combine,
-    /// Whether a slice blocks in the next one too (section 3.4).
+    /// Whether a slice blocks in the next one too (section 3.4); off by default.
     pub fill: bool,
-    /// Whether tiles of pixels whose kernels meet nothing are told at once.
+    /// Whether tiles of pixels whose kernels meet nothing are skipped; on by default.
     pub classify: bool,
 }
 
 impl Default for Settings {
     fn default() -> Self {
         Self {
+            map: 256,
             slices: 16,
             placement: Placement::default(),
             prefilter: Prefilter::default(),
@@ -93,17 +82,68 @@ impl Default for Settings {
 /// Layers of an image that every device has (maxImageArrayLayers).
 const MOST_LAYERS: u64 = 256;
 
-/// Of what is filtered: as much as a summed-area table of 4096² has.
+/// Bytes of what is filtered, at most: as much as a summed-area table of 4096² has.
 const MOST_BYTES: u64 = 1 << 28;
 
-impl Settings {
-    /// Whether the knob with this key is within its range; keys of other techniques pass.
-    pub(crate) fn in_range(&self, key: &str) -> bool {
-        key != "slices" || (4..=32).contains(&self.slices)
-    }
+impl Knobs for Settings {
+    const NAME: &'static str = "occlusion-textures";
+    const FIELDS: &'static [Field<Self>] = &[
+        Field::map(|s| s.map, |s, map| s.map = map),
+        Field::classify(|s| s.classify, |s, on| s.classify = on),
+        Field::whole(
+            "slices",
+            "slices",
+            [4, 32],
+            "parts of the occluders, from the light on, that are each flattened into a texture; any whole number",
+            |s| s.slices,
+            |s, slices| s.slices = slices,
+        ),
+        choice!(
+            "placement",
+            Placement,
+            "where slices begin and end: all equally thick, or thin where many nearest and furthest faces are",
+            placement
+        ),
+        choice!(
+            "prefilter",
+            Prefilter,
+            "where means over a part of a slice come from: textures of 2^k texels a side side by side, those at every \
+             texel, or summed-area tables, which are exact",
+            prefilter
+        ),
+        choice!(
+            "combine",
+            Combine,
+            "how slices combine: independent (product, as published), disjoint (sum), nested (max), or by measured \
+             overlap (correlated)",
+            combine
+        ),
+        Field::switch(
+            "fill",
+            "a slice blocks in the next one too, which closes the leaks of thin occluders; the product takes that for \
+             twice as much, combine=correlated does not",
+            |s| s.fill,
+            |s, on| s.fill = on,
+        ),
+    ];
+}
 
-    /// The switches' names.
-    pub(crate) const SWITCH: &[(&str, bool)] = &[("on", true), ("off", false)];
+impl Settings {
+    /// Checks the knobs that must agree with each other.
+    pub(super) fn check_together(&self) -> Result<(), Error> {
+        if self.fits(self.map) {
+            return Ok(());
+        }
+        let most = (1..self.map).rev().find(|&m| self.fits(m)).unwrap_or(1);
+        Err(Error::Setting {
+            key: "map".into(),
+            problem: format!(
+                "{} slices of {} texels a side, filtered, take more than the 256 MiB that they may have; \
+                 set map={most}, prefilter=mip or fewer slices",
+                self.slices, self.map
+            ),
+        })
+    }
 
     /// Whether slices are combined by what they have in common.
     pub fn is_correlated(&self) -> bool {
@@ -140,21 +180,5 @@ impl Settings {
         }
         let layers = u64::from(Levels { map, kind: self.level_kind() }.layers() - 1);
         layers * tiles <= MOST_LAYERS && 8 * layers * texels <= MOST_BYTES
-    }
-
-    /// Checks the knobs that must agree with the maps' side.
-    pub(crate) fn check_agreement(&self, map: u32) -> Result<(), Error> {
-        if self.fits(map) {
-            return Ok(());
-        }
-        let most = (1..map).rev().find(|&m| self.fits(m)).unwrap_or(1);
-        Err(Error::Setting {
-            key: "map".into(),
-            problem: format!(
-                "{} slices of {map} texels a side, filtered, take more than the 256 MiB that they may have; \
-                 set map={most}, prefilter=mip or fewer slices",
-                self.slices
-            ),
-        })
     }
 }

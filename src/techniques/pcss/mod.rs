@@ -31,31 +31,79 @@
 
 pub mod twin;
 
+use super::common::{FinestLevel, one_map, pixel_push, pixel_uses};
+use super::room::{Maps, PassInputs, Room, Shows, Takes};
 use crate::graph::{Access, Graph, Pass, Push, ResourceId, Use};
+use crate::knob::{Field, Knobs};
 use crate::shaders;
 use crate::stages::nearest::nodes_a_row;
 use crate::stages::tiles::Tiles;
 use crate::stages::visibility::grid;
-use crate::techniques::common::push::FinestLevel;
-use crate::techniques::common::{Inputs, Settings, one_map, pixel_push, pixel_uses};
 use smallvec::smallvec;
 
 const NAME: &str = "baseline.pcss";
 
-/// Adds the rows that turn the map `front` into `visibility`, with as many taps to search as to filter.
-pub fn declare(
-    graph: &mut Graph,
-    front: ResourceId,
-    visibility: ResourceId,
-    settings: &Settings,
-    inputs: &Inputs,
-) {
+/// The knobs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// The map's side, texels, 1 to 4096; 256 by default.
+    pub map: u32,
+    /// Taps of the blocker search, and as many again of the filter, 1 to 64; 16 by default.
+    pub taps: u32,
+    /// Whether tiles of pixels that no occluder can shadow are skipped; on by default.
+    pub classify: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { map: 256, taps: 16, classify: true }
+    }
+}
+
+impl Knobs for Settings {
+    const NAME: &'static str = "pcss";
+    const FIELDS: &'static [Field<Self>] = &[
+        Field::map(|s| s.map, |s, map| s.map = map),
+        Field::whole(
+            "taps",
+            "taps",
+            [1, 64],
+            "places of the map that a pixel looks at to find blockers, and as many again to filter",
+            |s| s.taps,
+            |s, taps| s.taps = taps,
+        ),
+        Field::classify(|s| s.classify, |s, on| s.classify = on),
+    ];
+}
+
+impl Room for Settings {
+    fn takes(&self) -> Takes {
+        Takes::RECTANGLES
+    }
+
+    fn shows(&self) -> Shows {
+        Shows::SOFT
+    }
+
+    fn maps(&self) -> Maps {
+        Maps::front(self.map)
+    }
+
+    fn declare(&self, graph: &mut Graph, inputs: &PassInputs) -> Option<ResourceId> {
+        let front = inputs.depth_layers(graph, self.maps().layers).front;
+        declare(graph, front, self, inputs);
+        Some(front)
+    }
+}
+
+/// Adds the passes that turn the map `front` into the visible fraction, with as many taps to search as to filter.
+fn declare(graph: &mut Graph, front: ResourceId, settings: &Settings, inputs: &PassInputs) {
     let taps = settings.taps;
     if !settings.classify {
-        one_map(graph, NAME, shaders::PCSS, (front, visibility), taps, &[], inputs);
+        one_map(graph, NAME, shaders::PCSS, front, taps, &[], inputs);
         return;
     }
-    let Inputs { gbuffer, occluders, need, .. } = *inputs;
+    let PassInputs { gbuffer, occluders, visibility, need, .. } = *inputs;
     let map = occluders.side;
     let row = nodes_a_row(map);
     let nearest = graph.buffer("baseline.nearest", 4 * u64::from(row * row));

@@ -67,6 +67,54 @@ pub mod push;
 mod settings;
 pub mod twin;
 
-pub use passes::{Inputs, declare, view, wanted};
-pub(crate) use passes::{list_bytes, view_of};
-pub use settings::{Hash, Layers, Projection, Sampling, Search, Settings};
+pub use settings::{Hash, Layers, Sampling, Search, Settings};
+
+use self::passes::{declare, list_bytes};
+use super::room::{Maps, Noise, PassInputs, Room, Shows, Takes};
+use crate::Error;
+use crate::graph::{Graph, ResourceId};
+use crate::stages::depth_layers::Wanted;
+
+impl Room for Settings {
+    fn takes(&self) -> Takes {
+        Takes { texture: true, ..Takes::RECTANGLES }
+    }
+
+    fn shows(&self) -> Shows {
+        Shows {
+            back_side: true,
+            fusion: self.layers == Layers::Four,
+            eye_layer: self.layers == Layers::Eye,
+            noise: if self.filter {
+                Noise::FilteredFrom(self.filtered_from())
+            } else {
+                Noise::Unfiltered
+            },
+            ..Shows::SOFT
+        }
+    }
+
+    fn maps(&self) -> Maps {
+        let inner = self.layers == Layers::Four;
+        Maps {
+            layers: Wanted { map: self.map, back: true, inner, receiver_map: None },
+            eye: self.projection,
+            back_can_be_dropped: true,
+            ..Maps::front(self.map)
+        }
+    }
+
+    fn declare(&self, graph: &mut Graph, inputs: &PassInputs) -> Option<ResourceId> {
+        let layers = inputs.depth_layers(graph, self.maps().layers);
+        declare(graph, &layers, self, inputs);
+        Some(layers.front)
+    }
+
+    fn check_agreement(&self) -> Result<(), Error> {
+        self.check_together()
+    }
+
+    fn pixel_list(&self, extent: [u32; 2]) -> Option<(u64, &'static str)> {
+        Some((list_bytes(extent), "up to 11 million pixels work"))
+    }
+}

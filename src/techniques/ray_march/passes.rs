@@ -1,94 +1,18 @@
 //! The rows: layers → columns → levels; pixels → list → rays.
 
 use super::push;
-use super::settings::{Hash, Layers, Projection, Sampling, Search, Settings};
-use crate::RectangleLight;
+use super::settings::{Hash, Layers, Sampling, Search, Settings};
 use crate::graph::{Access, Graph, Need, Owner, Pass, Push, ResourceId, Use, Uses, Work};
-use crate::lent::MeshBounds;
 use crate::shaders::{self, Module};
-use crate::stages::depth_layers::{
-    DepthLayers, Eye, LightBox, MapView, Wanted, fit_boxes, fit_boxes_from,
-};
+use crate::stages::depth_layers::{DepthLayers, Eye};
 use crate::stages::nbuffer::{self, Levels};
-use crate::stages::visibility::{self, COLOR_FORMAT, GBuffer, grid};
-use glam::DMat4;
+use crate::stages::visibility::{self, COLOR_FORMAT, grid};
+use crate::techniques::room::PassInputs;
 use smallvec::smallvec;
 
 /// The list of pixels: its head, and for each where it is and the heights that its rays need look at.
-pub(crate) fn list_bytes([width, height]: [u32; 2]) -> u64 {
+pub(super) fn list_bytes([width, height]: [u32; 2]) -> u64 {
     80 + 12 * u64::from(width) * u64::from(height)
-}
-
-/// What a frame gives the technique.
-#[derive(Clone, Copy, Debug)]
-pub struct Inputs<'a> {
-    /// The light.
-    pub light: &'a RectangleLight,
-    /// How the layers look at the scene.
-    pub view: &'a MapView,
-    /// The host's pixels.
-    pub gbuffer: &'a GBuffer,
-    /// Light space to the G-buffer's NDC, by column.
-    pub ndc_from_light: [f32; 16],
-    /// Added to the seed.
-    pub noise: u32,
-    /// What the light emits over its surface; the same everywhere without.
-    pub light_texture: Option<ResourceId>,
-    /// Whether the visible fraction is one of each color.
-    pub color: bool,
-    /// 2^−(sub-pixel bits): how far the device's rasters move a vertex, in texels.
-    pub snap: f32,
-    /// How far off the w of an occluder may be beyond its rounding, 1/m.
-    pub depth_error: f64,
-    /// Whether anything can be shadowed.
-    pub need: &'a Need,
-    /// Whether the noise filter is needed, where the settings have one.
-    pub filter: &'a Need,
-}
-
-/// The depth layers that these settings read, with maps of `map` texels a side.
-pub fn wanted(settings: &Settings, map: u32) -> Wanted {
-    Wanted { map, back: true, inner: settings.layers == Layers::Four, receiver_map: None }
-}
-
-/// How far behind the light the projection point lies at most, over the distance of the furthest occluder.
-/// From there on rays of the map are parallel to within 1/64, and a height's rounding, 6e-8 of it, is that of
-/// a distance 65 times as large: 4e-6 of the furthest occluder's, a thousandth of a texel where 256 cover it.
-const MOST_BEHIND: f64 = 64.0;
-
-/// How the layers look at the occluders; none where there are none in front of the light.
-///
-/// The projection point lies so far behind the light that the light fills the angle under which its centre
-/// sees the occluders (Curtis 2009 eq. 3.1). Rays need no more than that: they are cut to what lies over
-/// the map, and beyond the map there are no occluders. For a light so large that this would be further away
-/// than 64 times the furthest occluder the point lies there; rays to its rim leave the map through its sides.
-pub fn view(
-    light: &RectangleLight,
-    occluders: &[(MeshBounds, DMat4)],
-    projection: Projection,
-    side: u32,
-) -> Option<MapView> {
-    view_of(light.half_extents(), &LightBox::of_all(light, occluders), projection, side)
-}
-
-/// The same of boxes, for a light of these half-extents.
-pub(crate) fn view_of(
-    half: [f64; 2],
-    occluders: &[LightBox],
-    projection: Projection,
-    side: u32,
-) -> Option<MapView> {
-    let eye = match projection {
-        Projection::Centre => Eye::Behind(0.0),
-        Projection::Orthographic => Eye::Infinity,
-        Projection::Behind => {
-            let from_centre = fit_boxes(occluders, None, side)?;
-            let tangent = |i: usize| from_centre.max[i].abs().max(from_centre.min[i].abs());
-            let behind = [0, 1].map(|i| half[i] / tangent(i)).into_iter().fold(0.0, f64::max);
-            Eye::Behind(behind.min(MOST_BEHIND * from_centre.far))
-        }
-    };
-    fit_boxes_from(eye, occluders, side)
 }
 
 /// The shaders of some settings.
@@ -100,7 +24,7 @@ struct Shaders {
 }
 
 /// What most settings have is compiled apart from what seldom is asked for.
-fn shaders_of(settings: &Settings, inputs: &Inputs) -> Shaders {
+fn shaders_of(settings: &Settings, inputs: &PassInputs) -> Shaders {
     let usual = settings.levels == nbuffer::Kind::NBuffer
         && settings.search == Search::Hierarchical
         && settings.layers != Layers::Eye;
@@ -121,14 +45,14 @@ fn shaders_of(settings: &Settings, inputs: &Inputs) -> Shaders {
     }
 }
 
-/// Adds the rows that turn depth layers into `visibility`.
-pub fn declare(
+/// Adds the passes that turn depth layers into the visible fraction.
+pub(super) fn declare(
     graph: &mut Graph,
     layers: &DepthLayers,
-    visibility: ResourceId,
     settings: &Settings,
-    inputs: &Inputs,
+    inputs: &PassInputs,
 ) {
+    let visibility = inputs.visibility;
     let windows = declare_levels(graph, layers, settings, inputs);
     let gbuffer = inputs.gbuffer;
     let arguments = graph.buffer("ray_march.arguments", 16);
@@ -224,9 +148,9 @@ fn declare_levels(
     graph: &mut Graph,
     layers: &DepthLayers,
     settings: &Settings,
-    inputs: &Inputs,
+    inputs: &PassInputs,
 ) -> ResourceId {
-    let map = inputs.view.side;
+    let map = inputs.occluders.side;
     let levels = Levels { map, kind: settings.levels };
     let windows = graph.image_array("ray_march.windows", COLOR_FORMAT, [map; 2], levels.layers());
     let back = layers.back.unwrap_or(layers.front);
@@ -239,7 +163,7 @@ fn declare_levels(
         Push::new(&push::Columns {
             map: map as i32,
             layers: if four { 4 } else { 2 },
-            height: inputs.view.top() as f32,
+            height: inputs.occluders.top() as f32,
         }),
         smallvec![
             Use::bound(0, layers.front, Access::SampledCompute),
@@ -268,8 +192,8 @@ fn declare_levels(
     windows
 }
 
-fn pixel_push(settings: &Settings, inputs: &Inputs) -> push::Pixels {
-    let Inputs { view, gbuffer, light, .. } = inputs;
+fn pixel_push(settings: &Settings, inputs: &PassInputs) -> push::Pixels {
+    let PassInputs { occluders: view, gbuffer, light, .. } = inputs;
     let [half_x, half_y] = light.half_extents();
     let rays = f64::from(settings.rays);
     let rows = (rays * half_y / half_x).sqrt().round().clamp(1.0, rays) as i32;

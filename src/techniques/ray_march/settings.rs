@@ -1,6 +1,8 @@
 //! The knobs of ray marching.
 
 use crate::Error;
+use crate::knob::{Field, Knobs, choice, choices};
+use crate::stages::depth_layers::Projection;
 use crate::stages::nbuffer::{self, Levels};
 
 /// The depth layers that say what is solid.
@@ -16,28 +18,7 @@ pub enum Layers {
     Four,
 }
 
-impl Layers {
-    /// Every choice and its name.
-    pub const ALL: &[(&str, Self)] = &[("2", Self::Two), ("3", Self::Eye), ("4", Self::Four)];
-}
-
-/// Where the layers are seen from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Projection {
-    /// A point behind the light (eq. 3.1).
-    #[default]
-    Behind,
-    /// The light's centre.
-    Centre,
-    /// Infinitely far (section 5.1).
-    Orthographic,
-}
-
-impl Projection {
-    /// Every choice and its name.
-    pub const ALL: &[(&str, Self)] =
-        &[("behind", Self::Behind), ("centre", Self::Centre), ("orthographic", Self::Orthographic)];
-}
+choices! { Layers: "2" => Two, "3" => Eye, "4" => Four }
 
 /// How a ray looks for what stops it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -49,11 +30,7 @@ pub enum Search {
     Linear,
 }
 
-impl Search {
-    /// Every choice and its name.
-    pub const ALL: &[(&str, Self)] =
-        &[("hierarchical", Self::Hierarchical), ("linear", Self::Linear)];
-}
+choices! { Search: "hierarchical" => Hierarchical, "linear" => Linear }
 
 /// Where on the light a pixel's rays go.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -67,14 +44,7 @@ pub enum Sampling {
     LowDiscrepancy,
 }
 
-impl Sampling {
-    /// Every choice and its name.
-    pub const ALL: &[(&str, Self)] = &[
-        ("jittered", Self::Jittered),
-        ("random", Self::Random),
-        ("low-discrepancy", Self::LowDiscrepancy),
-    ];
-}
+choices! { Sampling: "jittered" => Jittered, "random" => Random, "low-discrepancy" => LowDiscrepancy }
 
 /// What makes random numbers of pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -86,23 +56,22 @@ pub enum Hash {
     Md5,
 }
 
-impl Hash {
-    /// Every choice and its name.
-    pub const ALL: &[(&str, Self)] = &[("pcg", Self::Pcg), ("md5", Self::Md5)];
-}
+choices! { Hash: "pcg" => Pcg, "md5" => Md5 }
 
-/// Every knob of ray marching but the maps' side, which all techniques share.
+/// The knobs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
+    /// The side of the depth layers and the N-buffer, texels, 1 to 4096; 256 by default.
+    pub map: u32,
     /// Rays a pixel, 1 to 256; 16 by default.
     pub rays: u32,
-    /// Where they go.
+    /// Where the rays go.
     pub sampling: Sampling,
-    /// What the random numbers come from.
+    /// What makes the random numbers.
     pub hash: Hash,
     /// Which random numbers; another one each frame changes the noise.
     pub seed: u32,
-    /// How they look for what stops them.
+    /// How rays look for what stops them.
     pub search: Search,
     /// The windows of the hierarchical search.
     pub levels: nbuffer::Kind,
@@ -110,15 +79,16 @@ pub struct Settings {
     pub layers: Layers,
     /// Where the layers are seen from.
     pub projection: Projection,
-    /// Whether rays are only spent where a window of the N-buffer cannot say that they are not needed.
+    /// Whether rays are only spent where a window of the N-buffer cannot say that they are not needed; on by default.
     pub classify: bool,
-    /// Whether noise is filtered, where filtering takes more of it away than it blurs.
+    /// Whether noise is filtered, where filtering takes more of it away than it blurs; on by default.
     pub filter: bool,
 }
 
 impl Default for Settings {
     fn default() -> Self {
         Self {
+            map: 256,
             rays: 16,
             sampling: Sampling::default(),
             hash: Hash::default(),
@@ -133,22 +103,86 @@ impl Default for Settings {
     }
 }
 
-/// Of a window's bounds, or a column.
-const TEXEL_BYTES: u64 = 16;
-
-/// Windows at every texel take a layer as large as the map for each of their sizes: more than this for them
-/// is more than a shadow should have.
-const MOST_BYTES: u64 = 1 << 28;
+impl Knobs for Settings {
+    const NAME: &'static str = "ray-march";
+    const FIELDS: &'static [Field<Self>] = &[
+        Field::map(|s| s.map, |s, map| s.map = map),
+        Field::whole(
+            "seed",
+            "whole number",
+            [0, u32::MAX],
+            "which random numbers place the rays",
+            |s| s.seed,
+            |s, seed| s.seed = seed,
+        ),
+        Field::whole(
+            "rays",
+            "rays a pixel",
+            [1, 256],
+            "rays that a pixel in penumbra sends to the light; any whole number",
+            |s| s.rays,
+            |s, rays| s.rays = rays,
+        ),
+        choice!(
+            "layers",
+            Layers,
+            "depth layers that say what is solid: 2, from the nearest to the furthest faces; 3, that but for what the \
+             eye looks through; 4, two pieces, each from a front to a back face",
+            layers
+        ),
+        choice!(
+            "search",
+            Search,
+            "how a ray looks for what stops it: by windows of the N-buffer, or a texel at a time",
+            search
+        ),
+        choice!(
+            "sampling",
+            Sampling,
+            "where the rays of a pixel go: each to a random place in a cell of its own, each anywhere, or to the \
+             points of a scrambled sequence",
+            sampling
+        ),
+        choice!(
+            "hash",
+            Hash,
+            "what makes random numbers of pixels; md5 is the one of 16 rounds that Curtis 2009 published",
+            hash
+        ),
+        choice!(
+            "levels",
+            nbuffer::Kind,
+            "the windows of the hierarchical search: 2^k texels a side at every texel, 3^k, or 2^k side by side; mip \
+             where map is above 1024",
+            levels
+        ),
+        choice!(
+            "projection",
+            Projection,
+            "where the layers are seen from: a point behind the light, its centre, or infinitely far",
+            projection
+        ),
+        Field::switch(
+            "classify",
+            "pixels that a window of the N-buffer shows to be lit or in umbra send no rays, and rays are cut to the \
+             heights that matter; off is for measuring what that saves",
+            |s| s.classify,
+            |s, on| s.classify = on,
+        ),
+        Field::switch(
+            "filter",
+            "noise is filtered, as widely as takes more noise away than it blurs: less with many rays, and not at all \
+             where penumbrae are narrow",
+            |s| s.filter,
+            |s, on| s.filter = on,
+        ),
+    ];
+}
 
 impl Settings {
-    /// Whether the knob with this key is within its range; keys of other techniques pass.
-    pub(crate) fn in_range(&self, key: &str) -> bool {
-        key != "rays" || (1..=256).contains(&self.rays)
-    }
-
-    /// Checks the knobs that must agree with each other and with the maps' side.
-    pub(crate) fn check_agreement(&self, map: u32) -> Result<(), Error> {
-        let levels = Levels { map, kind: self.levels };
+    /// Checks the knobs that must agree with each other.
+    pub(super) fn check_together(&self) -> Result<(), Error> {
+        let levels = Levels { map: self.map, kind: self.levels };
         // Levels side by side are two layers, whatever the map.
         if levels.kind == nbuffer::Kind::Mip || levels.texels() * TEXEL_BYTES <= MOST_BYTES {
             return Ok(());
@@ -156,14 +190,30 @@ impl Settings {
         Err(Error::Setting {
             key: "levels".into(),
             problem: format!(
-                "the windows of a map of {map} texels a side need {} MiB, more than the {} that they may \
+                "the windows of a map of {} texels a side need {} MiB, more than the {} that they may \
                  have; set levels=mip or map=1024",
+                self.map,
                 (levels.texels() * TEXEL_BYTES) >> 20,
                 MOST_BYTES >> 20
             ),
         })
     }
 
-    /// The switches' names.
-    pub(crate) const SWITCH: &[(&str, bool)] = &[("on", true), ("off", false)];
+    /// The width of penumbra from which the noise filter does anything, pixels: its Gaussian's standard deviation a is
+    /// given by a³ = N W² / (4 √π), `filter.glsl`.
+    pub(super) fn filtered_from(&self) -> f64 {
+        let random = self.sampling == Sampling::Random;
+        let noise = 0.33 * f64::from(self.rays).powf(if random { -0.5 } else { -0.75 });
+        (LEAST_FILTER.powi(3) * 7.09 / noise).sqrt()
+    }
 }
+
+/// The Gaussian below which the noise filter changes nothing, pixels (`filter.glsl`).
+const LEAST_FILTER: f64 = 0.4;
+
+/// Bytes of a window's bounds, or of a column.
+const TEXEL_BYTES: u64 = 16;
+
+/// Windows at every texel take a layer as large as the map for each of their sizes: more than this for them
+/// is more than a shadow should have.
+const MOST_BYTES: u64 = 1 << 28;

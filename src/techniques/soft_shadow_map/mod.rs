@@ -86,5 +86,52 @@ pub mod push;
 mod settings;
 pub mod twin;
 
-pub use passes::{BLEND_STEPS, Inputs, declare, receiver_grid, wanted};
+pub use passes::{BLEND_STEPS, receiver_grid};
 pub use settings::{Accumulate, Receivers, Settings, Sides, spread_of};
+
+use self::passes::declare;
+use super::room::{Maps, PassInputs, Room, Shows, Takes};
+use crate::Error;
+use crate::graph::{Graph, ResourceId};
+use crate::stages::depth_layers::Wanted;
+
+impl Room for Settings {
+    fn takes(&self) -> Takes {
+        Takes::RECTANGLES
+    }
+
+    fn shows(&self) -> Shows {
+        let both = self.sides != Sides::One;
+        let self_shadowing = self.receivers == Receivers::Pixels;
+        Shows { back_side: both, fusion: both, self_shadowing, ..Shows::SOFT }
+    }
+
+    fn maps(&self) -> Maps {
+        let at_pixels = self.receivers == Receivers::Pixels;
+        Maps {
+            layers: Wanted {
+                map: self.map,
+                back: self.sides != Sides::One,
+                inner: false,
+                receiver_map: (!at_pixels).then_some(self.receiver_map),
+            },
+            // A soft shadow map has passes for each side.
+            back_can_be_dropped: at_pixels,
+            ..Maps::front(self.map)
+        }
+    }
+
+    fn declare(&self, graph: &mut Graph, inputs: &PassInputs) -> Option<ResourceId> {
+        let layers = inputs.depth_layers(graph, self.maps().layers);
+        declare(graph, &layers, self, inputs);
+        Some(layers.front)
+    }
+
+    fn check_agreement(&self) -> Result<(), Error> {
+        self.check_together()
+    }
+
+    fn blends_f32(&self) -> bool {
+        self.accumulate == Accumulate::Blend
+    }
+}

@@ -1,13 +1,14 @@
 //! The rows of soft shadow maps.
 
-use super::{Accumulate, Receivers, Settings, Sides, pixels, push, spread_of};
-use crate::RectangleLight;
+use super::settings::{Accumulate, Receivers, Settings, Sides, spread_of};
+use super::{pixels, push};
 use crate::graph::{
-    Access, Draw, Graph, Need, Owner, Pass, Push, ResourceId, STORAGE_BYTES, Target, Use, Work,
+    Access, Draw, Graph, Owner, Pass, Push, ResourceId, STORAGE_BYTES, Target, Use, Work,
 };
 use crate::shaders;
-use crate::stages::depth_layers::{DepthLayers, MapView, Wanted};
-use crate::stages::visibility::{self, GBuffer};
+use crate::stages::depth_layers::{DepthLayers, MapView};
+use crate::stages::visibility::{self};
+use crate::techniques::room::PassInputs;
 use ash::vk;
 use smallvec::{SmallVec, smallvec};
 
@@ -23,35 +24,6 @@ const FAMILY: u64 = 17;
 /// Blocks a group, as in `patch_count.comp`.
 const GROUP: u32 = 64;
 
-/// What a frame gives the technique.
-#[derive(Clone, Copy, Debug)]
-pub struct Inputs<'a> {
-    /// The light.
-    pub light: &'a RectangleLight,
-    /// How the occluder maps look at the scene.
-    pub occluders: &'a MapView,
-    /// How the receiver map does, where there is one.
-    pub receivers: Option<&'a MapView>,
-    /// The host's pixels.
-    pub gbuffer: &'a GBuffer,
-    /// 2^−(sub-pixel bits): how far the device's rasters move a vertex, in texels.
-    pub snap: f32,
-    /// How far off the w of an occluder may be beyond its rounding, 1/m.
-    pub depth_error: f64,
-    /// Whether anything can be shadowed.
-    pub need: &'a Need,
-}
-
-/// The depth layers that these settings read, with occluder maps of `map` texels a side.
-pub fn wanted(settings: &Settings, map: u32) -> Wanted {
-    Wanted {
-        map,
-        back: settings.sides != Sides::One,
-        inner: false,
-        receiver_map: (settings.receivers == Receivers::Map).then_some(settings.receiver_map),
-    }
-}
-
 /// The occluder map's nodes, as resources and sizes.
 #[derive(Clone, Copy)]
 pub(super) struct Nodes {
@@ -66,14 +38,14 @@ pub(super) struct Nodes {
     pub superblock_row: u32,
 }
 
-/// Adds the rows that turn depth layers into `visibility`.
-pub fn declare(
+/// Adds the passes that turn depth layers into the visible fraction.
+pub(super) fn declare(
     graph: &mut Graph,
     layers: &DepthLayers,
-    visibility: ResourceId,
     settings: &Settings,
-    inputs: &Inputs,
+    inputs: &PassInputs,
 ) {
+    let (visibility, view) = (inputs.visibility, inputs.receivers);
     // Without a back layer the front is all there is to both sides. A map of the receivers has rows for each side, which
     // stay as they are.
     let one = Settings { sides: Sides::One, ..*settings };
@@ -81,8 +53,8 @@ pub fn declare(
     let settings = if at_pixels && layers.back.is_none() { &one } else { settings };
     let gather = settings.accumulate == Accumulate::Gather;
     let nodes = declare_nodes(graph, layers, settings, inputs, gather);
-    match (settings.receivers, layers.receivers, inputs.receivers) {
-        (Receivers::Map, Some(receiver_depth), Some(view)) => {
+    match (settings.receivers, layers.receivers) {
+        (Receivers::Map, Some(receiver_depth)) => {
             let maps: SmallVec<[_; 2]> = sides(settings)
                 .iter()
                 .map(|&side| {
@@ -98,7 +70,7 @@ pub fn declare(
             let resolve = visibility::Resolve { receiver_depth, view, maps: both, mean };
             visibility::resolve(graph, visibility, &resolve, inputs.gbuffer, inputs.need);
         }
-        _ => pixels::gather(graph, &nodes, visibility, settings, inputs),
+        _ => pixels::gather(graph, &nodes, settings, inputs),
     }
 }
 
@@ -119,7 +91,7 @@ fn declare_nodes(
     graph: &mut Graph,
     layers: &DepthLayers,
     settings: &Settings,
-    inputs: &Inputs,
+    inputs: &PassInputs,
     superblocks_too: bool,
 ) -> Nodes {
     let sides = sides(settings).len() as u32;
@@ -189,7 +161,7 @@ pub fn receiver_grid(view: &MapView, occluders: &MapView) -> ([f32; 2], [f32; 2]
     (step.map(|s| s as f32), zero)
 }
 
-pub(super) fn scale_of(inputs: &Inputs) -> [f32; 2] {
+pub(super) fn scale_of(inputs: &PassInputs) -> [f32; 2] {
     inputs.occluders.scale(inputs.light).map(|s| s as f32)
 }
 
@@ -199,7 +171,7 @@ fn gather_map(
     receiver_depth: ResourceId,
     side: u32,
     settings: &Settings,
-    inputs: &Inputs,
+    inputs: &PassInputs,
     view: &MapView,
 ) -> ResourceId {
     const NAMES: [[&str; 2]; 2] = [
@@ -248,7 +220,7 @@ fn blend_map(
     receiver_depth: ResourceId,
     side: u32,
     settings: &Settings,
-    inputs: &Inputs,
+    inputs: &PassInputs,
     view: &MapView,
 ) -> ResourceId {
     const NAMES: [[&str; 5]; 2] = [

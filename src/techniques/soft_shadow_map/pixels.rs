@@ -1,23 +1,19 @@
 //! The rows of the gather at the G-buffer's pixels.
 
-use super::passes::{Inputs, Nodes, scale_of, sides};
-use super::{Settings, Sides, push, spread_of};
-use crate::graph::{Access, Graph, Pass, Push, ResourceId, Use};
+use super::passes::{Nodes, scale_of, sides};
+use super::push;
+use super::settings::{Settings, Sides, spread_of};
+use crate::graph::{Access, Graph, Pass, Push, Use};
 use crate::shaders;
 use crate::stages::tiles::Tiles;
+use crate::techniques::room::PassInputs;
 use smallvec::smallvec;
 
 const NAME: &str = "soft_shadow_map.gather_pixels";
 
 /// Adds the rows that gather at the pixels: at all of them, or at those of tiles that may feel an occluder.
-pub(super) fn gather(
-    graph: &mut Graph,
-    nodes: &Nodes,
-    visibility: ResourceId,
-    settings: &Settings,
-    inputs: &Inputs,
-) {
-    let gbuffer = inputs.gbuffer;
+pub(super) fn gather(graph: &mut Graph, nodes: &Nodes, settings: &Settings, inputs: &PassInputs) {
+    let (gbuffer, visibility) = (inputs.gbuffer, inputs.visibility);
     let [width, height] = gbuffer.extent;
     let push = Push::new(&pixel_push(nodes, settings, inputs));
     let write = if settings.classify { Access::ImageUpdate } else { Access::ImageWrite };
@@ -41,8 +37,8 @@ pub(super) fn gather(
     }
 }
 
-fn pixel_push(nodes: &Nodes, settings: &Settings, inputs: &Inputs) -> push::GatherPixels {
-    let Inputs { gbuffer, occluders, .. } = inputs;
+fn pixel_push(nodes: &Nodes, settings: &Settings, inputs: &PassInputs) -> push::GatherPixels {
+    let PassInputs { gbuffer, occluders, .. } = inputs;
     let two = i32::from(sides(settings).len() == 2);
     let mean = i32::from(settings.sides == Sides::Mean);
     push::GatherPixels {

@@ -1,6 +1,7 @@
 //! The knobs of soft shadow maps, and the gather's tolerance.
 
 use crate::Error;
+use crate::knob::{Field, Knobs, choice, choices};
 
 /// Where visibility is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -12,10 +13,7 @@ pub enum Receivers {
     Map,
 }
 
-impl Receivers {
-    /// Every choice and its name.
-    pub const ALL: &[(&str, Self)] = &[("pixels", Self::Pixels), ("map", Self::Map)];
-}
+choices! { Receivers: "pixels" => Pixels, "map" => Map }
 
 /// Which faces of the occluders become micro-patches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -34,11 +32,7 @@ pub enum Sides {
     Mean,
 }
 
-impl Sides {
-    /// Every choice and its name.
-    pub const ALL: &[(&str, Self)] =
-        &[("one", Self::One), ("bottom", Self::Bottom), ("two", Self::Two), ("mean", Self::Mean)];
-}
+choices! { Sides: "one" => One, "bottom" => Bottom, "two" => Two, "mean" => Mean }
 
 /// How micro-patches are added up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -52,33 +46,32 @@ pub enum Accumulate {
     BlendFp16,
 }
 
-impl Accumulate {
-    /// Every choice and its name.
-    pub const ALL: &[(&str, Self)] =
-        &[("gather", Self::Gather), ("blend", Self::Blend), ("blend-fp16", Self::BlendFp16)];
-}
+choices! { Accumulate: "gather" => Gather, "blend" => Blend, "blend-fp16" => BlendFp16 }
 
-/// Every knob of soft shadow maps.
+/// The knobs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
+    /// The occluder map's side, texels, 1 to 4096; 256 by default.
+    pub map: u32,
     /// The soft shadow map's side, texels, 1 to 4096; 256 by default. Unused at the pixels.
     pub receiver_map: u32,
     /// Where visibility is computed.
     pub receivers: Receivers,
     /// Which faces become micro-patches.
     pub sides: Sides,
-    /// How they are added up.
+    /// How micro-patches are added up.
     pub accumulate: Accumulate,
     /// The most that the gather's series may add to the error of the visible fraction, 0 to 0.1;
-    /// 1e-4 by default. 0 uses it only where it is exact.
+    /// 1e-4 by default. 0 uses the series only where it is exact.
     pub tolerance: f32,
-    /// Whether tiles of pixels that no occluder can be felt from are left out of the gather, at the pixels.
+    /// Whether tiles of pixels that no occluder can shadow are skipped, at the pixels; on by default.
     pub classify: bool,
 }
 
 impl Default for Settings {
     fn default() -> Self {
         Self {
+            map: 256,
             receiver_map: 256,
             receivers: Receivers::default(),
             sides: Sides::default(),
@@ -89,18 +82,56 @@ impl Default for Settings {
     }
 }
 
-impl Settings {
-    /// Whether the knob with this key is within its range; keys of other techniques pass.
-    pub(crate) fn in_range(&self, key: &str) -> bool {
-        match key {
-            "receiver_map" => (1..=4096).contains(&self.receiver_map),
-            "tolerance" => (0.0..=0.1).contains(&self.tolerance),
-            _ => true,
-        }
-    }
+impl Knobs for Settings {
+    const NAME: &'static str = "soft-shadow-map";
+    const FIELDS: &'static [Field<Self>] = &[
+        Field::map(|s| s.map, |s, map| s.map = map),
+        Field::whole(
+            "receiver_map",
+            "texels",
+            [1, 4096],
+            "side of the soft shadow map, with receivers=map",
+            |s| s.receiver_map,
+            |s, side| s.receiver_map = side,
+        ),
+        choice!(
+            "receivers",
+            Receivers,
+            "where visibility is computed: at the G-buffer's pixels, with self-shadowing, or on a soft shadow map that \
+             is projected onto them, without",
+            receivers
+        ),
+        choice!(
+            "sides",
+            Sides,
+            "which faces of the occluders shadow: one, the front faces; bottom, front texels at the distance of the \
+             back faces; two, the darker of both; mean, the average of both, which is the nearest to the truth \
+             (blending takes the darker)",
+            sides
+        ),
+        choice!(
+            "accumulate",
+            Accumulate,
+            "how micro-patches are added up; the blends need receivers=map, and blend-fp16 is for studying what goes \
+             wrong with 16-bit floats",
+            accumulate
+        ),
+        Field::real(
+            "tolerance",
+            "visible fraction",
+            [0.0, 0.1],
+            "most that the gather's shortcut for far texels may add to the error; 0 uses the shortcut only where it is \
+             exact",
+            |s| s.tolerance,
+            |s, tolerance| s.tolerance = tolerance,
+        ),
+        Field::classify(|s| s.classify, |s, on| s.classify = on),
+    ];
+}
 
-    /// Checks the knobs that depend on each other.
-    pub(crate) fn check_agreement(&self) -> Result<(), Error> {
+impl Settings {
+    /// Checks the knobs that must agree with each other.
+    pub(super) fn check_together(&self) -> Result<(), Error> {
         if self.receivers == Receivers::Pixels && self.accumulate != Accumulate::Gather {
             return Err(Error::Setting {
                 key: "accumulate".into(),

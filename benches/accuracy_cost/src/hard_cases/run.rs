@@ -7,8 +7,8 @@ use super::techniques::{self, Expected, Held};
 use crate::Problem;
 use crate::scenes::scaled;
 use antumbra::scene::{Instance, Role, Scene};
-use antumbra::{FramePlan, Settings};
-use antumbra_harness::{HeadlessDevice, Stage, View};
+use antumbra::{FramePlan, Technique};
+use antumbra_harness::{HeadlessDevice, Stage, View, technique_of};
 use std::collections::BTreeMap;
 
 /// The image's side in pixels.
@@ -70,16 +70,8 @@ fn told(error: antumbra::Error) -> Problem {
 ///
 /// # Errors
 /// A sentence for one that is not known.
-pub fn settings(words: &str, map: u32) -> Result<Settings, Problem> {
-    let mut settings = Settings::default();
-    for word in words.split_whitespace() {
-        let (key, value) = word.split_once('=').ok_or_else(|| format!("{word} is no KEY=VALUE"))?;
-        if key == "technique" {
-            settings.technique = value.parse().map_err(told)?;
-        } else {
-            settings.set(key, value).map_err(told)?;
-        }
-    }
+pub fn settings(words: &str, map: u32) -> Result<Technique, Problem> {
+    let mut settings = technique_of(words).map_err(told)?;
     settings.set("map", &map.to_string()).map_err(told)?;
     Ok(settings)
 }
@@ -121,7 +113,7 @@ impl<'a> Prepared<'a> {
     fn show(&self, device: &HeadlessDevice, stage: Option<Stage>) -> Result<Stage, Problem> {
         let keep = |i: &Instance| i.role != Role::Occluder;
         let Some(mut stage) = stage else {
-            let settings = Settings::default();
+            let settings = Technique::default();
             return Stage::new(device, &self.scene, &self.view, [SIDE; 2], settings, keep)
                 .map_err(told);
         };

@@ -187,14 +187,14 @@ pub fn levels(report: &Report) -> String {
     let head =
         ["scene", "N", "levels", "MB", "build", "classify", "trace", "sum", "held", "mean %"];
     out += &row_of(head.map(String::from), "th");
-    let tight: Vec<f64> = Kind::ALL.iter().map(|(_, kind)| tightness(*kind)).collect();
+    let tight: Vec<f64> = Kind::ALL.iter().map(|kind| tightness(*kind)).collect();
     for row in report.study(sweeps::LEVELS) {
-        let Some(nth) = Kind::ALL.iter().position(|(name, _)| *name == row.curve) else { continue };
+        let Some(nth) = Kind::NAMES.iter().position(|name| *name == row.curve) else { continue };
         let Some((errors, times)) = row.measured() else { continue };
         let passes = || times.passes.iter().map(|(name, ms)| (name.as_str(), *ms));
         let [build, classify, trace] =
             [&BUILD[..], &["classify"], &["trace"]].map(|names| sum_of(passes(), names));
-        let levels = Levels { map: row.x as u32, kind: Kind::ALL[nth].1 };
+        let levels = Levels { map: row.x as u32, kind: Kind::ALL[nth] };
         out += &row_of(
             [
                 escape(&row.scene),

@@ -28,5 +28,5 @@ pub fn rounded_tile<T: Float>(tile: &Bounds<T>) -> Bounds<T> {
 /// The first pixel of a listed tile, and whether an occluder may be felt there.
 pub fn listed_tile(word: u32) -> ([u32; 2], bool) {
     let tile = [word & 0x7fff, word >> 15 & 0x7fff];
-    (tile.map(|i| i * crate::stages::tiles::TILE), word & 1 << 30 != 0)
+    (tile.map(|i| i * super::TILE), word & 1 << 30 != 0)
 }

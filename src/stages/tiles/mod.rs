@@ -24,6 +24,8 @@
 //!
 //! The order of the list is up to the device; each tile writes its own pixels alone, so the image is not.
 
+pub mod twin;
+
 use super::visibility::GBuffer;
 use crate::graph::{Access, Graph, Need, Pass, Push, ResourceId, Use, Uses, Work};
 use crate::shaders::{self, Module};

@@ -1,0 +1,24 @@
+//! Techniques in words, as tests and benches write them.
+
+use antumbra::{Error, Technique};
+
+/// A technique from `key=value` words. `technique=NAME` as the first of them names the technique, which is the default
+/// one without it: `"technique=pcss taps=8"`, `"map=128"`.
+///
+/// # Errors
+/// [`Error::Setting`] for a technique, a key or a value that is not known.
+pub fn technique_of(words: &str) -> Result<Technique, Error> {
+    let words = words.trim();
+    match words.strip_prefix("technique=") {
+        Some(rest) => rest.parse(),
+        None => format!("{} {words}", Technique::default().name()).parse(),
+    }
+}
+
+/// A technique by its name and settings, as in `"pcss taps=8"`.
+///
+/// # Panics
+/// Where there is none: the words stand in a test or a bench.
+pub fn technique(words: &str) -> Technique {
+    words.parse().unwrap_or_else(|e| panic!("{words}: {e}"))
+}

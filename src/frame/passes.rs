@@ -1,0 +1,260 @@
+//! The passes that a description calls for, with one frame's numbers in them.
+
+use super::Description;
+use crate::RectangleLight;
+use crate::effects::{Effect, Verdicts};
+use crate::graph::{Graph, Need, Owner, ResourceId, Why};
+use crate::stages::depth_layers::{self, Eye, HostMapView, LightLayers, MapView};
+use crate::stages::views::Views;
+use crate::stages::visibility::{self, GBuffer};
+use crate::techniques::hard::{self, Filter};
+use crate::techniques::room::PassInputs;
+use glam::DMat4;
+use smallvec::{SmallVec, smallvec};
+
+/// What a device's limits mean to a plan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// 2^−(sub-pixel bits): how far rasters move a vertex, in texels.
+    pub snap: f32,
+}
+
+impl Default for Limits {
+    /// The least that Vulkan guarantees: 4 sub-pixel bits.
+    fn default() -> Self {
+        Self { snap: 1.0 / 16.0 }
+    }
+}
+
+/// The resources of a frame's graph that the host needs to find again.
+pub(super) struct Ids {
+    pub depth: ResourceId,
+    pub mask: Option<ResourceId>,
+    pub occluder_maps: [Option<ResourceId>; 2],
+    pub light_texture: Option<ResourceId>,
+    pub visibility: ResourceId,
+}
+
+impl Ids {
+    /// What the camera sees.
+    pub fn pixels(&self) -> impl Iterator<Item = ResourceId> {
+        std::iter::once(self.depth).chain(self.mask)
+    }
+}
+
+/// A view for passes that do not run.
+pub(super) const PLACEHOLDER: MapView =
+    MapView { eye: Eye::Behind(0.0), min: [-1.0; 2], max: [1.0; 2], near: 1.0, far: 2.0, side: 16 };
+
+/// What the passes depend on, beyond the description.
+pub(super) struct Looks<'a> {
+    /// How the occluder map looks at the scene.
+    pub occluders: MapView,
+    /// The technique's own views; none where nothing can be shadowed.
+    pub views: &'a Views,
+    pub host_maps: Option<HostMapView>,
+    pub receivers: MapView,
+    pub needs: Needs,
+    pub light_from_ndc: [f32; 16],
+    pub ndc_from_light: [f32; 16],
+    pub noise: u32,
+    pub background: f32,
+}
+
+/// Which passes a frame needs.
+#[derive(Clone, Debug)]
+pub(super) struct Needs {
+    /// Those of the technique.
+    pub technique: Need<Why>,
+    /// A hard shadow in its place.
+    pub hard: Need<Why>,
+    /// The occluders' nearest faces, as the light's centre sees them.
+    pub front: Need<Why>,
+    /// Their furthest back faces.
+    pub back: Need<Why>,
+    /// Their nearest back faces and their furthest front faces.
+    pub inner: Need<Why>,
+    /// The noise filter.
+    pub filter: Need<Why>,
+}
+
+/// Whether a hard shadow can stand for what a technique makes: its image holds one visible fraction a pixel.
+fn hardens(description: &Description) -> bool {
+    description.technique.room().shows().penumbra && !description.has_color()
+}
+
+impl Needs {
+    /// Everything but what stands for something else.
+    fn all(need: &Need<Why>) -> Self {
+        let need = *need;
+        Self { technique: need, hard: need, front: need, back: need, inner: need, filter: need }
+    }
+
+    /// Each of them, in the order of the fields.
+    fn each(&self) -> [&Need<Why>; 6] {
+        [&self.technique, &self.hard, &self.front, &self.back, &self.inner, &self.filter]
+    }
+
+    /// A bit for each that is needed.
+    pub fn bits(&self) -> u8 {
+        let each = self.each().into_iter().enumerate();
+        each.fold(0, |bits, (i, need)| bits | u8::from(need.is_yes()) << i)
+    }
+
+    /// By whether anything can be shadowed, and what of it matters.
+    pub fn of(description: &Description, need: Need<Why>, verdicts: &Verdicts) -> Self {
+        let mut needs = Self::all(&need);
+        let Need::Yes(_) = &need else { return needs };
+        let left_out = |effect: Effect| {
+            let why =
+                Why::from(effect.rule().name).and(", ≤ ").number(verdicts.of(effect).bound, 4);
+            Need::No(why.and(": ").because(&verdicts.why(effect)))
+        };
+        let soft = verdicts.needs(Effect::Penumbra) || !hardens(description);
+        if soft {
+            needs.hard = Need::No("the penumbra is needed".into());
+        } else {
+            let why = left_out(Effect::Penumbra);
+            return Self { hard: need, front: need, ..Self::all(&why) };
+        }
+        if !verdicts.needs(Effect::BackSide)
+            && description.technique.room().maps().back_can_be_dropped
+        {
+            needs.back = left_out(Effect::BackSide);
+        }
+        if !verdicts.needs(Effect::Fusion) {
+            needs.inner = left_out(Effect::Fusion);
+        }
+        if !verdicts.needs(Effect::Noise) {
+            needs.filter = left_out(Effect::Noise);
+        }
+        needs
+    }
+}
+
+impl Looks<'_> {
+    /// Light space to the clip space of each view of the occluders.
+    pub fn occluder_clips(&self) -> SmallVec<[DMat4; 1]> {
+        match self.views.count() {
+            0 => smallvec![self.occluders.clip_from_light()],
+            _ => self.views.clips(),
+        }
+    }
+}
+
+/// Every pass that any frame of this description may run; a node makes its objects for them.
+pub(crate) fn all_passes(description: &Description, limits: Limits) -> Graph {
+    let room = description.technique.room();
+    let view = MapView { side: room.maps().side, ..PLACEHOLDER };
+    let looks = Looks {
+        occluders: view,
+        views: &room.most_views(view),
+        host_maps: description.occluder_maps.map(|_| HostMapView {
+            view,
+            flip: [false; 2],
+            scale: 1.0,
+            offset: 0.0,
+            far_value: 0.0,
+            near_value: 1.0,
+            error: 0.0,
+        }),
+        receivers: view,
+        needs: Needs::all(&Need::Yes("nominal".into())),
+        light_from_ndc: DMat4::IDENTITY.as_mat4().to_cols_array(),
+        ndc_from_light: DMat4::IDENTITY.as_mat4().to_cols_array(),
+        noise: 0,
+        background: 0.0,
+    };
+    let mut graph = Graph::new();
+    build(&mut graph, description, limits, &RectangleLight::unit(), &looks);
+    graph
+}
+
+/// The graph of a description with every pass that any of its frames may run; the numbers in its
+/// push constants mean nothing.
+pub fn full_graph(description: &Description) -> Graph {
+    all_passes(description, Limits::default())
+}
+
+/// Adds the passes of a frame to an empty graph.
+pub(super) fn build(
+    graph: &mut Graph,
+    description: &Description,
+    limits: Limits,
+    light: &RectangleLight,
+    looks: &Looks,
+) -> Ids {
+    let room = description.technique.room();
+    let maps = room.maps();
+    let ids = declare_host_images(graph, description);
+    let Ids { depth, mask, occluder_maps: [front, back], light_texture, visibility } = ids;
+    let extent = description.extent;
+    let Looks { light_from_ndc, background, .. } = *looks;
+    let gbuffer = GBuffer { depth, mask, extent, light_from_ndc, background };
+    let needs = &looks.needs;
+    let [need, hard, front_need, back_need, inner, filter] = &needs.each().map(|n| graph.need(n));
+    let layers = LightLayers {
+        occluders: match (front, &looks.host_maps) {
+            (Some(front), Some(camera)) => depth_layers::Occluders::Maps { front, back, camera },
+            _ => depth_layers::Occluders::Meshes,
+        },
+        needs: depth_layers::Needs {
+            front: if maps.front_is_whole { front_need } else { need },
+            back: back_need,
+            inner,
+            receivers: need,
+        },
+    };
+    let color = description.has_color();
+    let inputs = PassInputs {
+        light,
+        occluders: &looks.occluders,
+        receivers: &looks.receivers,
+        views: looks.views,
+        layers: &layers,
+        gbuffer: &gbuffer,
+        visibility,
+        ndc_from_light: looks.ndc_from_light,
+        noise: looks.noise,
+        light_texture,
+        color,
+        snap: limits.snap,
+        depth_error: looks.host_maps.map_or(0.0, |m| m.error),
+        need,
+        filter,
+    };
+    let nearest = room.declare(graph, &inputs);
+    if hardens(description) {
+        let front = nearest.unwrap_or_else(|| depth_layers::hard(graph, maps.side, hard));
+        hard::declare(graph, front, Filter::One, hard, &inputs);
+    }
+    let lit = match (&needs.technique, &needs.hard) {
+        (Need::No(why), Need::No(_)) => Need::Yes(*why),
+        _ => Need::No("something can be shadowed, and is written elsewhere".into()),
+    };
+    let lit = graph.need(&lit);
+    visibility::lit(graph, visibility, extent, color, lit);
+    ids
+}
+
+/// Declares the images of the border: what the host lends, and where the result goes.
+fn declare_host_images(graph: &mut Graph, description: &Description) -> Ids {
+    let Description { extent, .. } = *description;
+    let lent = Owner::Imported;
+    let depth = graph.image("gbuffer.depth", description.depth_format, extent, lent);
+    let mask =
+        description.mask_format.map(|format| graph.image("gbuffer.mask", format, extent, lent));
+    let maps = description.technique.room().maps();
+    let mut map = |name| {
+        let format = description.occluder_maps?;
+        Some(graph.image(name, format, [maps.side; 2], lent))
+    };
+    let front = map("occluder_maps.front");
+    let back = if maps.layers.back { map("occluder_maps.back") } else { None };
+    // Its size is the frame's to say; nothing is made from it.
+    let light_texture =
+        description.light_texture.map(|t| graph.image("light.texture", t.format, [1, 1], lent));
+    let visibility =
+        visibility::declare(graph, extent, description.has_color(), description.lent_visibility);
+    Ids { depth, mask, occluder_maps: [front, back], light_texture, visibility }
+}

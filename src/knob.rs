@@ -1,0 +1,299 @@
+//! Knobs: what a technique lets a user turn, each stated once.
+//!
+//! A room lists its knobs as [`Field`]s of its settings: key, unit, legal values, what the knob does, and how it is read
+//! and written. Ranges, defaults, help texts, errors and `docs/settings.md` follow from that. This file knows no
+//! technique.
+
+use crate::Error;
+use std::fmt;
+
+/// The values that a knob may have.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Values {
+    /// Whole numbers from the first to the second.
+    Whole(u32, u32),
+    /// Real numbers from the first to the second.
+    Real(f32, f32),
+    /// One of a few names.
+    Choice(&'static [&'static str]),
+    /// `on` or `off`.
+    Switch,
+}
+
+/// A range or the names, as part of a sentence.
+impl fmt::Display for Values {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Whole(least, most) => write!(f, "{least} to {most}"),
+            Self::Real(least, most) => write!(f, "{least} to {most}"),
+            Self::Choice(names) => f.write_str(&names.join(", ")),
+            Self::Switch => f.write_str("on, off"),
+        }
+    }
+}
+
+/// A knob as a reader sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Knob {
+    /// The key, as in `--set key=value`.
+    pub key: &'static str,
+    /// The unit of the value; `choice` and `switch` have none.
+    pub unit: &'static str,
+    /// The values that are legal.
+    pub values: Values,
+    /// What the knob does, and what 0 means where 0 is legal.
+    pub about: &'static str,
+}
+
+/// How one knob of the settings `S` is read and written.
+#[derive(Debug)]
+pub struct Field<S> {
+    knob: Knob,
+    access: Access<S>,
+}
+
+#[derive(Debug)]
+enum Access<S> {
+    Whole(fn(&S) -> u32, fn(&mut S, u32)),
+    Real(fn(&S) -> f32, fn(&mut S, f32)),
+    /// Writing says whether the name is one of the choices.
+    Choice(fn(&S) -> &'static str, fn(&mut S, &str) -> bool),
+    Switch(fn(&S) -> bool, fn(&mut S, bool)),
+}
+
+impl<S> Field<S> {
+    /// A whole number within a range, both ends legal.
+    pub const fn whole(
+        key: &'static str,
+        unit: &'static str,
+        [least, most]: [u32; 2],
+        about: &'static str,
+        get: fn(&S) -> u32,
+        set: fn(&mut S, u32),
+    ) -> Self {
+        let knob = Knob { key, unit, values: Values::Whole(least, most), about };
+        Self { knob, access: Access::Whole(get, set) }
+    }
+
+    /// A real number within a range, both ends legal.
+    pub const fn real(
+        key: &'static str,
+        unit: &'static str,
+        [least, most]: [f32; 2],
+        about: &'static str,
+        get: fn(&S) -> f32,
+        set: fn(&mut S, f32),
+    ) -> Self {
+        let knob = Knob { key, unit, values: Values::Real(least, most), about };
+        Self { knob, access: Access::Real(get, set) }
+    }
+
+    /// One of a few names; `set` says whether a name is one of them.
+    pub const fn choice(
+        key: &'static str,
+        names: &'static [&'static str],
+        about: &'static str,
+        get: fn(&S) -> &'static str,
+        set: fn(&mut S, &str) -> bool,
+    ) -> Self {
+        let knob = Knob { key, unit: "choice", values: Values::Choice(names), about };
+        Self { knob, access: Access::Choice(get, set) }
+    }
+
+    /// Something that is on or off.
+    pub const fn switch(
+        key: &'static str,
+        about: &'static str,
+        get: fn(&S) -> bool,
+        set: fn(&mut S, bool),
+    ) -> Self {
+        let knob = Knob { key, unit: "switch", values: Values::Switch, about };
+        Self { knob, access: Access::Switch(get, set) }
+    }
+
+    /// The side of the light-space maps, which every technique has.
+    pub const fn map(get: fn(&S) -> u32, set: fn(&mut S, u32)) -> Self {
+        const ABOUT: &str = "side of the occluder map, or of each of several; any whole number";
+        Self::whole("map", "texels", [1, 4096], ABOUT, get, set)
+    }
+
+    /// The switch of techniques that skip tiles of pixels.
+    pub const fn classify(get: fn(&S) -> bool, set: fn(&mut S, bool)) -> Self {
+        const ABOUT: &str = "skip 8×8-pixel tiles that no occluder can shadow, where visibility is computed at the \
+                             pixels; the image is the same, and off is for measuring what that saves";
+        Self::switch("classify", ABOUT, get, set)
+    }
+
+    fn text(&self, settings: &S) -> String {
+        match self.access {
+            Access::Whole(get, _) => get(settings).to_string(),
+            Access::Real(get, _) => get(settings).to_string(),
+            Access::Choice(get, _) => get(settings).into(),
+            Access::Switch(get, _) => if get(settings) { "on" } else { "off" }.into(),
+        }
+    }
+
+    fn set(&self, settings: &mut S, text: &str) -> Result<(), Error> {
+        let refuse = |problem: String| Err(self.refusal(&problem));
+        match (&self.access, text.trim()) {
+            (Access::Whole(_, set), text) => match text.parse() {
+                Ok(number) => set(settings, number),
+                Err(e) => return refuse(format!("\"{text}\" is no whole number ({e})")),
+            },
+            (Access::Real(_, set), text) => match text.parse() {
+                Ok(number) => set(settings, number),
+                Err(e) => return refuse(format!("\"{text}\" is no number ({e})")),
+            },
+            (Access::Choice(_, set), text) => {
+                if !set(settings, text) {
+                    return refuse(format!("\"{text}\" is not one of its choices"));
+                }
+            }
+            (Access::Switch(_, set), "on") => set(settings, true),
+            (Access::Switch(_, set), "off") => set(settings, false),
+            (Access::Switch(..), text) => {
+                return refuse(format!("\"{text}\" is neither on nor off"));
+            }
+        }
+        self.check(settings)
+    }
+
+    /// Whether the value lies within the range; choices and switches always do.
+    fn check(&self, settings: &S) -> Result<(), Error> {
+        let good = match (&self.access, self.knob.values) {
+            (Access::Whole(get, _), Values::Whole(least, most)) => {
+                (least..=most).contains(&get(settings))
+            }
+            (Access::Real(get, _), Values::Real(least, most)) => {
+                (least..=most).contains(&get(settings))
+            }
+            _ => true,
+        };
+        if good {
+            return Ok(());
+        }
+        Err(self.refusal(&format!("{} is outside its range", self.text(settings))))
+    }
+
+    fn refusal(&self, problem: &str) -> Error {
+        let Knob { key, unit, values, .. } = &self.knob;
+        let legal = match values {
+            Values::Choice(_) | Values::Switch => values.to_string(),
+            _ => format!("{values} ({unit})"),
+        };
+        Error::Setting { key: (*key).into(), problem: format!("{problem}; give {legal}") }
+    }
+}
+
+/// A room's settings with all of their knobs.
+pub trait Knobs: Default + 'static {
+    /// The technique's name, as on a command line.
+    const NAME: &'static str;
+    /// Every knob, in the order in which a reader wants them.
+    const FIELDS: &'static [Field<Self>];
+}
+
+/// What [`Knobs`] give settings whose type is not known.
+pub trait Tune {
+    /// The technique's name, as on a command line.
+    fn name(&self) -> &'static str;
+
+    /// Every knob.
+    fn knobs(&self) -> Vec<Knob>;
+
+    /// The value of a knob as text; none for a key that the technique does not have.
+    fn get(&self, key: &str) -> Option<String>;
+
+    /// The value that a knob has by default, as text; none for a key that the technique does not have.
+    fn default_of(&self, key: &str) -> Option<String>;
+
+    /// Sets a knob from text.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for a key that the technique does not have, which names those it has, or for a value that
+    /// the knob does not take, which says those it takes.
+    fn set(&mut self, key: &str, value: &str) -> Result<(), Error>;
+
+    /// Checks every knob against its range.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for the first that is outside.
+    fn check_ranges(&self) -> Result<(), Error>;
+}
+
+fn field<S: Knobs>(key: &str) -> Option<&'static Field<S>> {
+    S::FIELDS.iter().find(|field| field.knob.key == key)
+}
+
+impl<S: Knobs> Tune for S {
+    fn name(&self) -> &'static str {
+        S::NAME
+    }
+
+    fn knobs(&self) -> Vec<Knob> {
+        S::FIELDS.iter().map(|field| field.knob).collect()
+    }
+
+    fn get(&self, key: &str) -> Option<String> {
+        field::<S>(key).map(|field| field.text(self))
+    }
+
+    fn default_of(&self, key: &str) -> Option<String> {
+        S::default().get(key)
+    }
+
+    fn set(&mut self, key: &str, value: &str) -> Result<(), Error> {
+        let Some(field) = field::<S>(key) else {
+            let known: Vec<_> = S::FIELDS.iter().map(|field| field.knob.key).collect();
+            let problem = format!("{} has no such setting; it has {}", S::NAME, known.join(", "));
+            return Err(Error::Setting { key: key.into(), problem });
+        };
+        field.set(self, value)
+    }
+
+    fn check_ranges(&self) -> Result<(), Error> {
+        S::FIELDS.iter().try_for_each(|field| field.check(self))
+    }
+}
+
+/// Names of an enum's choices, and the way between them and values.
+macro_rules! choices {
+    ($type:ty: $($name:literal => $variant:ident),+ $(,)?) => {
+        impl $type {
+            /// Every choice, in the order of [`Self::NAMES`].
+            pub const ALL: &'static [Self] = &[$(Self::$variant),+];
+            /// The choices' names, in order.
+            pub const NAMES: &'static [&'static str] = &[$($name),+];
+
+            /// The choice's name.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $name),+
+                }
+            }
+
+            /// The choice of a name; none where there is no such choice.
+            pub fn named(name: &str) -> Option<Self> {
+                match name {
+                    $($name => Some(Self::$variant),)+
+                    _ => None,
+                }
+            }
+        }
+    };
+}
+
+/// The field of a choice: its key, its type, what it does, and the member of the settings that holds it.
+macro_rules! choice {
+    ($key:literal, $type:ty, $about:expr, $($member:ident).+) => {
+        $crate::knob::Field::choice(
+            $key,
+            <$type>::NAMES,
+            $about,
+            |settings| settings.$($member).+.name(),
+            |settings, name| <$type>::named(name).map(|choice| settings.$($member).+ = choice).is_some(),
+        )
+    };
+}
+
+pub(crate) use {choice, choices};
