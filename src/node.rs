@@ -235,7 +235,7 @@ impl ShadowNode {
         (self.description, self.chosen) = (description, chosen);
         self.stamp = next_stamp();
         self.left().clear();
-        Ok(Retired::sized(self.host.clone(), old))
+        Ok(Retired::new(self.host.clone(), old))
     }
 
     /// Makes everything anew for another description and gives back what to retire.
@@ -249,7 +249,7 @@ impl ShadowNode {
     ) -> Result<Retired, Error> {
         let next = Self::new(self.host.clone(), allocator, description)?;
         let old = std::mem::replace(self, next);
-        Ok(Retired::everything(old.host, old.objects))
+        Ok(Retired::new(old.host, old.objects.into_owner()))
     }
 
     /// Asks `auto` what to compute the shadows of a frame's lights with, and makes the node anew where it was not made for
@@ -360,7 +360,7 @@ impl ShadowNode {
 
     /// Destroys everything. The device must be done with every frame that was recorded.
     pub fn destroy(self, allocator: &mut dyn Allocator) {
-        self.objects.destroy(&self.host, allocator);
+        Retired::new(self.host, self.objects.into_owner()).destroy(allocator);
     }
 }
 

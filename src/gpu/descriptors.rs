@@ -1,47 +1,47 @@
-//! Descriptor sets: one a kind of row, frame slot and light, written each time a plan is recorded, at the
-//! kind's first row. Its other rows touch the same resources (`graph::compile` sees to that), and a set
-//! must not be written again while commands that use it are recorded.
+//! Descriptor sets: one for each kind of pass, frame slot and light, written each time a plan is recorded,
+//! at the kind's first pass. Its other passes touch the same resources (`graph::compile` sees to that), and
+//! a set must not be written again while commands that use it are recorded.
 //!
 //! Remembering what they point at would save a microsecond, and be wrong where the host destroys a
 //! view and gets the same handle for its next one.
 
 use super::host::Host;
 use super::objects::Object;
-use super::pipeline::RowPipeline;
+use super::owner::Maker;
+use super::pipeline::PassObjects;
 use crate::Error;
 use crate::graph::{Graph, Pass};
 use ash::vk;
 
-/// No row binds more than this.
+/// No pass binds more than this.
 const MAX_BINDINGS: usize = 20;
 
 /// The sets of all kinds, place by place; a place is a light of a frame slot.
 pub(crate) struct Descriptors {
-    pool: vk::DescriptorPool,
     sets: Vec<vk::DescriptorSet>,
     kinds: usize,
 }
 
 impl Descriptors {
-    /// Allocates every set that `rows` need in any of `places`.
+    /// Allocates every set that `kinds` of pass need in any of `places`.
     pub fn new(
-        host: &Host,
+        maker: &mut Maker,
         graph: &Graph,
-        rows: &[RowPipeline],
+        kinds: &[PassObjects],
         places: u32,
     ) -> Result<Self, Error> {
         if let Some(pass) = graph.kinds().find(|p| bound(p).any(|b| b.0 as usize >= MAX_BINDINGS)) {
             return Err(Error::Frame(format!(
-                "{}: a binding is beyond the {MAX_BINDINGS} that a row may have",
+                "{}: a binding is beyond the {MAX_BINDINGS} that a pass may have",
                 pass.name
             )));
         }
-        let kinds = [
+        let types = [
             vk::DescriptorType::SAMPLED_IMAGE,
             vk::DescriptorType::STORAGE_IMAGE,
             vk::DescriptorType::STORAGE_BUFFER,
         ];
-        let sizes: Vec<_> = kinds
+        let sizes: Vec<_> = types
             .iter()
             .map(|&ty| {
                 let uses = graph.kinds().flat_map(|p| &p.uses);
@@ -50,36 +50,29 @@ impl Descriptors {
             })
             .collect();
         let create = vk::DescriptorPoolCreateInfo::default()
-            .max_sets(rows.len() as u32 * places)
+            .max_sets(kinds.len() as u32 * places)
             .pool_sizes(&sizes);
         // SAFETY: the device is valid (Host::borrow).
-        let pool = unsafe { host.device.create_descriptor_pool(&create, None) }
+        let pool = unsafe { maker.host.device.create_descriptor_pool(&create, None) }
             .map_err(Error::vulkan("creating the descriptor pool"))?;
-        let mut made = Self { pool, sets: Vec::new(), kinds: rows.len() };
+        maker.keep(pool);
         let layouts: Vec<_> =
-            (0..places).flat_map(|_| rows.iter().map(|r| r.layouts.set)).collect();
+            (0..places).flat_map(|_| kinds.iter().map(|k| k.layouts.set)).collect();
         let allocate =
             vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(&layouts);
         // SAFETY: the pool was sized for exactly these sets, and the layouts are alive.
-        match unsafe { host.device.allocate_descriptor_sets(&allocate) } {
-            Ok(sets) => {
-                made.sets = sets;
-                Ok(made)
-            }
-            Err(e) => {
-                made.destroy(host);
-                Err(Error::vulkan("allocating the descriptor sets")(e))
-            }
-        }
+        let sets = unsafe { maker.host.device.allocate_descriptor_sets(&allocate) }
+            .map_err(Error::vulkan("allocating the descriptor sets"))?;
+        Ok(Self { sets, kinds: kinds.len() })
     }
 
-    /// The set of a kind at a place; none for rows that bind nothing.
+    /// The set of a kind at a place; none for passes that bind nothing.
     pub fn set(&self, pass: &Pass, kind: usize, place: usize) -> Option<vk::DescriptorSet> {
         bound(pass).next()?;
         self.sets.get(place * self.kinds + kind).copied()
     }
 
-    /// Points a row's set at what `look_up` says.
+    /// Points a pass's set at what `look_up` says.
     pub fn write(
         &self,
         host: &Host,
@@ -122,15 +115,9 @@ impl Descriptors {
         // frame's first use of the set comes later, so no command uses it; views and buffers are alive.
         unsafe { host.device.update_descriptor_sets(&writes[..count], &[]) };
     }
-
-    /// Destroys the sets; no command may use them any more.
-    pub fn destroy(self, host: &Host) {
-        // SAFETY: made by this device; Host::borrow's promise: no command uses its sets any more.
-        unsafe { host.device.destroy_descriptor_pool(self.pool, None) };
-    }
 }
 
-/// Binding and kind of everything a row binds.
+/// Binding and kind of everything a pass binds.
 fn bound(pass: &Pass) -> impl Iterator<Item = (u32, vk::DescriptorType)> + '_ {
     pass.uses.iter().filter_map(|u| Some((u.binding?.into(), u.access.descriptor()?)))
 }

@@ -11,6 +11,7 @@ mod layouts;
 mod memory;
 mod node_objects;
 mod objects;
+mod owner;
 mod pipeline;
 mod record;
 mod result;

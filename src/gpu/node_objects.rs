@@ -1,9 +1,10 @@
-//! All that a node holds on the device.
+//! All that a node has on the device.
 
 use super::graph_objects::GraphObjects;
 use super::host::Host;
 use super::memory::Allocator;
-use super::objects::{Object, Remade};
+use super::objects::Object;
+use super::owner::{Made, Maker, ObjectOwner};
 use super::record::{HostDraw, Recorder};
 use super::result::ResultImage;
 use super::timing::Timing;
@@ -12,20 +13,14 @@ use crate::frame::{Description, FramePlan};
 use crate::graph::{Graph, ResourceId};
 use ash::vk;
 
-/// The result and the timestamps, and for each of the settings what its graph needs.
+/// The result and the timestamps, what the graph of each of the settings needs, and the owner of it all.
 pub(crate) struct NodeObjects {
     result: Option<ResultImage>,
     settings: Vec<GraphObjects>,
     timing: Option<Timing>,
     slots: u32,
     lights: u32,
-}
-
-/// What a resize made anew; then what that replaced.
-#[derive(Default)]
-pub(crate) struct Resized {
-    result: Option<ResultImage>,
-    settings: Vec<Remade>,
+    owner: ObjectOwner,
 }
 
 impl NodeObjects {
@@ -38,37 +33,16 @@ impl NodeObjects {
         description: &Description,
     ) -> Result<Self, Error> {
         let (slots, lights) = (description.frames_in_flight, description.lights);
-        let mut made = Self { result: None, settings: Vec::new(), timing: None, slots, lights };
-        match made.make(host, allocator, graphs, description) {
-            Ok(()) => Ok(made),
-            Err(e) => {
-                made.destroy(host, allocator);
-                Err(e)
-            }
-        }
-    }
-
-    fn make(
-        &mut self,
-        host: &Host,
-        allocator: &mut dyn Allocator,
-        graphs: &[Graph],
-        description: &Description,
-    ) -> Result<(), Error> {
-        let places = self.slots * self.lights;
-        self.result = ResultImage::new(host, allocator, description)?;
-        for graph in graphs {
-            let objects = GraphObjects::new(host, allocator, graph, description, places)?;
-            self.settings.push(objects);
-        }
-        let rows = graphs.iter().map(|g| g.passes().len()).max().unwrap_or(0);
-        self.timing = Timing::new(host, places, self.kinds_before(graphs.len()), rows)?;
-        Ok(())
-    }
-
-    /// Kinds of row of all settings before one: where its own begin among those of all.
-    fn kinds_before(&self, settings: usize) -> usize {
-        self.settings[..settings].iter().map(|s| s.rows.len()).sum()
+        let places = slots * lights;
+        let ((result, settings, timing), owner) = Maker::run(host, allocator, |maker| {
+            let result = ResultImage::new(maker, description)?;
+            let settings = graphs.iter().map(|g| GraphObjects::new(maker, g, description, places));
+            let settings = settings.collect::<Result<Vec<_>, _>>()?;
+            let passes = graphs.iter().map(|g| g.passes().len()).max().unwrap_or(0);
+            let timing = Timing::new(maker, places, kinds_of(&settings), passes)?;
+            Ok((result, settings, timing))
+        })?;
+        Ok(Self { result, settings, timing, slots, lights, owner })
     }
 
     /// Where a light of a frame slot has its descriptor sets and timestamps.
@@ -76,56 +50,44 @@ impl NodeObjects {
         (slot * self.lights + light) as usize
     }
 
-    /// Whether everything but images and buffers can stay for `graphs`, which have the same rows: no
+    /// Whether everything but images and buffers can stay for `graphs`, which have the same passes: no
     /// target of a raster has another shape.
     pub fn keeps_pipelines(&self, graphs: &[Graph]) -> bool {
         self.settings.iter().zip(graphs).all(|(settings, graph)| settings.keeps_pipelines(graph))
     }
 
-    /// Makes images and buffers anew whose shape is another in `graphs`, and gives back the old ones;
-    /// nothing is changed where that fails.
+    /// Makes the result anew, and the images and buffers whose shape is another in `graphs`, and
+    /// returns the owner of the old ones; nothing is changed where that fails.
     pub fn resize(
         &mut self,
         host: &Host,
         allocator: &mut dyn Allocator,
         graphs: &[Graph],
         description: &Description,
-    ) -> Result<Resized, Error> {
-        let mut resized = Resized::default();
-        if let Err(e) = self.remake(host, allocator, graphs, description, &mut resized) {
-            resized.destroy(host, allocator);
-            return Err(e);
+    ) -> Result<ObjectOwner, Error> {
+        let ((result, resized), owner) = Maker::run(host, allocator, |maker| {
+            let result = ResultImage::new(maker, description)?;
+            let pairs = self.settings.iter().zip(graphs);
+            let resized = pairs.map(|(s, g)| s.objects.resized(maker, g, description.inspect));
+            Ok((result, resized.collect::<Result<Vec<_>, _>>()?))
+        })?;
+        let mut replaced: Vec<Made> = self.result.iter().flat_map(ResultImage::handles).collect();
+        self.result = result;
+        for (settings, resized) in self.settings.iter_mut().zip(resized) {
+            replaced.extend(settings.objects.replaced_by(&resized));
+            settings.objects = resized;
         }
-        std::mem::swap(&mut self.result, &mut resized.result);
-        let pairs = self.settings.iter_mut().zip(&mut resized.settings);
-        pairs.zip(graphs).for_each(|((settings, remade), graph)| settings.exchange(graph, remade));
-        Ok(resized)
-    }
-
-    fn remake(
-        &self,
-        host: &Host,
-        allocator: &mut dyn Allocator,
-        graphs: &[Graph],
-        description: &Description,
-        resized: &mut Resized,
-    ) -> Result<(), Error> {
-        resized.result = ResultImage::new(host, allocator, description)?;
-        for (settings, graph) in self.settings.iter().zip(graphs) {
-            let remade = settings.remake(host, allocator, graph, description.inspect)?;
-            resized.settings.push(remade);
-        }
-        Ok(())
+        Ok(self.owner.exchange(&replaced, owner))
     }
 
     /// What is behind a resource of one of the settings.
     pub fn get(&self, settings: u32, id: ResourceId) -> Object {
-        self.settings.get(settings as usize).map_or(Object::None, |s| s.get(id))
+        self.settings.get(settings as usize).map_or(Object::None, |s| s.objects.get(id))
     }
 
     /// The image behind a resource of one of the settings; null handles for what is no image.
     pub fn image(&self, settings: u32, id: ResourceId) -> (vk::Image, vk::ImageView) {
-        self.settings.get(settings as usize).map_or(Default::default(), |s| s.image(id))
+        self.get(settings, id).image()
     }
 
     /// The node's own visibility image and a view of all of it; null handles where the host lends it.
@@ -135,13 +97,10 @@ impl NodeObjects {
 
     /// A view of a light's layer of it; null where the host lends it.
     pub fn result_layer(&self, light: u32) -> vk::ImageView {
-        match self.result.as_ref().map(|result| result.layer(light)) {
-            Some(Object::Image { view, .. }) => view,
-            _ => vk::ImageView::null(),
-        }
+        self.result.as_ref().map_or(Default::default(), |result| result.layer(light).image().1)
     }
 
-    /// Records a plan whose rows are the ones that these objects were made for.
+    /// Records a plan whose passes are the ones that these objects were made for.
     pub fn record(
         &self,
         host: &Host,
@@ -155,19 +114,19 @@ impl NodeObjects {
             host,
             objects: &settings.objects,
             result: self.result.as_ref(),
-            rows: &settings.rows,
+            kinds: &settings.kinds,
             labels: &settings.labels,
             descriptors: &settings.descriptors,
             timing: self.timing.as_ref(),
             place: self.place(plan.slot, plan.light_index),
-            first_kind: self.kinds_before(index),
+            first_kind: kinds_of(&self.settings[..index]),
             draw,
             cmd,
         }
         .record(plan);
     }
 
-    /// The render pass of a kind of row of one of the settings and the size of its target; none for
+    /// The render pass of a kind of pass of one of the settings and the size of its target; none for
     /// those that draw nothing.
     pub fn render_pass(
         &self,
@@ -177,8 +136,8 @@ impl NodeObjects {
         self.settings.get(settings as usize)?.render_pass(kind)
     }
 
-    /// Each kind of row that a light's frame recorded last with a slot, and the milliseconds of all of its
-    /// rows; kinds are counted over all settings.
+    /// Each kind of pass that a light's frame recorded last with a slot, and the milliseconds of all of
+    /// its passes; kinds are counted over all settings.
     pub fn timings(&self, host: &Host, slot: u32, light: u32) -> Option<Vec<(usize, f64)>> {
         let there = slot < self.slots && light < self.lights;
         self.timing.as_ref().filter(|_| there)?.read(host, self.place(slot, light))
@@ -187,44 +146,26 @@ impl NodeObjects {
     /// Name and bytes of everything in device memory: the result, then settings by settings.
     pub fn memory(&self) -> Vec<(&'static str, u64)> {
         let result = self.result.iter().map(ResultImage::memory);
-        result.chain(self.settings.iter().flat_map(GraphObjects::memory)).collect()
+        result.chain(self.settings.iter().flat_map(|s| s.objects.memory())).collect()
     }
 
-    /// The same of one of the settings alone.
+    /// Name and bytes of what one of the settings has in device memory.
     pub fn memory_of(&self, settings: u32) -> Vec<(&'static str, u64)> {
-        self.settings.get(settings as usize).map_or(Vec::new(), |s| s.memory().collect())
+        self.settings.get(settings as usize).map_or(Vec::new(), |s| s.objects.memory().collect())
     }
 
     /// How many Vulkan objects there are, memory apart.
     pub fn count(&self) -> usize {
-        let result = self.result.as_ref().map_or(0, ResultImage::count);
-        let pools = if self.timing.is_some() { self.slots * self.lights } else { 0 };
-        let settings = self.settings.iter().map(GraphObjects::count);
-        result + pools as usize + settings.sum::<usize>()
+        self.owner.count() + self.settings.iter().map(|s| s.unowned).sum::<usize>()
     }
 
-    /// Destroys everything; no command may use it any more.
-    pub fn destroy(self, host: &Host, allocator: &mut dyn Allocator) {
-        if let Some(timing) = self.timing {
-            timing.destroy(host);
-        }
-        for settings in self.settings {
-            settings.destroy(host, allocator);
-        }
-        if let Some(result) = self.result {
-            result.destroy(host, allocator);
-        }
+    /// The owner of everything, for when no command uses it any more.
+    pub fn into_owner(self) -> ObjectOwner {
+        self.owner
     }
 }
 
-impl Resized {
-    /// Destroys it; no command may use it any more.
-    pub fn destroy(self, host: &Host, allocator: &mut dyn Allocator) {
-        for settings in self.settings {
-            settings.destroy(host, allocator);
-        }
-        if let Some(result) = self.result {
-            result.destroy(host, allocator);
-        }
-    }
+/// How many kinds of pass some settings have in all.
+fn kinds_of(settings: &[GraphObjects]) -> usize {
+    settings.iter().map(|s| s.kinds.len()).sum()
 }

@@ -1,8 +1,9 @@
-//! A pipeline, its layouts and, for rasters, its render pass, from a row: one for all of its kind.
+//! The pipelines and layouts of a pass and, for rasters, its render pass: one set for all of its kind.
 
 use super::host::Host;
-use super::layouts::{LayoutsInfo, RowLayouts};
+use super::layouts::{LayoutsInfo, PassLayouts};
 use super::objects::{Object, Objects, name};
+use super::owner::{Maker, ObjectOwner};
 use crate::Error;
 use crate::frame::Faces;
 use crate::graph::{Draw, Graph, Pass, Shape, Target, Work};
@@ -10,12 +11,12 @@ use crate::shaders::Module;
 use crate::stages::depth_layers::DepthPush;
 use ash::vk;
 
-/// What a row needs to be recorded.
+/// What a pass needs to be recorded.
 #[derive(Default)]
-pub(crate) struct RowPipeline {
-    pub layouts: RowLayouts,
+pub(crate) struct PassObjects {
+    pub layouts: PassLayouts,
     pub push_stages: vk::ShaderStageFlags,
-    /// One for compute and indirect draws; for meshes one a stride and kind of [`Faces`].
+    /// One for compute and indirect draws; for meshes one for each stride and kind of [`Faces`].
     pub pipelines: Vec<vk::Pipeline>,
     pub render_pass: vk::RenderPass,
     pub framebuffer: vk::Framebuffer,
@@ -24,38 +25,21 @@ pub(crate) struct RowPipeline {
     pub colors: usize,
 }
 
-/// Which of a mesh row's pipelines draws a mesh.
+/// Which of a mesh pass's pipelines draws a mesh.
 pub(crate) fn variant(stride: usize, faces: Faces) -> usize {
     stride * 3 + faces as usize
 }
 
-impl RowPipeline {
-    /// Makes everything for a row; nothing is left behind where that fails.
+impl PassObjects {
+    /// Makes everything for a pass.
     pub fn new(
-        host: &Host,
+        maker: &mut Maker,
         graph: &Graph,
         pass: &Pass,
         objects: &Objects,
         strides: &[u32],
     ) -> Result<Self, Error> {
-        let mut row = Self::default();
-        match row.make(host, graph, pass, objects, strides) {
-            Ok(()) => Ok(row),
-            Err(e) => {
-                row.destroy(host);
-                Err(e)
-            }
-        }
-    }
-
-    fn make(
-        &mut self,
-        host: &Host,
-        graph: &Graph,
-        pass: &Pass,
-        objects: &Objects,
-        strides: &[u32],
-    ) -> Result<(), Error> {
+        let host = maker.host;
         let bindings: Vec<_> = pass
             .uses
             .iter()
@@ -74,7 +58,7 @@ impl RowPipeline {
                 (vk::ShaderStageFlags::COMPUTE, pass.push.bytes().len())
             }
             Work::Raster { draw: Draw::Layer { .. }, .. } => {
-                // The matrix that each mesh pushes, and what the row says behind it.
+                // The matrix that each mesh pushes, and what the pass pushes behind it.
                 (vk::ShaderStageFlags::VERTEX, pass.push.bytes().len().max(size_of::<DepthPush>()))
             }
             Work::Raster { .. } => (
@@ -82,28 +66,27 @@ impl RowPipeline {
                 pass.push.bytes().len(),
             ),
         };
-        self.push_stages = stages;
         let info =
             LayoutsInfo { bindings: &bindings, push_stages: stages, push_bytes: push_bytes as u32 };
-        self.layouts = match &host.layouts {
+        let layouts = match &host.layouts {
             Some(shared) => shared.find(&host.device, &info, pass.name)?,
-            None => RowLayouts::new(&host.device, &info, pass.name)?,
+            None => PassLayouts::new(&mut maker.owner, &host.device, &info, pass.name)?,
         };
-
+        let mut made = Self { layouts, push_stages: stages, ..Self::default() };
         match pass.work {
             Work::Dispatch { shader, .. } | Work::Indirect { shader, .. } => {
-                let pipeline = self.compute(host, pass, shader)?;
-                self.pipelines.push(pipeline);
+                let pipeline = made.compute(host, pass, shader)?;
+                made.pipelines.push(maker.keep(pipeline));
             }
             Work::Raster { target, .. } => {
-                self.attachments(host, graph, pass, objects, target)?;
-                self.rasters(host, pass, strides)?;
+                made.attachments(maker, graph, pass, objects, target)?;
+                made.rasters(maker, pass, strides)?;
             }
         }
-        for &pipeline in &self.pipelines {
+        for &pipeline in &made.pipelines {
             name(host, pipeline, pass.name);
         }
-        Ok(())
+        Ok(made)
     }
 
     fn compute(&self, host: &Host, pass: &Pass, shader: Module) -> Result<vk::Pipeline, Error> {
@@ -120,12 +103,13 @@ impl RowPipeline {
 
     fn attachments(
         &mut self,
-        host: &Host,
+        maker: &mut Maker,
         graph: &Graph,
         pass: &Pass,
         objects: &Objects,
         target: Target,
     ) -> Result<(), Error> {
+        let device = &maker.host.device;
         let doing = |what: &str| format!("creating the {what} of {}", pass.name);
         let targets = attachments_of(graph, pass, objects)?;
         let Some(&(_, _, extent)) = targets.first() else {
@@ -137,7 +121,7 @@ impl RowPipeline {
             Target::Depth { .. } => vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
             Target::Add => vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
         };
-        // The barriers in front of the row put the image into this layout and order it against
+        // The barriers in front of the pass put the image into this layout and order it against
         // everything else, so the render pass itself changes and orders nothing.
         let description = |format| {
             vk::AttachmentDescription::default()
@@ -164,8 +148,9 @@ impl RowPipeline {
         let create =
             vk::RenderPassCreateInfo::default().attachments(&attachments).subpasses(&subpasses);
         // SAFETY: one subpass, which uses every attachment; a test holds their number to four.
-        self.render_pass = unsafe { host.device.create_render_pass(&create, None) }
+        let render_pass = unsafe { device.create_render_pass(&create, None) }
             .map_err(Error::vulkan(doing("render pass")))?;
+        self.render_pass = maker.keep(render_pass);
         let views: Vec<_> = targets.iter().map(|(view, ..)| *view).collect();
         let create = vk::FramebufferCreateInfo::default()
             .render_pass(self.render_pass)
@@ -174,12 +159,13 @@ impl RowPipeline {
             .height(extent.height)
             .layers(1);
         // SAFETY: the views have the render pass's formats and, a test says, this size.
-        self.framebuffer = unsafe { host.device.create_framebuffer(&create, None) }
+        let framebuffer = unsafe { device.create_framebuffer(&create, None) }
             .map_err(Error::vulkan(doing("framebuffer")))?;
+        self.framebuffer = maker.keep(framebuffer);
         Ok(())
     }
 
-    fn rasters(&mut self, host: &Host, pass: &Pass, strides: &[u32]) -> Result<(), Error> {
+    fn rasters(&mut self, maker: &mut Maker, pass: &Pass, strides: &[u32]) -> Result<(), Error> {
         let Work::Raster { vertex, fragment, cull, draw, .. } = pass.work else { return Ok(()) };
         let mut modules = vec![(vertex, vk::ShaderStageFlags::VERTEX)];
         modules.extend(fragment.map(|f| (f, vk::ShaderStageFlags::FRAGMENT)));
@@ -197,10 +183,10 @@ impl RowPipeline {
                 })
                 .collect(),
         };
-        with_modules(host, &modules, |stages| {
+        with_modules(maker.host, &modules, |stages| {
             for (stride, cull, front) in variants {
-                let pipeline = self.raster(host, pass, stages, stride, cull, front)?;
-                self.pipelines.push(pipeline);
+                let pipeline = self.raster(maker.host, pass, stages, stride, cull, front)?;
+                self.pipelines.push(maker.keep(pipeline));
             }
             Ok(())
         })
@@ -279,25 +265,9 @@ impl RowPipeline {
             .map(|p| p[0])
             .map_err(|(_, e)| Error::vulkan(format!("creating {}", pass.name))(e))
     }
-
-    /// Destroys everything; no command may use it any more.
-    pub fn destroy(self, host: &Host) {
-        let device = &host.device;
-        for pipeline in self.pipelines {
-            // SAFETY: made by this device; Host::borrow's promise: no command uses it any more.
-            unsafe { device.destroy_pipeline(pipeline, None) };
-        }
-        // SAFETY: as above; null handles are legal to destroy.
-        unsafe { device.destroy_framebuffer(self.framebuffer, None) };
-        // SAFETY: as above.
-        unsafe { device.destroy_render_pass(self.render_pass, None) };
-        if host.layouts.is_none() {
-            self.layouts.destroy(device);
-        }
-    }
 }
 
-/// The images that a raster row draws into, in the order of its uses: views, formats and sizes.
+/// The images that a raster pass draws into, in the order of its uses: views, formats and sizes.
 fn attachments_of(
     graph: &Graph,
     pass: &Pass,
@@ -319,39 +289,18 @@ fn with_modules<T>(
     shaders: &[(Module, vk::ShaderStageFlags)],
     make: impl FnOnce(&[vk::PipelineShaderStageCreateInfo]) -> Result<T, Error>,
 ) -> Result<T, Error> {
-    let mut modules = Vec::with_capacity(shaders.len());
-    let mut failed = None;
-    for (shader, _) in shaders {
+    let mut modules = ObjectOwner::default();
+    let stages = shaders.iter().map(|(shader, stage)| {
         let words = shader.words();
         let create = vk::ShaderModuleCreateInfo::default().code(&words);
         // SAFETY: the words are a module that tests validate.
-        match unsafe { host.device.create_shader_module(&create, None) } {
-            Ok(module) => modules.push(module),
-            Err(e) => {
-                failed = Some(Error::vulkan(format!("loading {}", shader.path))(e));
-                break;
-            }
-        }
-    }
-    let result = match failed {
-        Some(e) => Err(e),
-        None => {
-            let stages: Vec<_> = shaders
-                .iter()
-                .zip(&modules)
-                .map(|((_, stage), &module)| {
-                    vk::PipelineShaderStageCreateInfo::default()
-                        .stage(*stage)
-                        .module(module)
-                        .name(c"main")
-                })
-                .collect();
-            make(&stages)
-        }
-    };
-    for module in modules {
-        // SAFETY: pipelines do not need their modules once they are made.
-        unsafe { host.device.destroy_shader_module(module, None) };
-    }
-    result
+        let module = unsafe { host.device.create_shader_module(&create, None) }
+            .map_err(Error::vulkan(format!("loading {}", shader.path)))?;
+        let stage = vk::PipelineShaderStageCreateInfo::default().stage(*stage).name(c"main");
+        Ok(stage.module(modules.keep(module)))
+    });
+    let made = stages.collect::<Result<Vec<_>, _>>().and_then(|stages| make(&stages));
+    // Pipelines do not need their modules once they are made, and modules have no memory.
+    modules.destroy(&host.device, |_| {});
+    made
 }

@@ -5,7 +5,7 @@
 use super::descriptors::Descriptors;
 use super::host::Host;
 use super::objects::{Object, Objects, layers, whole};
-use super::pipeline::{RowPipeline, variant};
+use super::pipeline::{PassObjects, variant};
 use super::result::ResultImage;
 use super::timing::Timing;
 use crate::frame::{Faces, FramePlan, MeshDraw};
@@ -41,14 +41,14 @@ pub(crate) struct Recorder<'a> {
     pub objects: &'a Objects,
     /// The node's own visibility image; none where the host lends it.
     pub result: Option<&'a ResultImage>,
-    /// One a kind of row, as are the labels.
-    pub rows: &'a [RowPipeline],
+    /// One for each kind of pass, as are the labels.
+    pub kinds: &'a [PassObjects],
     pub labels: &'a [CString],
     pub descriptors: &'a Descriptors,
     pub timing: Option<&'a Timing>,
     /// Which of the descriptor sets and timestamps are this frame's.
     pub place: usize,
-    /// The kind of the first of `rows` among those of all settings.
+    /// The kind of the first of `kinds` among those of all settings.
     pub first_kind: usize,
     pub draw: &'a mut dyn FnMut(&HostDraw),
     pub cmd: vk::CommandBuffer,
@@ -73,14 +73,14 @@ impl Recorder<'_> {
             self.unlabel();
             if let Some(timing) = self.timing {
                 let kind = self.first_kind + kind;
-                timing.end_row(self.host, self.cmd, self.place, (nth, kind));
+                timing.end_pass(self.host, self.cmd, self.place, (nth, kind));
             }
         }
         self.barriers(frame, &plan.handover);
     }
 
     fn pass(&mut self, frame: &FramePlan, kind: usize, pass: &Pass, first: bool) {
-        let (host, cmd, row) = (self.host, self.cmd, &self.rows[kind]);
+        let (host, cmd, made) = (self.host, self.cmd, &self.kinds[kind]);
         let device = &host.device;
         let objects = self.objects;
         let set = self.descriptors.set(pass, kind, self.place);
@@ -94,20 +94,20 @@ impl Recorder<'_> {
             }
             // SAFETY: Host::borrow's promise: cmd is recording. The set was made for this layout.
             unsafe {
-                device.cmd_bind_descriptor_sets(cmd, point, row.layouts.pipeline, 0, &[set], &[]);
+                device.cmd_bind_descriptor_sets(cmd, point, made.layouts.pipeline, 0, &[set], &[]);
             };
         }
         let pushed = pass.push.bytes();
         if !pushed.is_empty() {
             // SAFETY: as above; the layout's range holds exactly these bytes.
             unsafe {
-                device.cmd_push_constants(cmd, row.layouts.pipeline, row.push_stages, 0, pushed);
+                device.cmd_push_constants(cmd, made.layouts.pipeline, made.push_stages, 0, pushed);
             };
         }
         match pass.work {
             Work::Dispatch { groups: [x, y, z], .. } => {
                 // SAFETY: as above; outside a render pass.
-                unsafe { device.cmd_bind_pipeline(cmd, point, row.pipelines[0]) };
+                unsafe { device.cmd_bind_pipeline(cmd, point, made.pipelines[0]) };
                 // SAFETY: a compute pipeline, its set and push constants are bound; the barriers
                 // that its accesses need were recorded before it.
                 unsafe { device.cmd_dispatch(cmd, x, y, z) };
@@ -115,18 +115,20 @@ impl Recorder<'_> {
             Work::Indirect { arguments, offset, .. } => {
                 let Object::Buffer(buffer) = objects.get(arguments) else { return };
                 // SAFETY: as for the other grids; the buffer holds one VkDispatchIndirectCommand,
-                // which an earlier row wrote.
-                unsafe { device.cmd_bind_pipeline(cmd, point, row.pipelines[0]) };
+                // which an earlier pass wrote.
+                unsafe { device.cmd_bind_pipeline(cmd, point, made.pipelines[0]) };
                 // SAFETY: as above.
                 unsafe { device.cmd_dispatch_indirect(cmd, buffer, offset) };
             }
             Work::Raster { target, draw, .. } => {
-                self.begin_render_pass(row, target);
+                self.begin_render_pass(made, target);
                 match draw {
                     Draw::Layer { layer, view } => {
                         for (draw, matrix) in frame.draws(layer.meshes(), view) {
                             match &draw.mesh.geometry {
-                                Geometry::Buffers(buffers) => self.mesh(row, draw, matrix, buffers),
+                                Geometry::Buffers(buffers) => {
+                                    self.mesh(made, draw, matrix, buffers);
+                                }
                                 &Geometry::HostDrawn(mesh) => (self.draw)(&HostDraw {
                                     cmd,
                                     mesh,
@@ -138,7 +140,7 @@ impl Recorder<'_> {
                         }
                     }
                     Draw::Indirect { arguments, offset } => {
-                        self.indirect(row, arguments, offset);
+                        self.indirect(made, arguments, offset);
                     }
                 }
                 // SAFETY: the render pass was begun above.
@@ -147,7 +149,7 @@ impl Recorder<'_> {
         }
     }
 
-    fn begin_render_pass(&self, row: &RowPipeline, target: Target) {
+    fn begin_render_pass(&self, made: &PassObjects, target: Target) {
         let clear = match target {
             Target::Depth { clear, .. } => vk::ClearValue {
                 depth_stencil: vk::ClearDepthStencilValue { depth: clear, stencil: 0 },
@@ -156,10 +158,10 @@ impl Recorder<'_> {
         };
         let clear = [clear; COLOR_ATTACHMENTS];
         let begin = vk::RenderPassBeginInfo::default()
-            .render_pass(row.render_pass)
-            .framebuffer(row.framebuffer)
-            .render_area(vk::Rect2D { extent: row.extent, ..Default::default() })
-            .clear_values(&clear[..row.colors.max(1)]);
+            .render_pass(made.render_pass)
+            .framebuffer(made.framebuffer)
+            .render_area(vk::Rect2D { extent: made.extent, ..Default::default() })
+            .clear_values(&clear[..made.colors.max(1)]);
         // SAFETY: Host::borrow's promise: cmd is recording outside a render pass; the barriers
         // before put the attachment into the render pass's layout.
         unsafe {
@@ -167,14 +169,16 @@ impl Recorder<'_> {
         }
     }
 
-    fn mesh(&self, row: &RowPipeline, draw: &MeshDraw, matrix: &[f32; 16], mesh: &MeshBuffers) {
+    fn mesh(&self, made: &PassObjects, draw: &MeshDraw, matrix: &[f32; 16], mesh: &MeshBuffers) {
         let (device, cmd) = (&self.host.device, self.cmd);
         let matrix: &[u8] = bytemuck::cast_slice(matrix);
-        let pipeline = row.pipelines[variant(draw.stride, draw.faces)];
-        // SAFETY: inside the row's render pass, with a pipeline made for it.
+        let pipeline = made.pipelines[variant(draw.stride, draw.faces)];
+        // SAFETY: inside the pass's render pass, with a pipeline made for it.
         unsafe { device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::GRAPHICS, pipeline) };
         // SAFETY: the layout's range is one 4×4 matrix for the vertex stage.
-        unsafe { device.cmd_push_constants(cmd, row.layouts.pipeline, row.push_stages, 0, matrix) };
+        unsafe {
+            device.cmd_push_constants(cmd, made.layouts.pipeline, made.push_stages, 0, matrix);
+        };
         // SAFETY: Host::borrow's promise: the mesh's buffers are valid and hold what the frame
         // says of them.
         unsafe {
@@ -192,13 +196,13 @@ impl Recorder<'_> {
         }
     }
 
-    fn indirect(&self, row: &RowPipeline, arguments: ResourceId, offset: u64) {
+    fn indirect(&self, made: &PassObjects, arguments: ResourceId, offset: u64) {
         let Object::Buffer(buffer) = self.objects.get(arguments) else { return };
         let (device, cmd) = (&self.host.device, self.cmd);
         let point = vk::PipelineBindPoint::GRAPHICS;
-        // SAFETY: inside the row's render pass, with a pipeline made for it.
-        unsafe { device.cmd_bind_pipeline(cmd, point, row.pipelines[0]) };
-        // SAFETY: the buffer holds one VkDrawIndirectCommand, which an earlier row wrote.
+        // SAFETY: inside the pass's render pass, with a pipeline made for it.
+        unsafe { device.cmd_bind_pipeline(cmd, point, made.pipelines[0]) };
+        // SAFETY: the buffer holds one VkDrawIndirectCommand, which an earlier pass wrote.
         unsafe { device.cmd_draw_indirect(cmd, buffer, offset, 1, 0) };
     }
 

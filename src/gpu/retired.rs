@@ -2,36 +2,24 @@
 
 use super::host::Host;
 use super::memory::Allocator;
-use super::node_objects::{NodeObjects, Resized};
+use super::owner::ObjectOwner;
 use std::collections::VecDeque;
 
 /// What a resize or a reconfiguration replaced: alive until the frames that use it are done.
 #[must_use = "destroy it once the frames recorded before are done, or its memory is lost"]
 pub struct Retired {
     host: Host,
-    parts: Parts,
-}
-
-enum Parts {
-    Everything(NodeObjects),
-    Sized(Resized),
+    owner: ObjectOwner,
 }
 
 impl Retired {
-    pub(crate) fn everything(host: Host, objects: NodeObjects) -> Self {
-        Self { host, parts: Parts::Everything(objects) }
-    }
-
-    pub(crate) fn sized(host: Host, resized: Resized) -> Self {
-        Self { host, parts: Parts::Sized(resized) }
+    pub(crate) fn new(host: Host, owner: ObjectOwner) -> Self {
+        Self { host, owner }
     }
 
     /// Destroys it; the device must be done with every frame recorded before the replacement.
     pub fn destroy(self, allocator: &mut dyn Allocator) {
-        match self.parts {
-            Parts::Everything(objects) => objects.destroy(&self.host, allocator),
-            Parts::Sized(resized) => resized.destroy(&self.host, allocator),
-        }
+        self.owner.destroy(&self.host.device, |block| allocator.free(block));
     }
 }
 

@@ -1,11 +1,12 @@
 //! Times of passes, by timestamps; read only when the host asks, never waited for.
 
 use super::host::Host;
+use super::owner::Maker;
 use crate::Error;
 use ash::vk;
 use std::sync::atomic::{AtomicU16, AtomicU32, Ordering};
 
-/// A pool of timestamps for each place, which is a light of a frame slot: one before the first row, one
+/// A pool of timestamps for each place, which is a light of a frame slot: one before the first pass, one
 /// behind each.
 pub(crate) struct Timing {
     pools: Vec<vk::QueryPool>,
@@ -17,20 +18,26 @@ pub(crate) struct Timing {
     queries: u32,
     /// What was recorded last at each place.
     recorded: Vec<Recorded>,
-    /// Kinds of row.
+    /// How many kinds of pass there are.
     kinds: usize,
 }
 
-/// The rows that were recorded: how many, and the kind of each.
+/// The passes that were recorded: how many, and the kind of each.
 struct Recorded {
     count: AtomicU32,
     kinds: Vec<AtomicU16>,
 }
 
 impl Timing {
-    /// Makes pools for up to `rows` rows of `kinds` kinds a frame, or none where the queue family has
+    /// Makes pools for up to `passes` passes of `kinds` kinds a frame, or none where the queue family has
     /// no timestamps.
-    pub fn new(host: &Host, places: u32, kinds: usize, rows: usize) -> Result<Option<Self>, Error> {
+    pub fn new(
+        maker: &mut Maker,
+        places: u32,
+        kinds: usize,
+        passes: usize,
+    ) -> Result<Option<Self>, Error> {
+        let host = maker.host;
         let (instance, physical) = (&host.instance, host.physical_device);
         // SAFETY: Host::borrow's promise: the handles are valid and belong together.
         let families = unsafe { instance.get_physical_device_queue_family_properties(physical) };
@@ -40,33 +47,29 @@ impl Timing {
         if bits == 0 || limits.timestamp_period <= 0.0 {
             return Ok(None);
         }
-        let mut timing = Self {
-            pools: Vec::new(),
+        let queries = passes as u32 + 1;
+        let create = vk::QueryPoolCreateInfo::default()
+            .query_type(vk::QueryType::TIMESTAMP)
+            .query_count(queries);
+        let pools = (0..places).map(|_| {
+            // SAFETY: the device is valid (Host::borrow).
+            let pool = unsafe { host.device.create_query_pool(&create, None) }
+                .map_err(Error::vulkan("creating the timestamps"))?;
+            Ok(maker.keep(pool))
+        });
+        Ok(Some(Self {
+            pools: pools.collect::<Result<_, _>>()?,
             period: f64::from(limits.timestamp_period),
             mask: if bits >= 64 { u64::MAX } else { (1 << bits) - 1 },
-            queries: rows as u32 + 1,
+            queries,
             recorded: (0..places)
                 .map(|_| Recorded {
                     count: AtomicU32::new(0),
-                    kinds: (0..rows).map(|_| AtomicU16::new(0)).collect(),
+                    kinds: (0..passes).map(|_| AtomicU16::new(0)).collect(),
                 })
                 .collect(),
             kinds,
-        };
-        for _ in 0..places {
-            let create = vk::QueryPoolCreateInfo::default()
-                .query_type(vk::QueryType::TIMESTAMP)
-                .query_count(timing.queries);
-            // SAFETY: the device is valid (Host::borrow).
-            match unsafe { host.device.create_query_pool(&create, None) } {
-                Ok(pool) => timing.pools.push(pool),
-                Err(e) => {
-                    timing.destroy(host);
-                    return Err(Error::vulkan("creating the timestamps")(e));
-                }
-            }
-        }
-        Ok(Some(timing))
+        }))
     }
 
     /// Starts a place anew: resets its pool and takes the first timestamp.
@@ -87,8 +90,8 @@ impl Timing {
         self.recorded[place].count.store(0, Ordering::Relaxed);
     }
 
-    /// Takes the timestamp behind a row of a kind, the `nth` of the frame from 0.
-    pub fn end_row(
+    /// Takes the timestamp behind a pass of a kind, the `nth` of the frame from 0.
+    pub fn end_pass(
         &self,
         host: &Host,
         cmd: vk::CommandBuffer,
@@ -99,14 +102,14 @@ impl Timing {
         recorded.kinds[nth].store(kind as u16, Ordering::Relaxed);
         recorded.count.store(nth as u32 + 1, Ordering::Relaxed);
         let (pool, query) = (self.pools[place], nth as u32 + 1);
-        // SAFETY: as in `begin`; each row takes the next query, and there is one for every row.
+        // SAFETY: as in `begin`; each pass takes the next query, and there is one for every pass.
         unsafe {
             let bottom = vk::PipelineStageFlags::BOTTOM_OF_PIPE;
             host.device.cmd_write_timestamp(cmd, bottom, pool, query);
         };
     }
 
-    /// Each kind of row that was recorded last at a place and the milliseconds of all of its rows, in the
+    /// Each kind of pass that was recorded last at a place and the milliseconds of all of its passes, in the
     /// order of the first ones; none until its commands are done.
     pub fn read(&self, host: &Host, place: usize) -> Option<Vec<(usize, f64)>> {
         let recorded = self.recorded.get(place)?;
@@ -139,13 +142,5 @@ impl Timing {
             sums[at].1 += ms(pair);
         }
         Some(sums)
-    }
-
-    /// Destroys the pools; no command may use them any more.
-    pub fn destroy(self, host: &Host) {
-        for pool in self.pools {
-            // SAFETY: made by this device; Host::borrow's promise: no command uses it any more.
-            unsafe { host.device.destroy_query_pool(pool, None) };
-        }
     }
 }
