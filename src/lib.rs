@@ -73,6 +73,7 @@ pub mod graph;
 pub mod lent;
 pub mod light;
 pub mod node;
+mod plain;
 pub mod scene;
 pub mod settings;
 pub mod shaders;
@@ -83,7 +84,7 @@ pub mod truth;
 
 pub use ash;
 pub use error::Error;
-pub use frame::{Description, Frame, FramePlan, FramePlans, LightTexture};
+pub use frame::{Description, Doubt, Frame, FramePlan, FramePlans, LightTexture};
 pub use glam;
 pub use gpu::{Allocator, Host, HostDraw, Requirements, RetireQueue, Retired};
 pub use graph::{Layer, Scope};
@@ -93,6 +94,7 @@ pub use lent::{
 };
 pub use light::RectangleLight;
 pub use node::{LayerPass, ShadowNode, VisibilityImage};
+pub use plain::{Matrix, Vector};
 pub use settings::{Settings, Technique};
 
 /// The README's example is compiled with the doctests.

@@ -60,7 +60,8 @@ fn meshes() -> Vec<MeshInstance> {
 }
 
 fn frame(meshes: &[MeshInstance]) -> Frame<'_> {
-    Frame::new(generate::square_light(0.5).unwrap(), DMat4::IDENTITY, meshes, depth())
+    let light = generate::square_light(0.5).unwrap();
+    Frame { background: Some(0.0), ..Frame::new(light, DMat4::IDENTITY, meshes, depth()) }
 }
 
 fn description(words: &[(&str, &str)]) -> Description {
