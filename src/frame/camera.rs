@@ -195,8 +195,16 @@ mod tests {
         )
     }
 
+    /// From the eye to the origin, y up.
+    fn view() -> DMat4 {
+        let back = EYE.normalize();
+        let right = DVec3::Y.cross(back).normalize();
+        let axes = [right, back.cross(right), back].map(|axis| axis.extend(0.0));
+        DMat4::from_cols(axes[0], axes[1], axes[2], EYE.extend(1.0)).inverse()
+    }
+
     fn clip_from_world(reversed: bool, far: Option<f64>) -> DMat4 {
-        projection(reversed, far) * DMat4::look_at_rh(EYE, DVec3::ZERO, DVec3::Y)
+        projection(reversed, far) * view()
     }
 
     #[test]
@@ -228,8 +236,9 @@ mod tests {
 
     #[test]
     fn orthographic_cameras_leave_the_far_end_open() {
-        let down = DMat4::orthographic_rh(-3.0, 3.0, 3.0, -3.0, 0.1, 40.0);
-        let matrix = (down * DMat4::look_at_rh(EYE, DVec3::ZERO, DVec3::Y)).inverse();
+        // 6 m wide and high, y down, and 40 m deep.
+        let down = DMat4::from_scale(DVec3::new(1.0 / 3.0, -1.0 / 3.0, -1.0 / 40.0));
+        let matrix = (down * view()).inverse();
         for matrix in [matrix, matrix.as_mat4().as_dmat4(), -3.0 * matrix] {
             let camera = Camera::of(&matrix);
             assert_eq!((camera.eye, camera.is_reversed, camera.background()), (None, None, None));
