@@ -79,13 +79,6 @@ impl Boxes {
         }
     }
 
-    /// Whether a mesh with triangles comes as near to a light's centre as it reaches, metres.
-    pub fn is_within(&self, place: usize, light: &RectangleLight, reach: Option<f64>) -> bool {
-        let at = [&self.x, &self.y, &self.z].map(|of| f64::from(of[place]));
-        let most = reach.unwrap_or(f64::INFINITY) + f64::from(self.radius[place]);
-        DVec3::from_array(at).distance(light.center()) <= most
-    }
-
     /// The places of the meshes that are partly before a light and no further from its centre than it reaches, metres.
     pub fn near(&self, light: &RectangleLight, reach: Option<f64>, places: &mut Vec<u32>) {
         places.clear();
@@ -211,7 +204,7 @@ fn around(mesh: &MeshInstance) -> [DVec3; 2] {
 }
 
 /// Whether there is anything to draw of a mesh.
-fn has_triangles(mesh: &MeshInstance) -> bool {
+pub(super) fn has_triangles(mesh: &MeshInstance) -> bool {
     match mesh.geometry {
         Geometry::Buffers(buffers) => buffers.count >= 3,
         Geometry::HostDrawn(_) => true,

@@ -1,14 +1,14 @@
 //! What a frame says that can be meant, and seldom is: doubts, not errors. All follow from numbers that planning has
 //! looked at already, so that they cost microseconds and no memory.
 
-use super::boxes::Boxes;
+use super::boxes::{Boxes, has_triangles};
 use super::camera::{Camera, Seen};
 use super::fit::Fit;
 use super::{Description, Frame};
 use crate::effects::Situation;
 use crate::lent::MeshInstance;
 use crate::stages::depth_layers::LightBox;
-use glam::DVec4;
+use glam::{DVec3, DVec4};
 use smallvec::SmallVec;
 use std::fmt;
 
@@ -147,8 +147,8 @@ impl Odd {
         let occludes = |mesh: &MeshInstance| mesh.role.blocks();
         Self {
             occluder_alone: boxes.occluder_alone,
-            occluders_behind: no_occluder && !lent && all_behind(frame, boxes, occludes),
-            receivers_behind: no_receiver && all_behind(frame, boxes, receives),
+            occluders_behind: no_occluder && !lent && all_behind(frame, occludes),
+            receivers_behind: no_receiver && all_behind(frame, receives),
             nothing_receives: no_receiver
                 && boxes.blockers > 0
                 && !frame.meshes.iter().any(receives),
@@ -157,17 +157,19 @@ impl Odd {
 }
 
 /// Whether some of these meshes are within a light's reach, and all of those behind it.
-fn all_behind(frame: &Frame, boxes: &Boxes, which: impl Fn(&MeshInstance) -> bool) -> bool {
+fn all_behind(frame: &Frame, which: impl Fn(&MeshInstance) -> bool) -> bool {
     let light_from_world = frame.light.light_from_world();
     let mut some = false;
-    for (place, mesh) in frame.meshes.iter().enumerate() {
-        if which(mesh) && boxes.is_within(place, &frame.light, frame.reach) {
-            let placed = LightBox::new(&mesh.bounds, &(light_from_world * mesh.world_from_mesh));
-            if placed.max.z > 0.0 {
-                return false;
-            }
-            some = true;
+    for mesh in frame.meshes.iter().filter(|mesh| which(mesh) && has_triangles(mesh)) {
+        let placed = LightBox::new(&mesh.bounds, &(light_from_world * mesh.world_from_mesh));
+        let nearest = DVec3::ZERO.max(placed.min).min(placed.max);
+        if frame.reach.is_some_and(|reach| nearest.length() > reach) {
+            continue;
         }
+        if placed.max.z > 0.0 {
+            return false;
+        }
+        some = true;
     }
     some
 }
@@ -216,10 +218,11 @@ impl Sight {
         let row = frame.world_from_ndc.row(3).to_array();
         let odd = &fit.odd;
         let given = frame.background.filter(|given| background.is_some_and(|of| of != *given));
+        // A matrix that is no camera's is not doubted twice.
         let doubts = [
             camera.is_aslant.then_some(Doubt::Aslant { row }),
             camera.is_between.then_some(Doubt::EyeAmongDepths),
-            is_mirrored.then_some(Doubt::Mirrored),
+            (is_mirrored && !camera.is_aslant).then_some(Doubt::Mirrored),
             given.map(|given| Doubt::Background { given }),
             (seen.seen == 0 && seen.receivers > 0)
                 .then_some(Doubt::SeesNoReceiver { receivers: seen.receivers, eye }),

@@ -81,3 +81,19 @@ fn mistake_17_a_node_that_is_dropped_and_not_destroyed() {
     drop(device);
     layer_says(&log.take(), &["VkPipeline", "has not been destroyed"]);
 }
+
+/// The layer has nothing against depth that is cleared next, and a result that nobody had used before.
+#[test]
+fn scopes_that_say_nothing_are_no_mistake() {
+    let device = device();
+    let mut stage = stage(&device);
+    let own = Visibility::Own { before: Scope::UNUSED, after: Scope::COPIED_FROM };
+    let change = |f: &mut Frame| {
+        f.depth.after = Scope::ANY;
+        f.visibility = own;
+    };
+    let plan = stage.plan_with(&scene().lights[0].light, change).unwrap();
+    stage.run(&plan).unwrap();
+    assert!(stage.visibility().unwrap().contains(&0.0));
+    assert_eq!(device.take_messages(), Vec::<String>::new());
+}
