@@ -182,7 +182,7 @@ fn problem(mesh: &MeshInstance) -> Option<&'static str> {
     (!offset.is_multiple_of(bytes)).then_some("its indices must begin at a multiple of their size")
 }
 
-/// What is wrong with a box whose least corner lies above its largest; what is no number is told elsewhere.
+/// The problem of a box whose least corner lies above its largest. Numbers that are not finite are refused elsewhere.
 fn swapped([least, largest]: &MeshBounds) -> Option<&'static str> {
     let axis = (0..3).find(|&i| least[i] > largest[i])?;
     Some(

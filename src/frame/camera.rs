@@ -1,4 +1,4 @@
-//! What a frame's matrix says of its camera: where the eye is, which end of depth is far, whether pixels are mirrored.
+//! A frame's matrix shows where its camera's eye is, which end of depth is far, and whether pixels are mirrored.
 //!
 //! A pixel's point at depth z is (M₀ + z M₁) / (d + c z), with M₁ and M₀ the last two columns of the matrix at the
 //! image's centre and (c, d) what their last row holds. All of these lines meet at the eye, M₁ / c, and a point is
@@ -12,8 +12,8 @@ use crate::stages::depth_layers::LightBox;
 use glam::{DMat4, DVec3, DVec4};
 use std::fmt;
 
-/// A last row's number is 0 below this share of the largest: what hosts round whose matrices are in single precision.
-/// A far plane a million times as far as the near one is infinitely far.
+/// Numbers of the last row count as 0 below this share of the largest, because hosts round them in single precision. A
+/// far plane a million times as far away as the near one counts as infinitely far.
 const NOTHING: f64 = 1e-6;
 
 /// How far a last row may lean towards x and y, as a share of the rest.
@@ -25,9 +25,9 @@ const LOOKED_AT: usize = 64;
 /// A camera, as its matrix shows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Camera {
-    /// None for an orthographic one.
+    /// The eye's place, which an orthographic camera does not have.
     pub eye: Option<DVec3>,
-    /// Where it looks; of an orthographic camera, where depth grows.
+    /// The direction in which it looks; for an orthographic camera, that in which depth grows.
     pub direction: DVec3,
     /// Whether depth 0 is the far end; none for an orthographic camera.
     pub is_reversed: Option<bool>,
@@ -81,7 +81,7 @@ impl Camera {
         }
     }
 
-    /// The depth of what lies furthest away, by the matrix.
+    /// The depth that the matrix gives to what lies furthest away; none for an orthographic camera.
     pub fn background(&self) -> Option<f32> {
         self.is_reversed.map(|reversed| if reversed { 0.0 } else { 1.0 })
     }
@@ -118,7 +118,7 @@ impl Camera {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Seen {
     pub seen: usize,
-    /// Of so many.
+    /// How many receivers there are.
     pub receivers: usize,
 }
 

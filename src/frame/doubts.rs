@@ -1,5 +1,5 @@
-//! What a frame says that can be meant, and seldom is: doubts, not errors. All follow from numbers that planning has
-//! looked at already, so that they cost microseconds and no memory.
+//! Doubts: what a frame says that can be meant, and seldom is. They are no errors. All follow from numbers that planning
+//! has looked at already, so that they cost microseconds and no memory.
 
 use super::boxes::{Boxes, has_triangles};
 use super::camera::{Camera, Seen};
@@ -35,7 +35,7 @@ pub enum Doubt {
     SeesNoReceiver {
         /// How many there are.
         receivers: usize,
-        /// Where the eye is; none for an orthographic camera.
+        /// The place of the eye, which an orthographic camera does not have.
         eye: Option<[f64; 3]>,
     },
     /// All that may be shadowed lies behind the camera, so that penumbrae span infinitely many pixels.
@@ -64,7 +64,7 @@ pub enum Doubt {
     },
 }
 
-/// The most doubts that a frame gives room for.
+/// How many doubts a frame can have at most, one of each kind.
 const MOST: usize = 10;
 
 impl fmt::Display for Doubt {
@@ -127,7 +127,7 @@ fn behind(f: &mut fmt::Formatter, what: &str, [x, y, z]: [f64; 3]) -> fmt::Resul
     )
 }
 
-/// What of the meshes around a light looks like a mistake; as good as long as they stay.
+/// Signs of mistakes in the meshes around a light. They are found once, and hold as long as the meshes stay.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Odd {
     /// The first mesh that blocks and does not receive.
@@ -138,8 +138,8 @@ pub(super) struct Odd {
 }
 
 impl Odd {
-    /// Looks at the meshes of a frame. `none_before` says that of no occluders, and of no receivers, any part lies
-    /// before the light and within its reach: only then meshes are looked at again.
+    /// Looks at the meshes of a frame. `none_before` says whether no occluder, and no receiver, lies before the light and
+    /// within its reach; meshes are looked at one by one only in these cases.
     pub fn of(frame: &Frame, boxes: &Boxes, none_before: [bool; 2]) -> Self {
         let [no_occluder, no_receiver] = none_before;
         let lent = frame.occluder_maps.is_some();
@@ -174,13 +174,13 @@ fn all_behind(frame: &Frame, which: impl Fn(&MeshInstance) -> bool) -> bool {
     some
 }
 
-/// What is told of a frame's camera and roles.
+/// How a frame's camera and the roles of its pixels are understood, and what is doubtful in the frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Sight {
     camera: Option<Camera>,
     is_mirrored: bool,
     seen: Seen,
-    /// Whether what may be shadowed reaches up to the eye.
+    /// Whether the eye is so near to what may be shadowed that pixels there are infinitely small.
     at_eye: bool,
     has_mask: bool,
     doubts: SmallVec<[Doubt; MOST]>,

@@ -96,7 +96,7 @@ pub(super) struct Fit {
     pub need: Need<Why>,
     /// What boxes tell; none where nothing can be shadowed.
     pub situation: Option<Situation>,
-    /// What of the meshes looks like a mistake.
+    /// Signs of mistakes in the meshes.
     pub odd: Odd,
     /// Another one each time that meshes are looked at.
     number: u64,

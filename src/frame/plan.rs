@@ -73,8 +73,9 @@ impl FramePlan {
         self.accesses.iter().find(|a| a.image == image)?.node
     }
 
-    /// What in the frame looks like a mistake and may be meant, such as a camera that shows the world mirrored: empty in
-    /// a frame that is in order. Each [`Doubt`] is a sentence, which [`Self::explain`] begins with.
+    /// Everything in the frame that looks like a mistake and may be meant, such as a camera that shows the world
+    /// mirrored; a frame that is in order has no doubts. Each [`Doubt`] is a sentence, and [`Self::explain`] begins with
+    /// them.
     pub fn doubts(&self) -> &[Doubt] {
         self.sight.doubts()
     }

@@ -81,6 +81,39 @@ fn a_camera_that_looks_elsewhere_is_doubted_gently() {
 }
 
 #[test]
+fn a_camera_that_is_turned_round_has_everything_behind_it() {
+    let host = Host::new();
+    let turn = DMat4::from_translation(EYE)
+        * DMat4::from_rotation_y(std::f64::consts::PI)
+        * DMat4::from_translation(-EYE);
+    let turned = turn * host.clip_from_world.inverse();
+    let plan = host.plan_with(|f| f.world_from_ndc = turned).unwrap();
+    assert!(matches!(
+        plan.doubts(),
+        [Doubt::SeesNoReceiver { receivers: 2, .. }, Doubt::EndlessPenumbra]
+    ));
+    says(&plan.explain(), &["doubt: all that may be shadowed lies behind the camera"]);
+    // Among what may be shadowed penumbrae have no end either, and nothing is wrong.
+    let into = DMat4::from_translation(DVec3::new(0.0, 0.2, 1.0) - EYE);
+    let inside = into * host.clip_from_world.inverse();
+    let plan = host.plan_with(|f| f.world_from_ndc = inside).unwrap();
+    assert_eq!(plan.doubts(), []);
+    says(&plan.explain(), &["reaches up to the eye, where penumbrae span inf pixels"]);
+}
+
+#[test]
+fn depths_on_two_sides_of_the_eye_are_no_cameras() {
+    let host = Host::new();
+    // Half way between 0 and 1 lies what is infinitely far.
+    let mut add_half_w = DMat4::IDENTITY;
+    add_half_w.w_axis.z = 0.5;
+    let matrix = (add_half_w * host.clip_from_world).inverse();
+    let plan = host.plan_with(|f| f.world_from_ndc = matrix).unwrap();
+    assert_eq!(plan.doubts()[0], Doubt::EyeAmongDepths, "{}", plan.explain());
+    says(&plan.explain(), &["doubt: the camera's eye lies between its near and its far plane"]);
+}
+
+#[test]
 fn mistake_22_bounds_that_are_too_small() {
     // Positions lie on the device, where planning does not look.
     let mut host = Host::new();
