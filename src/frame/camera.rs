@@ -20,7 +20,7 @@ const NOTHING: f64 = 1e-6;
 const LEAN: f64 = 1e-4;
 
 /// How many receivers are looked at; further ones only until one is seen.
-const LOOKED_AT: usize = 64;
+const LOOKED_AT: usize = 32;
 
 /// A camera, as its matrix shows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,13 +99,12 @@ impl Camera {
     /// How many of a light's receivers have boxes that meet what the camera sees.
     pub fn sees(&self, ndc_from_light: &DMat4, receivers: &[LightBox]) -> Seen {
         let [x, y, z, w] = [0, 1, 2, 3].map(|i| self.sign * ndc_from_light.row(i));
-        let planes = [w + x, w - x, w + y, w - y, z, w - z];
+        // A box is on the right side of a plane if its corner furthest along the plane's normal is.
+        let planes = [w + x, w - x, w + y, w - y, z, w - z]
+            .map(|plane| (plane.truncate(), plane.truncate().abs(), plane.w));
         let is_seen = |of: &&LightBox| {
             let (middle, half) = (0.5 * (of.min + of.max), 0.5 * (of.max - of.min));
-            planes.iter().all(|plane| {
-                let normal = plane.truncate();
-                normal.dot(middle) + plane.w + normal.abs().dot(half) >= 0.0
-            })
+            planes.iter().all(|(normal, steep, w)| normal.dot(middle) + steep.dot(half) + w >= 0.0)
         };
         let (first, rest) = receivers.split_at(receivers.len().min(LOOKED_AT));
         let seen = first.iter().filter(is_seen).count();
