@@ -3,6 +3,7 @@
 use crate::Error;
 use crate::error::quoted;
 use crate::graph::Scope;
+use crate::plain::Matrix;
 use ash::vk;
 use glam::DMat4;
 use std::fmt;
@@ -14,11 +15,14 @@ pub type MeshBounds = [[f32; 3]; 2];
 /// What a mesh does with light: blocks it, shows shadows, or both.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Role {
-    /// Blocks light; its own pixels are never shadowed (visible fraction 1).
+    /// Blocks light. Its own pixels are lit whole (visible fraction 1) only where the G-buffer has a mask
+    /// ([`Frame::mask`](crate::Frame::mask)) that holds [`Self::mask`] at them; without a mask they are shadowed as
+    /// all others are.
     Occluder,
-    /// Shows shadows and blocks nothing.
+    /// Shows shadows and blocks nothing. Only a mask tells its pixels from those of meshes that block as well: without
+    /// one, what lies behind the plane of such a pixel shadows it no more.
     Receiver,
-    /// Blocks light and shows shadows, its own included.
+    /// Blocks light and shows shadows, its own included; what every pixel is where there is no mask.
     #[default]
     Both,
 }
@@ -95,7 +99,8 @@ pub struct HostImage {
     /// Stage, access and layout of the host's last use before the node. A host that places the
     /// barriers itself says here in which layout the node will find an image that it reads.
     pub before: Scope,
-    /// Stage, access and layout of the host's first use after it; `UNDEFINED` leaves the layout.
+    /// Stage, access and layout of the host's first use after it; `UNDEFINED` leaves the layout, and [`Scope::ANY`] is
+    /// for an image that the host clears next.
     pub after: Scope,
 }
 
@@ -113,7 +118,8 @@ impl HostImage {
     }
 
     /// The same image as a frame hands it back: what the next light's frame, behind it in the same
-    /// command buffer, says of it. [`Self::after`] must name a layout.
+    /// command buffer, says of it. [`Self::after`] must name a layout, so it cannot be [`Scope::ANY`]; that of the last
+    /// light's frame can.
     #[must_use]
     pub fn handed_back(self) -> Self {
         Self { before: self.after, ..self }
@@ -127,7 +133,8 @@ pub enum Visibility {
     /// the layer of the frame's light. A frame that would write what is there already leaves it, unless
     /// `before` writes it or forgets its layout.
     Own {
-        /// The host's last use of it.
+        /// The host's last use of it. In the first frame, and the first behind a resize, there was none:
+        /// [`Scope::UNUSED`], or what it is in every other frame, will do, since the node forgets what it overwrites.
         before: Scope,
         /// The host's first use of what this frame writes.
         after: Scope,
@@ -183,9 +190,10 @@ pub enum Geometry {
 pub struct MeshInstance {
     /// Its triangles.
     pub geometry: Geometry,
-    /// Mesh space to world space.
+    /// Mesh space to world space, for column vectors: the last row is 0, 0, 0, 1.
     pub world_from_mesh: DMat4,
-    /// A box around the positions, in mesh space; what reaches beyond it may cast no shadow, and show none.
+    /// A box around the positions, in mesh space: [least, largest] corners. The node never reads positions on the CPU,
+    /// so nothing tells it that a box is too small; what reaches beyond it may cast no shadow, and show none.
     pub bounds: MeshBounds,
     /// Occluder, receiver or both.
     pub role: Role,
@@ -197,8 +205,14 @@ pub struct MeshInstance {
 }
 
 impl MeshInstance {
-    /// A mesh whose triangles have one front.
-    pub fn new(geometry: Geometry, world_from_mesh: DMat4, bounds: MeshBounds, role: Role) -> Self {
+    /// A mesh whose triangles have one front: the side from which their corners run counter-clockwise.
+    pub fn new(
+        geometry: Geometry,
+        world_from_mesh: impl Into<Matrix>,
+        bounds: MeshBounds,
+        role: Role,
+    ) -> Self {
+        let world_from_mesh = world_from_mesh.into().0;
         Self { geometry, world_from_mesh, bounds, role, double_sided: false, cut_out: false }
     }
 }
@@ -221,6 +235,17 @@ pub struct OccluderMaps {
     pub back: Option<HostImage>,
     /// World space to the clip space of both.
     pub clip_from_world: DMat4,
+}
+
+impl OccluderMaps {
+    /// Images, and the matrix that they were drawn with.
+    pub fn new(
+        front: HostImage,
+        back: Option<HostImage>,
+        clip_from_world: impl Into<Matrix>,
+    ) -> Self {
+        Self { front, back, clip_from_world: clip_from_world.into().0 }
+    }
 }
 
 /// Who places the barriers at the node's border.

@@ -76,6 +76,7 @@ pub mod knob;
 pub mod lent;
 pub mod light;
 pub mod node;
+mod plain;
 pub mod scene;
 pub mod shaders;
 pub mod stages;
@@ -86,7 +87,7 @@ pub mod truth;
 
 pub use ash;
 pub use error::Error;
-pub use frame::{Description, Frame, FramePlan, FramePlans, LightTexture};
+pub use frame::{Description, Doubt, Frame, FramePlan, FramePlans, LightTexture};
 pub use glam;
 pub use gpu::{Allocator, Host, HostDraw, Requirements, RetireQueue, Retired};
 pub use graph::{Layer, Scope};
@@ -96,6 +97,7 @@ pub use lent::{
 };
 pub use light::RectangleLight;
 pub use node::{LayerPass, ShadowNode, VisibilityImage};
+pub use plain::{Matrix, Vector};
 pub use technique::Technique;
 
 /// The README's example is compiled with the doctests.

@@ -1,6 +1,7 @@
 //! The rectangle light, and the light space that every technique works in.
 
 use crate::Error;
+use crate::plain::Vector;
 use glam::{DMat3, DMat4, DVec2, DVec3};
 
 pub(crate) mod outline;
@@ -29,16 +30,22 @@ pub struct RectangleLight {
 }
 
 impl RectangleLight {
-    /// A light from its centre, its two half-axes and the side it emits from, all in world space.
+    /// A light that shines along `half_v × half_u` (not `u × v`), from its centre and two half-axes in world space.
     ///
-    /// `half_u` and `half_v` reach from the centre to the middle of two neighbouring edges, in
-    /// metres; they must be perpendicular. Light is emitted along `half_v × half_u`, which is local
-    /// −Z for a node whose X and Y axes they are, as in glTF.
+    /// `half_u` and `half_v` reach from the centre to the middle of two neighbouring edges, in metres; they must be
+    /// perpendicular. Seen as the light shines, `half_u` points to the right where `half_v` points up, as for a glTF
+    /// node whose X and Y axes they are and which shines along its −Z. [`Self::facing`] takes the direction instead.
     ///
     /// # Errors
     /// [`Error::Light`] for values that are not finite, a side of no length (the soft shadow
     /// techniques need an area), or half-axes that are not perpendicular.
-    pub fn new(center: DVec3, half_u: DVec3, half_v: DVec3) -> Result<Self, Error> {
+    pub fn new(
+        center: impl Into<Vector>,
+        half_u: impl Into<Vector>,
+        half_v: impl Into<Vector>,
+    ) -> Result<Self, Error> {
+        let [Vector(center), Vector(half_u), Vector(half_v)] =
+            [center.into(), half_u.into(), half_v.into()];
         let (width, height) = (half_u.length(), half_v.length());
         if !(center.is_finite() && width.is_finite() && height.is_finite()) {
             return Err(Error::Light("its position and axes must be finite numbers".into()));
@@ -59,6 +66,42 @@ impl RectangleLight {
         Ok(Self { center, axes, half_extents: [width, height] })
     }
 
+    /// A light that shines along `emission`, of any length, from its centre, with its whole width and height in metres.
+    ///
+    /// Its height runs along `up`, of any length, as far as that lies across the emission, and its width to the right,
+    /// seen as the light shines. All are in world space.
+    ///
+    /// # Errors
+    /// [`Error::Light`] for values that are not finite, no emission, an `up` that is nothing or lies along the
+    /// emission, or a side that is not above 0.
+    pub fn facing(
+        center: impl Into<Vector>,
+        emission: impl Into<Vector>,
+        up: impl Into<Vector>,
+        [width, height]: [f64; 2],
+    ) -> Result<Self, Error> {
+        let refuse = |problem: &str| Err(Error::Light(problem.into()));
+        let [Vector(center), Vector(emission), Vector(up)] =
+            [center.into(), emission.into(), up.into()];
+        let vectors = center.is_finite() && emission.is_finite() && up.is_finite();
+        if !(vectors && width.is_finite() && height.is_finite()) {
+            return refuse("its position, emission, up, width and height must be finite numbers");
+        }
+        if width <= 0.0 || height <= 0.0 {
+            return refuse("its width and height must be above 0");
+        }
+        let z = emission.normalize_or_zero();
+        if z == DVec3::ZERO {
+            return refuse("it must shine into some direction, and its emission has no length");
+        }
+        let y = up.normalize_or_zero().reject_from_normalized(z);
+        if y.length() <= MAX_SKEW {
+            return refuse("its up must point across its emission, and not along it");
+        }
+        let y = y.normalize();
+        Self::new(center, 0.5 * width * z.cross(y), 0.5 * height * y)
+    }
+
     /// A line light: a segment of no height, as tubes and strips are (Heidrich, Brabec and Seidel 2000).
     ///
     /// `half_u` reaches from the centre to one end, in metres. `emission` is the middle of the half space that it
@@ -67,7 +110,13 @@ impl RectangleLight {
     ///
     /// # Errors
     /// [`Error::Light`] for values that are not finite, a segment of no length, or an emission along it.
-    pub fn line(center: DVec3, half_u: DVec3, emission: DVec3) -> Result<Self, Error> {
+    pub fn line(
+        center: impl Into<Vector>,
+        half_u: impl Into<Vector>,
+        emission: impl Into<Vector>,
+    ) -> Result<Self, Error> {
+        let [Vector(center), Vector(half_u), Vector(emission)] =
+            [center.into(), half_u.into(), emission.into()];
         let refuse = |problem: &str| Err(Error::Light(problem.into()));
         let length = half_u.length();
         if !(center.is_finite() && length.is_finite() && emission.is_finite()) {
@@ -105,11 +154,12 @@ impl RectangleLight {
     /// [`Error::Light`] for values that are not finite, no direction, a radius that is not above 0, or an
     /// angular size that is not above 0 and at most 1 rad (57°).
     pub fn sun(
-        emission: DVec3,
+        emission: impl Into<Vector>,
         angular_size: f64,
-        center: DVec3,
+        center: impl Into<Vector>,
         radius: f64,
     ) -> Result<Self, Error> {
+        let [Vector(emission), Vector(center)] = [emission.into(), center.into()];
         let refuse = |problem: &str| Err(Error::Light(problem.into()));
         let z = emission.normalize_or_zero();
         if z == DVec3::ZERO || !(center.is_finite() && radius.is_finite()) {
@@ -211,6 +261,43 @@ mod tests {
         let light = ceiling();
         assert!((light.emission() - DVec3::NEG_Y).length() < 1e-15);
         assert_eq!(light.half_extents(), [0.3, 0.2]);
+    }
+
+    #[test]
+    fn a_light_faces_where_it_is_told_to() {
+        let center = DVec3::new(5.0, 3.0, -2.0);
+        for (emission, up) in [
+            (DVec3::NEG_Y, DVec3::NEG_Z),
+            (DVec3::new(1.0, -2.0, 0.5), DVec3::Y),
+            (DVec3::Z * 1e-3, DVec3::new(0.1, 40.0, 3.0)),
+        ] {
+            let light = RectangleLight::facing(center, emission, up, [0.6, 0.4]).unwrap();
+            assert!((light.emission() - emission.normalize()).length() < 1e-12);
+            let [width, height] = light.half_extents();
+            assert!((width - 0.3).abs() < 1e-12 && (height - 0.2).abs() < 1e-12);
+            assert_eq!(light.center(), center);
+            // The height runs along `up`, and the width across it.
+            let [x, y] = [light.axes.x_axis, light.axes.y_axis];
+            assert!(x.dot(up).abs() < 1e-12 * up.length() && y.dot(up).abs() > 0.4 * up.length());
+            // As a node of glTF that shines so: X to the right, Y up.
+            assert!(x.dot(emission.cross(up)) > 0.0);
+        }
+        let square = RectangleLight::new(DVec3::Y, DVec3::X, DVec3::NEG_Z).unwrap();
+        let facing =
+            RectangleLight::facing([0.0, 1.0, 0.0], DVec3::NEG_Y, [0.0, 0.0, -1.0f32], [2.0; 2]);
+        assert_eq!(facing.unwrap(), square);
+        let refused = |emission, up, size| {
+            let light = RectangleLight::facing(center, emission, up, size);
+            light.unwrap_err().to_string()
+        };
+        let (down, up) = (DVec3::NEG_Y, DVec3::Y);
+        assert!(refused(DVec3::ZERO, up, [1.0; 2]).contains("no length"));
+        assert!(refused(down, up, [1.0; 2]).contains("across its emission"));
+        assert!(refused(down, DVec3::ZERO, [1.0; 2]).contains("across its emission"));
+        assert!(refused(down, DVec3::X, [1.0, 0.0]).contains("above 0"));
+        assert!(refused(down, DVec3::X, [-1.0, 1.0]).contains("above 0"));
+        assert!(refused(down, DVec3::X, [f64::NAN, 1.0]).contains("finite"));
+        assert!(refused(down, DVec3::INFINITY, [1.0; 2]).contains("finite"));
     }
 
     #[test]

@@ -47,6 +47,7 @@ fn frames(meshes: &[MeshInstance], moment: u32, stays: bool) -> [Frame<'_>; 4] {
         let camera = DMat4::from_scale(DVec3::splat(4.0 + 0.1 * f64::from(moment)));
         Frame {
             light_index,
+            background: Some(0.0),
             reach: (light_index == 3).then_some(3.5),
             revision: stays.then_some(1),
             ..Frame::new(light, camera, meshes, image())
@@ -134,7 +135,9 @@ fn what_is_not_drawn_hides_nothing() {
             MeshInstance::new(Geometry::Buffers(buffers), i.world_from_mesh, bounds, i.role)
         };
         let meshes: Vec<_> = scene.instances.iter().map(instance).collect();
-        let frame = Frame::new(light, DMat4::from_scale(DVec3::splat(9.0)), &meshes, image());
+        let camera = DMat4::from_scale(DVec3::splat(9.0));
+        let own = Frame::new(light, camera, &meshes, image());
+        let frame = Frame { background: Some(0.0), ..own };
         let plan = plan(&description, Limits::default(), &frame).unwrap();
         let kept = plan.meshes(MeshList::Occluders);
         let mut fewer = scene.clone();

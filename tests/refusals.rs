@@ -111,6 +111,7 @@ impl Given {
         let light = generate::square_light(0.5)?;
         let own = Frame::new(light, DMat4::IDENTITY, &self.meshes, depth());
         let mut frame = Frame {
+            background: Some(0.0),
             mask: Some(mask()),
             visibility: match lends {
                 Lends::Visibility => Visibility::Lent(target()),

@@ -190,5 +190,6 @@ fn frame(light: RectangleLight, meshes: &[MeshInstance]) -> Frame<'_> {
         before: Scope::FRAGMENT_SAMPLED,
         after: Scope::FRAGMENT_SAMPLED,
     };
-    Frame::new(light, DMat4::from_scale(DVec3::new(50.0, 50.0, 4.0)), meshes, depth)
+    let above = DMat4::from_scale(DVec3::new(50.0, 50.0, 4.0));
+    Frame { background: Some(0.0), ..Frame::new(light, above, meshes, depth) }
 }

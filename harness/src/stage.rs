@@ -223,6 +223,7 @@ impl Stage {
         let world_from_ndc = self.view.clip_from_world.inverse();
         let depth = self.gbuffer.depth_for_node();
         Frame {
+            background: Some(0.0),
             mask: Some(self.gbuffer.mask_for_node()),
             visibility: Visibility::Own { before: RESULT, after: RESULT },
             ..Frame::new(*light, world_from_ndc, &self.instances, depth)

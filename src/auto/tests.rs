@@ -54,7 +54,7 @@ fn frame(light: RectangleLight, meshes: &[MeshInstance]) -> Frame<'_> {
         [0.0, 8.0, 0.0, 0.0],
         [0.0, 0.0, 0.0, 1.0],
     ]);
-    Frame::new(light, world_from_ndc, meshes, depth)
+    Frame { background: Some(0.0), ..Frame::new(light, world_from_ndc, meshes, depth) }
 }
 
 fn square(side: f64) -> RectangleLight {

@@ -69,6 +69,22 @@ impl ImageBarrier {
                     .layer_count(1),
             )
     }
+
+    /// As synchronization2 takes it, stages included, for `vkCmdPipelineBarrier2`.
+    pub fn vk2(&self) -> vk::ImageMemoryBarrier2<'static> {
+        let one = self.vk();
+        vk::ImageMemoryBarrier2::default()
+            .src_stage_mask(self.before.stage2())
+            .src_access_mask(self.before.access2())
+            .dst_stage_mask(self.after.stage2())
+            .dst_access_mask(self.after.access2())
+            .old_layout(one.old_layout)
+            .new_layout(one.new_layout)
+            .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+            .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+            .image(self.image)
+            .subresource_range(one.subresource_range)
+    }
 }
 
 impl HostAccess {

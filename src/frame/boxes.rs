@@ -1,7 +1,7 @@
 //! The meshes of a frame as all of its lights look at them, placed in the world once.
 
 use crate::RectangleLight;
-use crate::lent::{Geometry, MeshInstance};
+use crate::lent::{Geometry, MeshBounds, MeshInstance};
 use ash::vk;
 use glam::{DVec3, DVec4};
 
@@ -27,6 +27,8 @@ pub(crate) struct Boxes {
     pub not_finite: Option<usize>,
     /// The first one that cannot be drawn as it is said to be, and why.
     pub unsound: Option<(usize, &'static str)>,
+    /// The first one that blocks and does not receive.
+    pub occluder_alone: Option<usize>,
     /// The first one that the host draws.
     pub host_drawn: Option<usize>,
     /// The first one that the host draws and that blocks.
@@ -42,7 +44,7 @@ impl Boxes {
             of.reserve(meshes.len());
         }
         (self.not_finite, self.host_drawn, self.host_drawn_blocker) = (None, None, None);
-        (self.blockers, self.unsound) = (0, None);
+        (self.blockers, self.unsound, self.occluder_alone) = (0, None, None);
         for (index, mesh) in meshes.iter().enumerate() {
             let blocks = mesh.role.blocks();
             if let Geometry::HostDrawn(_) = mesh.geometry {
@@ -56,6 +58,9 @@ impl Boxes {
             }
             let there = has_triangles(mesh);
             self.blockers += usize::from(there && blocks);
+            if there && blocks && !mesh.role.receives() {
+                self.occluder_alone.get_or_insert(index);
+            }
             let [center, half] = around(mesh);
             // Every number is in one of these, and what is not finite stays so; what is may have become too large.
             let sound =
@@ -144,6 +149,11 @@ fn problem(mesh: &MeshInstance) -> Option<&'static str> {
     if last.abs().max_element() > PROJECTIVE {
         return Some("its transform must end in the row 0, 0, 0, 1; is it transposed?");
     }
+    if has_triangles(mesh)
+        && let Some(problem) = swapped(&mesh.bounds)
+    {
+        return Some(problem);
+    }
     let Geometry::Buffers(buffers) = &mesh.geometry else { return None };
     if buffers.count == 0 {
         return None;
@@ -172,6 +182,18 @@ fn problem(mesh: &MeshInstance) -> Option<&'static str> {
     (!offset.is_multiple_of(bytes)).then_some("its indices must begin at a multiple of their size")
 }
 
+/// The problem of a box whose least corner lies above its largest. Numbers that are not finite are refused elsewhere.
+fn swapped([least, largest]: &MeshBounds) -> Option<&'static str> {
+    let axis = (0..3).find(|&i| least[i] > largest[i])?;
+    Some(
+        [
+            "its bounds have min above max in x; give [least, largest] corners",
+            "its bounds have min above max in y; give [least, largest] corners",
+            "its bounds have min above max in z; give [least, largest] corners",
+        ][axis],
+    )
+}
+
 /// The middle of a mesh's box in the world, and half its extents along the world's axes.
 fn around(mesh: &MeshInstance) -> [DVec3; 2] {
     let [low, high] = mesh.bounds.map(|p| DVec3::from_array(p.map(f64::from)));
@@ -182,7 +204,7 @@ fn around(mesh: &MeshInstance) -> [DVec3; 2] {
 }
 
 /// Whether there is anything to draw of a mesh.
-fn has_triangles(mesh: &MeshInstance) -> bool {
+pub(super) fn has_triangles(mesh: &MeshInstance) -> bool {
     match mesh.geometry {
         Geometry::Buffers(buffers) => buffers.count >= 3,
         Geometry::HostDrawn(_) => true,

@@ -57,12 +57,7 @@ impl Frame<'_> {
         if !self.world_from_ndc.is_finite() || !self.world_from_ndc.determinant().is_normal() {
             return bad("world_from_ndc must be finite and invertible");
         }
-        if self.background != 0.0 && self.background != 1.0 {
-            return bad(format!(
-                "background is {}; a pixel that shows nothing has depth 0 where depth is reversed, else 1",
-                self.background
-            ));
-        }
+        self.check_background()?;
         if let Some([min, max]) = self.window {
             // Which the shaders divide by, in 32 bits.
             let is_width = |i: usize| ((max[i] - min[i]) as f32).is_normal() && min[i] < max[i];

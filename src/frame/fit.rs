@@ -1,6 +1,7 @@
 //! What of a frame stays as long as light and meshes stay: which meshes matter, and how the maps look at them.
 
 use super::boxes::{Boxes, Surroundings};
+use super::doubts::Odd;
 use super::hull::Hull;
 use super::passes::PLACEHOLDER;
 use super::{Description, Frame};
@@ -113,6 +114,8 @@ pub(super) struct Fit {
     pub need: Need<Why>,
     /// What boxes tell; none where nothing can be shadowed.
     pub situation: Option<Situation>,
+    /// Signs of mistakes in the meshes.
+    pub odd: Odd,
     /// Another one each time that meshes are looked at.
     number: u64,
     /// Views for techniques that look from all over the light, once they are asked for.
@@ -132,6 +135,7 @@ impl Default for Fit {
             behind: None,
             need: Need::No(Why::default()),
             situation: None,
+            odd: Odd::default(),
             number: 0,
             views: None,
         }
@@ -193,6 +197,8 @@ impl Fit {
             let side = maps.layers.receiver_map.unwrap_or(maps.side);
             depth_layers::fit_receiver_boxes(half, receivers, view, side)
         });
+        let no_occluder = self.occluders.boxes.is_empty() && gone == [0, 0];
+        self.odd = Odd::of(frame, boxes, [no_occluder, receivers.is_empty()]);
         self.need = self.need_of(boxes.blockers, gone);
         // The host's maps are seen from the light's centre.
         let eye = if self.host_maps.is_some() { Projection::Centre } else { maps.eye };

@@ -153,8 +153,9 @@ fn check_image(image: &HostImage, wanted: &Wanted) -> Result<(), Error> {
     let before = image.before.layout;
     if read && matches!(before, Layout::UNDEFINED | Layout::PREINITIALIZED) {
         return bad(format!(
-            "{name}: nothing is in an image whose layout before the node is {before:?}; say which \
-             layout the host's last pass leaves it in"
+            "{name}: nothing is in an image whose layout before the node is {before:?}; say in `before` which layout \
+             the host's last pass leaves it in (behind handed_back() that is the layout of `after`, which must then \
+             name one)"
         ));
     }
     check_scopes(name, [&image.before, &image.after], image.usage, is_depth_format(format))

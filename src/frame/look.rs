@@ -46,7 +46,7 @@ pub(super) fn look<'a>(
         light_from_ndc: from_ndc.to_cols_array(),
         noise: frame.noise,
         ndc_from_light: from_light.to_cols_array(),
-        background: frame.background,
+        background: frame.far_depth(),
     };
     Ok((looks, verdicts))
 }

@@ -2,6 +2,7 @@
 
 use super::accesses::{HostAccess, NodeUse};
 use super::boxes::Surroundings;
+use super::doubts::Sight;
 use super::fit::{Fit, FitRequest};
 use super::keep::{self, Kept, Revisions, Ties};
 use super::look::look;
@@ -142,6 +143,7 @@ pub(crate) fn plan_into(
         plan.accesses.push(access_of(&plan.plan, border, &plan.imports, frame.light_index));
     }
     plan.visibility = ids.visibility;
+    plan.sight = Sight::of(description, frame, fit, verdicts.situation());
     plan.verdicts = verdicts;
     plan.slot = frame.slot;
     (plan.light_index, plan.technique_index) = (frame.light_index, frame.technique_index);

@@ -2,7 +2,9 @@
 
 mod accesses;
 mod boxes;
+mod camera;
 mod check;
+mod doubts;
 mod draws;
 mod fit;
 mod hull;
@@ -19,6 +21,7 @@ mod tests;
 
 pub use accesses::{BufferAccess, HostAccess, ImageBarrier, NodeUse};
 pub(crate) use boxes::Surroundings;
+pub use doubts::Doubt;
 pub use draws::{Faces, MeshDraw};
 pub(crate) use left::{Left, Whose};
 pub(crate) use look::Looker;
@@ -34,6 +37,7 @@ pub use plans::FramePlans;
 
 use crate::graph::{self, Scope};
 use crate::lent::{BorderBarriers, HostImage, MeshInstance, OccluderMaps, Visibility};
+use crate::plain::Matrix;
 use crate::technique::Technique;
 use crate::techniques::room;
 use crate::{Error, RectangleLight};
@@ -218,6 +222,19 @@ impl Description {
 }
 
 /// One frame, as the host sees it; [`Frame::new`] fills in what most frames leave out.
+///
+/// | convention | |
+/// |---|---|
+/// | matrices | for column vectors: a point is `matrix * (x, y, z, 1)`; arrays hold column behind column |
+/// | world | right-handed, metres; any space that light, meshes and camera share |
+/// | pixels | ndc y runs down, −1 at the first row; a host's that runs up: `inverse(projection * view) * scale(1, -1, 1)` |
+/// | depth | 0 to 1 either way, perspective or orthographic, far plane finite or infinite |
+/// | camera | the matrix that the G-buffer was drawn with, its jitter included |
+/// | front faces | their corners run counter-clockwise |
+/// | bounds | `[least, largest]` corners, f32, before the transform; transforms are f64 |
+/// | light | shines along `half_v × half_u`; [`RectangleLight::facing`] takes the direction |
+///
+/// What contradicts them is refused by [`plan`], or is one of [`FramePlan::doubts`].
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<'a> {
     /// The light.
@@ -238,15 +255,16 @@ pub struct Frame<'a> {
     /// Receivers beyond that need no shadow and occluders beyond cast none, so that neither is looked at. None:
     /// everywhere.
     pub reach: Option<f64>,
-    /// Normalized device coordinates and depth to world space: the inverse of view and projection.
+    /// Normalized device coordinates and depth to world space, for column vectors: `inverse(projection * view)`.
     ///
     /// The first row of pixels lies at y = −1, as Vulkan has it; where a host's y runs up (wgpu, or a
-    /// viewport of negative height), scale by (1, −1, 1) first. "World" is whatever space the light
+    /// viewport of negative height), it is `inverse(projection * view) * scale(1, -1, 1)`. "World" is whatever space the light
     /// and the meshes' transforms are in: a host that keeps its numbers relative to the camera gives
     /// all of them so.
     pub world_from_ndc: DMat4,
-    /// The depth of pixels that show no surface: 0 with reversed depth, else 1.
-    pub background: f32,
+    /// The depth of pixels that show no surface: 0 with reversed depth, else 1. None: the end of depth that lies further
+    /// from the eye, as [`Self::world_from_ndc`] has it. An orthographic camera has no eye, so it must be given there.
+    pub background: Option<f32>,
     /// Everything that blocks light or shows shadows.
     pub meshes: &'a [MeshInstance],
     /// The G-buffer's depth, with SAMPLED usage.
@@ -286,11 +304,12 @@ pub struct Frame<'a> {
 }
 
 impl<'a> Frame<'a> {
-    /// A frame of light 0 with the first technique, the whole rectangle, reversed depth, no mask, the node's own visibility image sampled by fragment and
-    /// compute shaders, a fitted window, slot 0, and barriers placed by the node.
+    /// A frame of light 0 with the first technique, the whole rectangle, the far depth that the matrix has, no mask, the
+    /// node's own visibility image sampled by fragment and compute shaders, a fitted window, slot 0, and barriers placed
+    /// by the node.
     pub fn new(
         light: RectangleLight,
-        world_from_ndc: DMat4,
+        world_from_ndc: impl Into<Matrix>,
         meshes: &'a [MeshInstance],
         depth: HostImage,
     ) -> Self {
@@ -304,8 +323,8 @@ impl<'a> Frame<'a> {
             technique_index: 0,
             outline: None,
             reach: None,
-            world_from_ndc,
-            background: 0.0,
+            world_from_ndc: world_from_ndc.into().0,
+            background: None,
             meshes,
             depth,
             mask: None,

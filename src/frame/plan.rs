@@ -1,6 +1,7 @@
 //! What one frame records.
 
 use super::accesses::{self, BufferAccess, HostAccess, ImageBarrier, NodeUse};
+use super::doubts::{Doubt, Sight};
 use super::draws::{DrawList, MeshDraw};
 use super::keep::Keeping;
 use super::left::Whose;
@@ -33,6 +34,7 @@ pub struct FramePlan {
     pub technique_index: u32,
     pub(crate) stamp: Stamp,
     pub(crate) keeping: Keeping,
+    pub(super) sight: Sight,
     pub(super) accesses: Vec<HostAccess>,
     pub(super) occluders: DrawList,
     pub(super) receivers: DrawList,
@@ -51,6 +53,7 @@ impl Default for FramePlan {
             technique_index: 0,
             stamp: Stamp::default(),
             keeping: Keeping::default(),
+            sight: Sight::default(),
             accesses: Vec::new(),
             occluders: DrawList::default(),
             receivers: DrawList::default(),
@@ -70,10 +73,19 @@ impl FramePlan {
         self.accesses.iter().find(|a| a.image == image)?.node
     }
 
-    /// For people: what runs and why, what does not and why not, and what of the effects that the node can simulate
-    /// is simulated or left out, with the bound on the error of that.
+    /// Everything in the frame that looks like a mistake and may be meant, such as a camera that shows the world
+    /// mirrored; a frame that is in order has no doubts. Each [`Doubt`] is a sentence, and [`Self::explain`] begins with
+    /// them.
+    pub fn doubts(&self) -> &[Doubt] {
+        self.sight.doubts()
+    }
+
+    /// For people: what is doubtful, what runs and why, what does not and why not, how the camera is understood, and
+    /// what of the effects that the node can simulate is simulated or left out, with the bound on the error of that.
     pub fn explain(&self) -> String {
-        format!("{}\n{}", self.plan.table(), self.verdicts)
+        let doubts: String =
+            self.doubts().iter().map(|doubt| format!("doubt: {doubt}\n")).collect();
+        format!("{doubts}{}\n{}\n{}", self.plan.table(), self.sight, self.verdicts)
     }
 
     /// The barriers to place before the node, for a host that asked for [`BorderBarriers::Host`](super::BorderBarriers::Host).

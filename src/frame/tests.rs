@@ -1,6 +1,5 @@
 use super::*;
 use crate::graph::MeshList;
-use crate::lent::MeshBounds;
 use crate::lent::*;
 use crate::scene::{Role, generate};
 use crate::stages::depth_layers::{Eye, MapView};
@@ -36,20 +35,14 @@ fn target() -> HostImage {
 }
 
 fn mesh(bounds: MeshBounds, at: DVec3, role: Role) -> MeshInstance {
-    MeshInstance {
-        geometry: Geometry::Buffers(MeshBuffers {
-            positions: vk::Buffer::from_raw(3),
-            positions_offset: 0,
-            positions_stride: 12,
-            indices: None,
-            count: 36,
-        }),
-        world_from_mesh: DMat4::from_translation(at),
-        bounds,
-        role,
-        double_sided: false,
-        cut_out: false,
-    }
+    let geometry = Geometry::Buffers(MeshBuffers {
+        positions: vk::Buffer::from_raw(3),
+        positions_offset: 0,
+        positions_stride: 12,
+        indices: None,
+        count: 36,
+    });
+    MeshInstance::new(geometry, DMat4::from_translation(at), bounds, role)
 }
 
 const GROUND: MeshBounds = [[-4.0, 0.0, -4.0], [4.0, 0.0, 4.0]];
@@ -60,7 +53,8 @@ fn meshes() -> Vec<MeshInstance> {
 }
 
 fn frame(meshes: &[MeshInstance]) -> Frame<'_> {
-    Frame::new(generate::square_light(0.5).unwrap(), DMat4::IDENTITY, meshes, depth())
+    let light = generate::square_light(0.5).unwrap();
+    Frame { background: Some(0.0), ..Frame::new(light, DMat4::IDENTITY, meshes, depth()) }
 }
 
 fn description(words: &[(&str, &str)]) -> Description {

@@ -40,6 +40,8 @@ pub enum Access {
 }
 
 /// Stages and access bits of one use, and the layout an image must be in.
+///
+/// It is also made from synchronization2's words: `Scope::from((stage2, access2, layout))`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scope {
     /// The pipeline stages that touch it.
@@ -50,7 +52,7 @@ pub struct Scope {
     pub layout: vk::ImageLayout,
 }
 
-/// The uses that hosts have most; others are written out.
+/// The uses that hosts have most, each with its stage, access and layout; others are written out.
 impl Scope {
     const fn of(
         stage: vk::PipelineStageFlags,
@@ -60,43 +62,61 @@ impl Scope {
         Self { stage, access, layout }
     }
 
-    /// Never used: a new image, whose content is undefined.
+    /// A new image that nothing has used: `TOP_OF_PIPE`, no access, `UNDEFINED`. For `before`, where the content does
+    /// not matter.
     pub const UNUSED: Self = Self::of(
         vk::PipelineStageFlags::TOP_OF_PIPE,
         vk::AccessFlags::empty(),
         vk::ImageLayout::UNDEFINED,
     );
-    /// A depth attachment that was drawn to.
+    /// Whatever comes next, in whatever layout the node leaves the image: `ALL_COMMANDS`, no access, `UNDEFINED`. For
+    /// `after`, where the host's next use clears the image or places a barrier of its own. What comes next waits for the
+    /// node, and may not read what the node wrote without that barrier.
+    pub const ANY: Self = Self::of(
+        vk::PipelineStageFlags::ALL_COMMANDS,
+        vk::AccessFlags::empty(),
+        vk::ImageLayout::UNDEFINED,
+    );
+    /// A depth attachment that was drawn to: `LATE_FRAGMENT_TESTS`, `DEPTH_STENCIL_ATTACHMENT_WRITE`,
+    /// `DEPTH_STENCIL_ATTACHMENT_OPTIMAL`.
     pub const DEPTH_DRAWN: Self = Self::of(
         vk::PipelineStageFlags::LATE_FRAGMENT_TESTS,
         vk::AccessFlags::DEPTH_STENCIL_ATTACHMENT_WRITE,
         vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
     );
-    /// A color attachment that was drawn to.
+    /// A depth attachment without stencil that was drawn to: `LATE_FRAGMENT_TESTS`, `DEPTH_STENCIL_ATTACHMENT_WRITE`,
+    /// `DEPTH_ATTACHMENT_OPTIMAL`, which is Vulkan 1.2's `separateDepthStencilLayouts`.
+    pub const DEPTH_DRAWN_ONLY: Self = Self::of(
+        vk::PipelineStageFlags::LATE_FRAGMENT_TESTS,
+        vk::AccessFlags::DEPTH_STENCIL_ATTACHMENT_WRITE,
+        vk::ImageLayout::DEPTH_ATTACHMENT_OPTIMAL,
+    );
+    /// A color attachment that was drawn to: `COLOR_ATTACHMENT_OUTPUT`, `COLOR_ATTACHMENT_WRITE`,
+    /// `COLOR_ATTACHMENT_OPTIMAL`.
     pub const COLOR_DRAWN: Self = Self::of(
         vk::PipelineStageFlags::COLOR_ATTACHMENT_OUTPUT,
         vk::AccessFlags::COLOR_ATTACHMENT_WRITE,
         vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
     );
-    /// Sampled or fetched by fragment shaders.
+    /// Sampled or fetched by fragment shaders: `FRAGMENT_SHADER`, `SHADER_READ`, `SHADER_READ_ONLY_OPTIMAL`.
     pub const FRAGMENT_SAMPLED: Self = Self::of(
         vk::PipelineStageFlags::FRAGMENT_SHADER,
         vk::AccessFlags::SHADER_READ,
         vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
     );
-    /// Sampled or fetched by compute shaders.
+    /// Sampled or fetched by compute shaders: `COMPUTE_SHADER`, `SHADER_READ`, `SHADER_READ_ONLY_OPTIMAL`.
     pub const COMPUTE_SAMPLED: Self = Self::of(
         vk::PipelineStageFlags::COMPUTE_SHADER,
         vk::AccessFlags::SHADER_READ,
         vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
     );
-    /// A storage image that compute shaders wrote.
+    /// A storage image that compute shaders wrote: `COMPUTE_SHADER`, `SHADER_WRITE`, `GENERAL`.
     pub const COMPUTE_WRITTEN: Self = Self::of(
         vk::PipelineStageFlags::COMPUTE_SHADER,
         vk::AccessFlags::SHADER_WRITE,
         vk::ImageLayout::GENERAL,
     );
-    /// The source of a copy.
+    /// The source of a copy: `TRANSFER`, `TRANSFER_READ`, `TRANSFER_SRC_OPTIMAL`.
     pub const COPIED_FROM: Self = Self::of(
         vk::PipelineStageFlags::TRANSFER,
         vk::AccessFlags::TRANSFER_READ,

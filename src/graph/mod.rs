@@ -16,6 +16,7 @@ mod pass;
 mod plan;
 mod resource;
 mod show;
+mod sync2;
 mod why;
 
 pub use access::{Access, Scope};

@@ -115,7 +115,8 @@ impl Bench {
         let own = Frame::new(light, world_from_ndc, instances, depth);
         let (before, after) = (Scope::COPIED_FROM, Scope::COPIED_FROM);
         let visibility = Visibility::Own { before, after };
-        let frame = Frame { mask: Some(gbuffer.mask_for_node()), visibility, ..own };
+        let mask = Some(gbuffer.mask_for_node());
+        let frame = Frame { background: Some(0.0), mask, visibility, ..own };
         Some(node.plan(&frame).unwrap())
     }
 
