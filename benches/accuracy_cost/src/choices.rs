@@ -1,9 +1,10 @@
 //! The table that `auto` chooses by: what every candidate did in every view, as text for the crate.
 
 use crate::Problem;
-use crate::groups::{self, Group};
+use crate::groups::Group;
 use crate::options::Options;
 use crate::store::{Row, Store};
+use crate::studies;
 use antumbra::auto::{Auto, Budget, CANDIDATES, COLUMNS, Costs, Likeness, Measured, PROBE};
 use antumbra::effects::Situation;
 use antumbra::gpu::headless::{HeadlessDevice, HeadlessOptions, Stage, probe};
@@ -37,7 +38,7 @@ pub fn write(options: &Options) -> Result<(), Problem> {
     let device = HeadlessDevice::new(&HeadlessOptions::default()).map_err(|e| e.to_string())?;
     let Measured { maps_ms, pixels_ms, .. } = probe(&device).map_err(|e| e.to_string())?;
     let mut text = format!("{COLUMNS}\n{PROBE},{maps_ms:.3},{pixels_ms:.3}\n");
-    for group in groups::choices(&options.choice()) {
+    for group in studies::choices(&options.choice()) {
         let own: Vec<&Row> =
             rows.iter().filter(|r| r.scene == group.scene && r.light == group.light).collect();
         if own.is_empty() {
@@ -84,7 +85,7 @@ pub fn exam(options: &Options) -> Result<(), Problem> {
     let (_, rows) = Store::read(&options.out.join("measured.jsonl"))?;
     let device = HeadlessDevice::new(&HeadlessOptions::default()).map_err(|e| e.to_string())?;
     let mut views = Vec::new();
-    for group in groups::choices(&options.choice()) {
+    for group in studies::choices(&options.choice()) {
         let own: Vec<&Row> =
             rows.iter().filter(|r| r.scene == group.scene && r.light == group.light).collect();
         if !own.is_empty() {

@@ -12,6 +12,7 @@
 //! stored rows: a report can be made of whatever a killed run left behind.
 
 pub mod choices;
+pub mod commit;
 pub mod curtis;
 pub mod envelope;
 pub mod findings;
@@ -37,6 +38,7 @@ pub mod scenes;
 mod shade;
 pub mod stats;
 pub mod store;
+pub mod studies;
 pub mod sweeps;
 pub mod techniques;
 pub mod truth;

@@ -1,7 +1,8 @@
 //! One group: its stages, its truth, its frames in turns, its errors.
 
 use crate::Problem;
-use crate::groups::{Entry, Group, Ready, Scale};
+use crate::groups::{Entry, Group};
+use crate::options::Scale;
 use crate::picture::{self, Pictures};
 use crate::runner::Runner;
 use crate::scenes::scaled;
@@ -11,7 +12,7 @@ use crate::store::{Errors, Outcome, Row, Times};
 use crate::techniques::method;
 use crate::truth::{self, Truth, mask};
 use antumbra::gpu::headless::{FrameTimes, HeadlessDevice, Stage};
-use antumbra::scene::{AreaLight, Instance};
+use antumbra::scene::AreaLight;
 use antumbra::truth::{ErrorSummary, Receiver, Tracer};
 use antumbra::{RectangleLight, Settings};
 use rayon::prelude::*;
@@ -66,12 +67,13 @@ impl Bench<'_> {
         tell("scene");
         let ready = group.ready()?;
         let light = ready.scene.light(None).map_err(|e| e.to_string())?.clone();
-        let pixels = self.stage(&ready, group.extent, Settings::default())?;
+        let pixels = ready.stage(self.device, group.extent, Settings::default())?;
         let receivers = truth::receivers(pixels.gbuffer())?;
         let tracer = Tracer::new(&ready.scene).map_err(|e| e.to_string())?;
         let mut candidates: Vec<Candidate> = Vec::new();
         for (entry, method) in group.entries.iter().zip(methods) {
-            let state = Runner::new(self, &ready, group, entry, method, &light.light, &receivers);
+            let state =
+                Runner::new(self.device, &ready, group, entry, method, &light.light, &receivers);
             candidates.push(Candidate { entry, state, frames: Vec::new(), image: Vec::new() });
         }
         let lit = |c: &Candidate| scaled(&light.light, c.entry.light_scale);
@@ -106,18 +108,6 @@ impl Bench<'_> {
             blank(group, Some(entry), triangles, half, outcome.unwrap_or_else(Outcome::Failed))
         });
         Ok(compared.collect())
-    }
-
-    /// A stage of these settings at the group's pixels.
-    pub(crate) fn stage(
-        &self,
-        ready: &Ready,
-        extent: [u32; 2],
-        settings: Settings,
-    ) -> Result<Stage, Problem> {
-        let keep = |i: &Instance| ready.keeps(i);
-        Stage::new(self.device, &ready.scene, &ready.view, extent, settings, keep)
-            .map_err(|e| e.to_string())
     }
 
     /// Every candidate once a round. Those that have cost more than their share stop once they have

@@ -2,20 +2,21 @@
 
 use crate::Problem;
 use crate::choices;
+use crate::commit::commit;
 use crate::envelope;
-use crate::groups::{self, FULL, Group, QUICK};
+use crate::groups::Group;
 use crate::hard_cases::store;
 use crate::measure::Bench;
-use crate::options::Options;
+use crate::options::{FULL, Options, QUICK};
 use crate::progress::{Estimate, Progress, duration};
 use crate::report::docs::{ENVELOPE, HARD_CASES, HEADLINE};
 use crate::report::{self, Report};
 use crate::scenes::{self, SceneSpec, Source};
 use crate::store::{Header, Outcome, Row, Store};
+use crate::studies;
 use crate::truth::Fnv;
 use antumbra::gpu::headless::{HeadlessDevice, HeadlessOptions};
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::time::Instant;
 
 /// What the quick run may take, less what the report takes to write.
@@ -84,8 +85,8 @@ pub fn run(options: &Options) -> Result<bool, Problem> {
     let cache = kept(&options.out, &header)?;
     let mut store = Store::open(&measured, &header)?;
     let mut groups = match options.choices {
-        true => groups::choices(&scale),
-        false => groups::all(&scale, &own),
+        true => studies::choices(&scale),
+        false => studies::all(&scale, &own),
     };
     if let Some(text) = &options.only {
         groups.retain(|g| g.key().contains(text.as_str()));
@@ -196,31 +197,4 @@ fn told(spec: &SceneSpec) -> String {
     let Source::File(path) = &spec.source else { return spec.name.clone() };
     let date = std::fs::metadata(path).and_then(|m| Ok((m.len(), m.modified()?)));
     format!("{} {:?}", path.display(), date.ok())
-}
-
-/// git's commit, and a hash of this program where it is not that commit's.
-pub(crate) fn commit() -> String {
-    let git = |arguments: &[&str]| {
-        let output =
-            Command::new("git").current_dir(Options::root()).args(arguments).output().ok()?;
-        let text = String::from_utf8(output.stdout).ok()?;
-        output.status.success().then(|| text.trim().to_string())
-    };
-    let Some(commit) = git(&["rev-parse", "--short=10", "HEAD"]) else {
-        return format!("unknown, {}", program());
-    };
-    let clean =
-        git(&["status", "--porcelain", "--untracked-files=no"]).is_some_and(|s| s.is_empty());
-    if clean { commit } else { format!("{commit}-dirty, {}", program()) }
-}
-
-fn program() -> String {
-    let bytes = std::env::current_exe().and_then(std::fs::read).unwrap_or_default();
-    let mut hash = Fnv::default();
-    bytes.chunks(8).for_each(|c| {
-        let mut word = [0; 8];
-        word[..c.len()].copy_from_slice(c);
-        hash.add(u64::from_le_bytes(word));
-    });
-    format!("program {:08x}", hash.0 >> 32)
 }

@@ -2,11 +2,10 @@
 
 use crate::Problem;
 use crate::groups::{Entry, Group, Ready};
-use crate::measure::Bench;
 use crate::scenes::scaled;
 use crate::techniques::Method;
 use crate::truth;
-use antumbra::gpu::headless::{Forward, FrameTimes, ReadbackScheme, Stage};
+use antumbra::gpu::headless::{Forward, FrameTimes, HeadlessDevice, ReadbackScheme, Stage};
 use antumbra::scene::Instance;
 use antumbra::truth::{Receiver, Sampling, Tracer};
 use antumbra::{FramePlan, RectangleLight};
@@ -59,7 +58,7 @@ impl Runner {
     /// # Errors
     /// A sentence for what was refused.
     pub fn new(
-        bench: &Bench,
+        device: &HeadlessDevice,
         ready: &Ready,
         group: &Group,
         entry: &Entry,
@@ -67,7 +66,7 @@ impl Runner {
         light: &RectangleLight,
         receivers: &[Receiver],
     ) -> Result<Option<Self>, Problem> {
-        let stage = |settings| bench.stage(ready, group.extent, settings).map(Box::new);
+        let stage = |settings| ready.stage(device, group.extent, settings).map(Box::new);
         Ok(match method? {
             None => None,
             Some(Method::Rays(rays)) => {
@@ -86,7 +85,7 @@ impl Runner {
                 };
                 let mut stage = stage(*settings)?;
                 let plan = told(stage.plan(light, ready.window))?;
-                let scheme = ReadbackScheme::new(bench.device, &ready.scene, side, side);
+                let scheme = ReadbackScheme::new(device, &ready.scene, side, side);
                 let scheme = Box::new(told(scheme)?);
                 told(stage.run(&plan))?;
                 Some(Self::Readback { scheme, window: ready.window, stage, plan: Box::new(plan) })
@@ -101,7 +100,7 @@ impl Runner {
                 let mut stage = stage(*settings)?;
                 let plan = told(stage.plan(light, ready.window))?;
                 let keep = |i: &Instance| ready.keeps(i);
-                let forward = Forward::new(bench.device, *stage, plan, &ready.scene, keep);
+                let forward = Forward::new(device, *stage, plan, &ready.scene, keep);
                 Some(Self::Forward { forward: Box::new(told(forward)?) })
             }
         })

@@ -1,10 +1,13 @@
 //! An image beside what it must be.
 
 use super::cases::{HardCase, Limit, Noise};
-use super::pixels::Range;
-use super::run::SIDE;
+use super::pixels::{Range, SIDE};
 use super::techniques::Held;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// The table of each device, by its name.
+pub type Tables = BTreeMap<String, Vec<Row>>;
 
 /// What came of a row.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

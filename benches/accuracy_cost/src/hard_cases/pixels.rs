@@ -14,6 +14,9 @@ use rayon::prelude::*;
 /// (`glsl/common/plane.glsl`).
 const OWN_SLOPE: f64 = 0.3;
 
+/// The image's side in pixels.
+pub const SIDE: u32 = 32;
+
 /// The side of the soft shadow map, texels.
 pub const RECEIVER_MAP: u32 = 64;
 

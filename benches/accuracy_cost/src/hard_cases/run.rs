@@ -2,7 +2,7 @@
 
 use super::cases::HardCase;
 use super::judge::{Row, judge};
-use super::pixels::{self, Maps, Range, Reach};
+use super::pixels::{self, Maps, Range, Reach, SIDE};
 use super::techniques::{self, Expected, Held};
 use crate::Problem;
 use crate::scenes::scaled;
@@ -10,9 +10,6 @@ use antumbra::gpu::headless::{HeadlessDevice, Stage, View};
 use antumbra::scene::{Instance, Role, Scene};
 use antumbra::{FramePlan, Settings};
 use std::collections::BTreeMap;
-
-/// The image's side in pixels.
-pub const SIDE: u32 = 32;
 
 /// How large a point is beside the light that it stands for.
 const POINT: f64 = 1e-6;

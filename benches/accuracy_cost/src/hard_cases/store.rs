@@ -1,15 +1,11 @@
 //! What devices did, kept beside the report.
 
-use super::judge::Row;
+use super::judge::{Row, Tables};
 use super::table;
 use super::{cases, run};
 use crate::Problem;
 use antumbra::gpu::headless::HeadlessDevice;
-use std::collections::BTreeMap;
 use std::path::Path;
-
-/// The table of each device, by its name.
-pub type Tables = BTreeMap<String, Vec<Row>>;
 
 const FILE: &str = "hard_cases.json";
 

@@ -1,7 +1,6 @@
 //! The table for people: a row a case, a column a technique.
 
-use super::judge::{Row, Verdict};
-use super::store::Tables;
+use super::judge::{Row, Tables, Verdict};
 use super::techniques;
 use crate::plot::escape;
 use std::fmt::Write as _;

@@ -6,6 +6,7 @@ use crate::curtis::{self, MAPS, RAYS, SCREENS, VERSIONS, Version};
 use crate::levels::{BUILD, bytes, ms as sum_of, tightness};
 use crate::picture::{self, Pictures};
 use crate::plot::escape;
+use crate::scenes::CUBE;
 use crate::store::{Outcome, Row};
 use crate::sweeps;
 use crate::techniques::{FORWARD, value_of};
@@ -77,10 +78,8 @@ impl Table {
     }
 
     fn html(&self, report: &Report) -> String {
-        let own: Vec<&Row> = report
-            .study(curtis::STUDY)
-            .filter(|r| (r.scene == curtis::CUBE) == self.cube)
-            .collect();
+        let own: Vec<&Row> =
+            report.study(curtis::STUDY).filter(|r| (r.scene == CUBE) == self.cube).collect();
         let mut out = format!("<h3>Table {}: {}</h3>\n", self.number, self.title);
         let Some(first) = own.first() else {
             return out + "<p class=\"open\">Not measured in this run.</p>\n";
@@ -224,7 +223,7 @@ mod tests {
     fn a_row_stands_in_each_table_that_has_it() {
         let mut middle = row("hierarchical", 512.0, 123.0, 0.0321);
         middle.study = curtis::STUDY.into();
-        middle.scene = curtis::CUBE.into();
+        middle.scene = CUBE.into();
         middle.extent = SCREENS[1];
         middle.settings = "rays=9 map=512".into();
         let page = with(&[middle.clone()], tables);

@@ -10,7 +10,7 @@ mod strip;
 mod tables;
 
 use crate::Problem;
-use crate::hard_cases::store::Tables;
+use crate::hard_cases::judge::Tables;
 use crate::store::{Header, Outcome, Row};
 use std::path::Path;
 
