@@ -1,7 +1,8 @@
 //! Which program it is that measures.
 
 use crate::options::Options;
-use crate::truth::Fnv;
+use fnv::FnvHasher;
+use std::hash::Hasher;
 use std::process::Command;
 
 /// git's commit, and a hash of this program where it is not that commit's.
@@ -22,11 +23,7 @@ pub fn commit() -> String {
 
 fn program() -> String {
     let bytes = std::env::current_exe().and_then(std::fs::read).unwrap_or_default();
-    let mut hash = Fnv::default();
-    bytes.chunks(8).for_each(|c| {
-        let mut word = [0; 8];
-        word[..c.len()].copy_from_slice(c);
-        hash.add(u64::from_le_bytes(word));
-    });
-    format!("program {:08x}", hash.0 >> 32)
+    let mut hash = FnvHasher::default();
+    hash.write(&bytes);
+    format!("program {:08x}", hash.finish() >> 32)
 }

@@ -14,8 +14,9 @@ use crate::report::{self, Report};
 use crate::scenes::{self, SceneSpec, Source};
 use crate::store::{Header, Outcome, Row, Store};
 use crate::studies;
-use crate::truth::Fnv;
 use antumbra::gpu::headless::{HeadlessDevice, HeadlessOptions};
+use fnv::FnvHasher;
+use std::hash::Hasher;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -72,6 +73,13 @@ pub fn run(options: &Options) -> Result<bool, Problem> {
         _ => FULL,
     };
     let own = options.scenes.as_deref().map(scenes::own).transpose()?.unwrap_or_default();
+    let mut groups = match options.choices {
+        true => studies::choices(&scale),
+        false => studies::all(&scale, &own),
+    };
+    if let Some(text) = &options.only {
+        groups = only(groups, text)?;
+    }
     let device = HeadlessDevice::new(&HeadlessOptions::default()).map_err(|e| e.to_string())?;
     let header = Header {
         command: options.command(),
@@ -84,13 +92,6 @@ pub fn run(options: &Options) -> Result<bool, Problem> {
     };
     let cache = kept(&options.out, &header)?;
     let mut store = Store::open(&measured, &header)?;
-    let mut groups = match options.choices {
-        true => studies::choices(&scale),
-        false => studies::all(&scale, &own),
-    };
-    if let Some(text) = &options.only {
-        groups.retain(|g| g.key().contains(text.as_str()));
-    }
     let [width, height] = scale.view;
     println!("{}: {width}×{height} pixels, commit {}", header.driver, header.commit);
     let started = Instant::now();
@@ -107,6 +108,20 @@ pub fn run(options: &Options) -> Result<bool, Problem> {
     let report =
         Report { header: &header, rows: &rows, left_out: &left_out, cache: &cache, hard_cases };
     Ok(finish(&report, options)? && held)
+}
+
+/// The groups whose name holds a text.
+fn only(groups: Vec<Group>, text: &str) -> Result<Vec<Group>, Problem> {
+    let names = |of: fn(&Group) -> &str| report::once(groups.iter().map(of)).join(", ");
+    let problem = format!(
+        "--only {text}: no group's name holds it; a name is \"STUDY: SCENE, LIGHT light\", of the studies {}, the \
+         scenes {} and the lights {}",
+        names(|g| g.study),
+        names(|g| &g.scene),
+        names(|g| &g.light)
+    );
+    let kept: Vec<_> = groups.into_iter().filter(|g| g.key().contains(text)).collect();
+    if kept.is_empty() { Err(problem) } else { Ok(kept) }
 }
 
 /// Measures the table of hard cases; whether nothing is broken.
@@ -179,10 +194,10 @@ fn measure(bench: &Bench, groups: &[Group], store: &mut Store) -> Result<Vec<Str
 
 /// The folder of truths and pictures that belong to this run; those of other runs are removed.
 fn kept(out: &Path, header: &Header) -> Result<PathBuf, Problem> {
-    let mut hash = Fnv::default();
-    format!("{header:?}").bytes().for_each(|b| hash.add(u64::from(b)));
+    let mut hash = FnvHasher::default();
+    hash.write(format!("{header:?}").as_bytes());
     let all = out.join("cache");
-    let own = all.join(format!("{:016x}", hash.0));
+    let own = all.join(format!("{:016x}", hash.finish()));
     std::fs::create_dir_all(&own).map_err(|e| format!("--out {}: {e}", out.display()))?;
     let others = std::fs::read_dir(&all).into_iter().flatten().flatten().map(|e| e.path());
     for other in others.filter(|path| *path != own && path.is_dir()) {
@@ -197,4 +212,21 @@ fn told(spec: &SceneSpec) -> String {
     let Source::File(path) = &spec.source else { return spec.name.clone() };
     let date = std::fs::metadata(path).and_then(|m| Ok((m.len(), m.modified()?)));
     format!("{} {:?}", path.display(), date.ok())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_is_named_is_measured_and_a_name_of_nothing_is_refused_with_those_there_are() {
+        let groups = studies::all(&QUICK, &[]);
+        let bunnies = only(groups.clone(), "bunny").unwrap();
+        assert!(!bunnies.is_empty() && bunnies.len() < groups.len());
+        let problem = only(groups, "rooom").unwrap_err();
+        assert!(problem.starts_with("--only rooom: no group's name holds it"), "{problem}");
+        for name in ["light size", "matrix", "bunny", "medium"] {
+            assert!(problem.contains(name), "{name}: {problem}");
+        }
+    }
 }

@@ -71,7 +71,7 @@ pub struct Times {
 }
 
 /// How a row ended.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
     /// Measured.
@@ -82,13 +82,14 @@ pub enum Outcome {
         times: Times,
     },
     /// The crate does not have the technique yet.
+    #[default]
     NotThere,
     /// It was tried and failed, for this reason.
     Failed(String),
 }
 
 /// One row of the report.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// Which study it belongs to: `matrix`, or the sweep's name.
     pub study: String,

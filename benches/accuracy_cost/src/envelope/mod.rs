@@ -181,7 +181,7 @@ pub fn run(options: &Options) -> Result<bool, Problem> {
         &options.out,
         [
             ("envelope.md", made.markdown()),
-            ("envelope.csv", made.csv()),
+            ("envelope.csv", made.csv()?),
             ("envelope.json", made.json()?),
         ],
     )?;

@@ -15,6 +15,7 @@ use crate::store::{Header, Outcome, Row};
 use std::path::Path;
 
 pub use charts::style;
+pub use files::csv_of;
 pub use headline::markdown;
 
 /// What the report is made of.
@@ -45,7 +46,7 @@ impl Report<'_> {
 }
 
 /// Each of some names once, in their order.
-fn once<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+pub fn once<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     let mut seen: Vec<&str> = Vec::new();
     for name in names {
         if !seen.contains(&name) {
@@ -61,7 +62,7 @@ fn once<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
 /// A sentence with the file that cannot be written.
 pub fn write(report: &Report, out: &Path) -> Result<(), Problem> {
     let files = [
-        ("accuracy_cost.csv", files::csv(report)),
+        ("accuracy_cost.csv", files::csv(report)?),
         ("accuracy_cost.json", files::json(report)?),
         ("headline.md", markdown(report)),
         ("index.html", html::page(report)),
