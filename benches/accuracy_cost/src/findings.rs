@@ -11,13 +11,9 @@ use std::collections::BTreeSet;
 /// A finding of the paper beside what was measured.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
-    /// The paper's figure.
     pub figure: &'static str,
-    /// What the paper says.
     pub claim: &'static str,
-    /// Whether it holds here.
     pub verdict: Verdict,
-    /// What was measured.
     pub sentence: String,
 }
 

@@ -37,7 +37,6 @@ pub enum Stage {
 /// What a group's images are compared with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Against {
-    /// The traced truth.
     Traced,
     /// The closed form of the one card there is: no noise.
     Card,
@@ -46,7 +45,6 @@ pub enum Against {
 /// One row to be.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
-    /// The technique's name.
     pub technique: &'static str,
     /// The curve it is a point of.
     pub curve: String,
@@ -63,21 +61,15 @@ pub struct Entry {
 /// Rows that are measured together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Group {
-    /// The study they belong to.
     pub study: &'static str,
-    /// The scene's name.
     pub scene: String,
-    /// The light's name.
     pub light: String,
-    /// Where the scene comes from.
     pub stage: Stage,
     /// Width and height of the images.
     pub extent: [u32; 2],
-    /// What they are compared with.
     pub against: Against,
     /// Where the group is on the axis that is swept, where the entries are not.
     pub at: Option<f64>,
-    /// The rows.
     pub entries: Vec<Entry>,
 }
 
@@ -85,11 +77,9 @@ pub struct Group {
 pub struct Ready {
     /// The scene; its first light is used.
     pub scene: Scene,
-    /// How pixels look at it.
     pub view: View,
     /// The occluder map's tangents, where they are not fitted.
     pub window: Option<[[f64; 2]; 2]>,
-    /// Whether pixels see what only occludes.
     pub occluders_seen: bool,
 }
 
@@ -120,9 +110,6 @@ impl Group {
     }
 
     /// Loads or makes the scene and the view.
-    ///
-    /// # Errors
-    /// A sentence that names the scene.
     pub fn ready(&self) -> Result<Ready, Problem> {
         match &self.stage {
             Stage::Seen(spec, light) => {

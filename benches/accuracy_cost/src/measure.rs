@@ -29,9 +29,7 @@ const SMALL_GROUP: usize = 8;
 
 /// What is measured with, and where pictures and truths are kept.
 pub struct Bench<'a> {
-    /// The device.
     pub device: &'a HeadlessDevice,
-    /// How much is measured.
     pub scale: Scale,
     /// The folder of kept truths and pictures.
     pub cache: &'a Path,

@@ -24,9 +24,6 @@ use std::time::Instant;
 const QUICK_BUDGET_S: f64 = 270.0;
 
 /// Measures and reports; whether every row is good.
-///
-/// # Errors
-/// A sentence for what stops the run: no device, a folder that cannot be read or written.
 pub fn run(options: &Options) -> Result<bool, Problem> {
     if options.write_docs {
         let page = match (options.hard_cases, options.envelope) {

@@ -16,16 +16,12 @@ const TRACER_SEED: u64 = 2;
 
 /// What computes one row's image.
 pub enum Runner {
-    /// The node.
     Node {
-        /// Its pixels.
         stage: Box<Stage>,
-        /// Its frame.
         plan: Box<FramePlan>,
     },
     /// Rays by the processor.
     Rays {
-        /// How many and where.
         sampling: Sampling,
     },
     /// Rays of the fragments as they are drawn, by the node's maps.
@@ -36,13 +32,10 @@ pub enum Runner {
     /// The paper's scheme ends with its map. Its image is that of blending, whose sums are the same
     /// (a test of the crate's holds that), and its frame takes that one's last pass on top.
     Readback {
-        /// The scheme.
         scheme: Box<ReadbackScheme>,
         /// The occluder map's tangents.
         window: Option<[[f64; 2]; 2]>,
-        /// Whose image.
         stage: Box<Stage>,
-        /// Its frame.
         plan: Box<FramePlan>,
     },
 }
@@ -54,9 +47,6 @@ fn told<T>(result: Result<T, antumbra::Error>) -> Result<T, Problem> {
 
 impl Runner {
     /// What a method takes to run; nothing where the crate does not have it.
-    ///
-    /// # Errors
-    /// A sentence for what was refused.
     pub fn new(
         device: &HeadlessDevice,
         ready: &Ready,
@@ -107,9 +97,6 @@ impl Runner {
     }
 
     /// One frame; its image where that comes with it.
-    ///
-    /// # Errors
-    /// A sentence for what failed.
     pub fn run(
         &mut self,
         tracer: &Tracer,
@@ -147,9 +134,6 @@ impl Runner {
     }
 
     /// The last frame's image, where the device has it.
-    ///
-    /// # Errors
-    /// A sentence where it cannot be read.
     pub fn image(&mut self) -> Result<Option<Vec<f32>>, Problem> {
         match self {
             Self::Node { stage, .. } | Self::Readback { stage, .. } => {
@@ -161,9 +145,6 @@ impl Runner {
     }
 
     /// Bytes of the node's memory.
-    ///
-    /// # Errors
-    /// A sentence where there is no node.
     pub fn bytes(&mut self) -> Result<u64, Problem> {
         match self {
             Self::Rays { .. } => Ok(0),

@@ -43,9 +43,7 @@ pub enum Source {
 /// A scene to be measured.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneSpec {
-    /// Its name in the report.
     pub name: String,
-    /// Where it comes from.
     pub source: Source,
 }
 
@@ -62,9 +60,6 @@ pub fn standard() -> Vec<SceneSpec> {
 }
 
 /// The glTF files of a folder, sorted by name.
-///
-/// # Errors
-/// A sentence where the folder cannot be read or holds none.
 pub fn own(folder: &Path) -> Result<Vec<SceneSpec>, Problem> {
     let told = |e: std::io::Error| format!("--scenes {}: {e}", folder.display());
     let mut files = Vec::new();
@@ -99,9 +94,6 @@ impl SceneSpec {
     }
 
     /// The scene under one of its lights.
-    ///
-    /// # Errors
-    /// A sentence that names the file, where it cannot be used.
     pub fn load(&self, light: &str) -> Result<Scene, Problem> {
         let index = LIGHTS.iter().position(|l| l.0 == light).unwrap_or(1);
         match &self.source {
@@ -150,17 +142,11 @@ fn turn(scene: &mut Scene) {
 }
 
 /// A square light over the middle of the ground.
-///
-/// # Errors
-/// As [`generate::square_light`].
 pub fn square(side: f64) -> Result<RectangleLight, Problem> {
     generate::square_light(side).map_err(|e| e.to_string())
 }
 
 /// The same light, its sides times `by`.
-///
-/// # Errors
-/// A sentence where no light of that size can be.
 pub fn scaled(light: &RectangleLight, by: f64) -> Result<RectangleLight, Problem> {
     let frame = light.world_from_light();
     let [a, b] = light.half_extents().map(|half| half * by);
@@ -171,18 +157,12 @@ pub fn scaled(light: &RectangleLight, by: f64) -> Result<RectangleLight, Problem
 }
 
 /// One of the project's own files.
-///
-/// # Errors
-/// A sentence where it cannot be read.
 pub fn committed(name: &str) -> Result<Scene, Problem> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
     from_gltf(&root.join(format!("{name}.glb"))).map_err(|e| e.to_string())
 }
 
 /// A scene made in code, by name.
-///
-/// # Errors
-/// A sentence for a name that is not known.
 pub fn made(name: &str, light: RectangleLight) -> Result<Scene, Problem> {
     Ok(match name {
         "card" => generate::card(light),
@@ -246,9 +226,6 @@ pub fn dragon_path() -> PathBuf {
 
 /// The dragon, its largest extent 1 m, standing on the ground. Both scenes' objects block and receive, as
 /// in the paper.
-///
-/// # Errors
-/// A sentence where it was not fetched.
 pub fn dragon(light: RectangleLight) -> Result<Scene, Problem> {
     let path = dragon_path();
     let mesh = ply(&path).ok_or_else(|| {

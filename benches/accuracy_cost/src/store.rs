@@ -15,11 +15,9 @@ use std::path::{Path, PathBuf};
 /// What a run is; runs that differ in any of it do not share rows.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Header {
-    /// The command that made it.
     pub command: String,
     /// git's commit, with `-dirty` and a hash of the program where the tree has changes.
     pub commit: String,
-    /// The device's name.
     pub driver: String,
     /// Whether the run is the quick one.
     pub quick: bool,
@@ -66,7 +64,6 @@ pub struct Times {
     pub passes: Vec<(String, f64)>,
     /// Median µs of recording.
     pub record_us: f64,
-    /// Memory of the node.
     pub gpu_bytes: u64,
 }
 
@@ -74,11 +71,8 @@ pub struct Times {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
-    /// Measured.
     Measured {
-        /// The errors.
         errors: Errors,
-        /// The times.
         times: Times,
     },
     /// The crate does not have the technique yet.
@@ -93,13 +87,11 @@ pub enum Outcome {
 pub struct Row {
     /// Which study it belongs to: `matrix`, or the sweep's name.
     pub study: String,
-    /// The scene's name.
     pub scene: String,
     /// The light's name: small, medium, large.
     pub light: String,
     /// The light's width and height in metres.
     pub light_m: [f64; 2],
-    /// Triangles of the scene.
     pub triangles: usize,
     /// Width and height of the image.
     pub extent: [u32; 2],
@@ -111,7 +103,6 @@ pub struct Row {
     pub settings: String,
     /// The value that is swept; its meaning is the study's.
     pub x: f64,
-    /// How it ended.
     pub outcome: Outcome,
 }
 
@@ -161,9 +152,6 @@ pub struct Store {
 
 impl Store {
     /// Opens the file of a run, or begins it.
-    ///
-    /// # Errors
-    /// A sentence with the file's name where it cannot be read or written.
     pub fn open(path: &Path, header: &Header) -> Result<Self, Problem> {
         let told = |e: std::io::Error| format!("{}: {e}", path.display());
         let mut text = Vec::new();
@@ -192,9 +180,6 @@ impl Store {
     }
 
     /// The run that a file is of, and its whole groups' rows in the order they were measured.
-    ///
-    /// # Errors
-    /// A sentence where the file cannot be read or holds no run.
     pub fn read(path: &Path) -> Result<(Header, Vec<Row>), Problem> {
         let text = std::fs::read(path).map_err(|e| format!("{}: {e}", path.display()))?;
         let mut header = None;
@@ -245,9 +230,6 @@ impl Store {
     }
 
     /// Adds a whole group's rows.
-    ///
-    /// # Errors
-    /// A sentence where the disk refuses; what was written before stays readable.
     pub fn add(&mut self, group: &str, rows: Vec<Row>, seconds: f64) -> Result<(), Problem> {
         let count = rows.len();
         for row in rows {

@@ -26,9 +26,6 @@ pub struct Truth {
 }
 
 /// What each pixel of a G-buffer shows: position and normal, without a normal where nothing receives.
-///
-/// # Errors
-/// A sentence where the G-buffer cannot be read.
 pub fn receivers(gbuffer: &GBuffer) -> Result<Vec<Receiver>, Problem> {
     let told = |e: antumbra::Error| e.to_string();
     let positions = gbuffer.positions().map_err(told)?;
@@ -45,9 +42,6 @@ pub fn receivers(gbuffer: &GBuffer) -> Result<Vec<Receiver>, Problem> {
 
 /// What positions read from an f32 image add to a sampling: half a unit in the last place of the
 /// largest coordinate.
-///
-/// # Errors
-/// Whatever refused the sampling.
 pub fn sampling(
     rays: Result<Sampling, antumbra::Error>,
     receivers: &[Receiver],
@@ -67,9 +61,6 @@ fn card_corners(scene: &Scene) -> Result<[DVec3; 4], Problem> {
 }
 
 /// The truth by the means asked for.
-///
-/// # Errors
-/// A sentence where the scene cannot be traced.
 pub fn truth(
     scene: &Scene,
     receivers: &[Receiver],

@@ -25,11 +25,8 @@ pub enum Verdict {
 /// One row of the table.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Row {
-    /// What makes the case hard.
     pub limit: Limit,
-    /// The case.
     pub case: String,
-    /// The technique.
     pub technique: String,
     /// Least and largest truth.
     pub expected: [f64; 2],
@@ -37,7 +34,6 @@ pub struct Row {
     pub mean_bound: f64,
     /// What the error of the worst pixel may be.
     pub worst_bound: f64,
-    /// Why.
     pub why: String,
     /// The mean error over the pixels in shadow or penumbra.
     pub mean: f64,
@@ -47,7 +43,6 @@ pub struct Row {
     pub outside: f64,
     /// Pixels that are no number between 0 and 1.
     pub not_fractions: usize,
-    /// What came of it.
     pub verdict: Verdict,
 }
 

@@ -19,9 +19,6 @@ const GUESSED: f64 = 1.5;
 
 /// Runs all cases with all techniques, one node for as many as it serves; rows are in the order of the cases, and
 /// of the techniques within them.
-///
-/// # Errors
-/// What a device or the truth refuses, with the case.
 pub fn run(device: &HeadlessDevice, cases: &[HardCase]) -> Result<Vec<Row>, Problem> {
     let mut prepared: Vec<Prepared> = cases
         .iter()
@@ -64,9 +61,6 @@ fn told(error: antumbra::Error) -> Problem {
 }
 
 /// Settings from the words of a command line.
-///
-/// # Errors
-/// A sentence for one that is not known.
 pub fn settings(words: &str, map: u32) -> Result<Settings, Problem> {
     let mut settings = Settings::default();
     for word in words.split_whitespace() {

@@ -10,9 +10,6 @@ use std::path::Path;
 const FILE: &str = "hard_cases.json";
 
 /// The tables that a folder has; none where it has no file of them.
-///
-/// # Errors
-/// A sentence for a file that is none of these.
 pub fn read(out: &Path) -> Result<Tables, Problem> {
     let path = out.join(FILE);
     let text = match std::fs::read_to_string(&path) {
@@ -24,9 +21,6 @@ pub fn read(out: &Path) -> Result<Tables, Problem> {
 }
 
 /// Runs the table on a device, and keeps it with those of others; whether nothing is broken.
-///
-/// # Errors
-/// A sentence for what a device refuses or a file that cannot be written.
 pub fn measure(device: &HeadlessDevice, out: &Path) -> Result<bool, Problem> {
     let rows = run::run(device, &cases::all())?;
     println!("{}: {}", device.name(), table::counts(&rows));

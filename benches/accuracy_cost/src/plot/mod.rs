@@ -15,7 +15,6 @@ pub const PALETTE: [&str; 10] = [
 /// How a curve is drawn: color, dash and mark, so that no two depend on color alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Style {
-    /// A CSS color.
     pub color: &'static str,
     /// An SVG dash pattern; empty for a solid line.
     pub dash: &'static str,
@@ -26,9 +25,7 @@ pub struct Style {
 /// One point of a curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
-    /// Where on x.
     pub x: f64,
-    /// Where on y.
     pub y: f64,
     /// First and third quartile of x, where x is measured.
     pub x_spread: Option<[f64; 2]>,
@@ -41,9 +38,7 @@ pub struct Point {
 /// A curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
-    /// What the legend says.
     pub label: String,
-    /// How it is drawn.
     pub style: Style,
     /// Its points, in the order they are joined.
     pub points: Vec<Point>,
@@ -58,7 +53,6 @@ pub struct Chart {
     pub x: Axis,
     /// Bottom to top.
     pub y: Axis,
-    /// The curves.
     pub series: Vec<Series>,
     /// A level under which the truth's noise drowns what is measured.
     pub floor: Option<f64>,

@@ -149,9 +149,7 @@ struct Figure {
     study: &'static str,
     /// What lies on x, and whether in logarithms.
     x: (&'static str, bool),
-    /// The curves, by name.
     curves: &'static [&'static str],
-    /// Time instead of error.
     time: bool,
     /// x squared: texels instead of a side.
     squared: bool,

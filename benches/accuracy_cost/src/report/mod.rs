@@ -20,13 +20,11 @@ pub use headline::markdown;
 
 /// What the report is made of.
 pub struct Report<'a> {
-    /// What the run is.
     pub header: &'a Header,
     /// Every row, in the order of the groups.
     pub rows: &'a [Row],
     /// Groups that the quick run had no time for.
     pub left_out: &'a [String],
-    /// Where the pictures are.
     pub cache: &'a Path,
     /// The tables of hard cases, by the devices that they were measured on.
     pub hard_cases: &'a Tables,
@@ -57,9 +55,6 @@ pub fn once<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
 }
 
 /// Writes every file of the report, each whole or not at all.
-///
-/// # Errors
-/// A sentence with the file that cannot be written.
 pub fn write(report: &Report, out: &Path) -> Result<(), Problem> {
     let files = [
         ("accuracy_cost.csv", files::csv(report)?),
@@ -71,9 +66,6 @@ pub fn write(report: &Report, out: &Path) -> Result<(), Problem> {
 }
 
 /// Writes files into a folder, each whole or not at all.
-///
-/// # Errors
-/// A sentence with the file that cannot be written.
 pub fn write_files<const N: usize>(out: &Path, files: [(&str, String); N]) -> Result<(), Problem> {
     for (name, text) in files {
         let path = out.join(name);
