@@ -29,28 +29,18 @@ pub struct Version {
 /// the node's defaults. The hierarchical search has two layers there and the linear one three (its chapter
 /// 4). At fragments there is no filter.
 pub const VERSIONS: [Version; 5] = [
-    Version {
-        name: "hierarchical",
-        technique: "ray-march",
-        words: "search=hierarchical layers=2 sampling=jittered hash=md5",
-    },
-    Version {
-        name: "hierarchical, at fragments",
-        technique: FORWARD,
-        words: "search=hierarchical layers=2 sampling=jittered hash=md5 filter=off",
-    },
-    Version {
-        name: "linear/binary",
-        technique: "ray-march",
-        words: "search=linear layers=3 sampling=jittered hash=md5",
-    },
-    Version {
-        name: "hierarchical, unfiltered",
-        technique: "ray-march",
-        words: "search=hierarchical layers=2 sampling=jittered hash=md5 filter=off",
-    },
-    Version { name: "the node's defaults", technique: "ray-march", words: "" },
+    version("hierarchical", "ray-march", "search=hierarchical layers=2 sampling=jittered hash=md5"),
+    version("hierarchical, at fragments", FORWARD, UNFILTERED),
+    version("linear/binary", "ray-march", "search=linear layers=3 sampling=jittered hash=md5"),
+    version("hierarchical, unfiltered", "ray-march", UNFILTERED),
+    version("the node's defaults", "ray-march", ""),
 ];
+
+const UNFILTERED: &str = "search=hierarchical layers=2 sampling=jittered hash=md5 filter=off";
+
+const fn version(name: &'static str, technique: &'static str, words: &'static str) -> Version {
+    Version { name, technique, words }
+}
 
 /// Rays a pixel: 2×2 and 3×3.
 pub const RAYS: [u32; 2] = [4, 9];

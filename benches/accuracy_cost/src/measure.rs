@@ -155,14 +155,10 @@ impl Candidate<'_> {
 
     /// The first frame compiles what the driver compiles, and is not counted; its image is kept.
     fn warm_up(&mut self, tracer: &Tracer, light: &RectangleLight, receivers: &[Receiver]) {
-        let done = self.run(tracer, light, receivers).and_then(|()| match &mut self.state {
-            Ok(Some(runner)) => {
-                if let Some(image) = runner.image()? {
-                    self.image = image;
-                }
-                Ok(())
-            }
-            _ => Ok(()),
+        let done = self.run(tracer, light, receivers).and_then(|()| {
+            let Ok(Some(runner)) = &mut self.state else { return Ok(()) };
+            self.image = runner.image()?.unwrap_or_else(|| std::mem::take(&mut self.image));
+            Ok(())
         });
         self.frames.clear();
         self.settle(done);

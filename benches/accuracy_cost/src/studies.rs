@@ -36,16 +36,9 @@ fn matrix_entries(scale: &Scale, in_strip: bool) -> Vec<Entry> {
 /// first.
 pub fn all(scale: &Scale, own: &[SceneSpec]) -> Vec<Group> {
     let mut groups = vec![sweeps::wrong(scale)];
-    let matrix = |spec: &SceneSpec, light: &'static str| Group {
-        study: MATRIX,
-        scene: spec.name.clone(),
-        light: light.into(),
-        stage: Stage::Seen(spec.clone(), light),
-        extent: scale.view,
-        // The card's truth is exact in every view.
-        against: if spec.source == Source::Made("card") { Against::Card } else { Against::Traced },
-        at: None,
-        entries: matrix_entries(scale, light != "small" && light != "large"),
+    let matrix = |spec: &SceneSpec, light: &'static str| {
+        let entries = matrix_entries(scale, light != "small" && light != "large");
+        seen(MATRIX, scale, spec, light, entries)
     };
     let standard = scenes::standard();
     groups.extend(standard.iter().map(|spec| matrix(spec, "medium")));
@@ -80,24 +73,32 @@ pub fn choices(scale: &Scale) -> Vec<Group> {
     let more = MORE_SCENES.map(|name| SceneSpec { name: name.into(), source: Source::Made(name) });
     let scenes: Vec<_> = scenes::standard().into_iter().chain(more).collect();
     let lights = scenes::LIGHTS.iter().map(|l| l.0);
-    let of = |light: &'static str| {
-        let group = move |spec: &SceneSpec| Group {
-            study: CHOICES,
-            scene: spec.name.clone(),
-            light: light.into(),
-            stage: Stage::Seen(spec.clone(), light),
-            extent: scale.view,
-            against: if spec.source == Source::Made("card") {
-                Against::Card
-            } else {
-                Against::Traced
-            },
-            at: None,
-            entries: CANDIDATES.iter().map(entry).collect(),
-        };
-        scenes.iter().map(group).collect::<Vec<_>>()
-    };
-    lights.flat_map(of).collect()
+    let entries: Vec<_> = CANDIDATES.iter().map(entry).collect();
+    let of = |light| scenes.iter().map(move |spec| (spec, light));
+    let group = |(spec, light)| seen(CHOICES, scale, spec, light, entries.clone());
+    lights.flat_map(of).map(group).collect()
+}
+
+/// A group of a scene under one of its lights, by its camera.
+fn seen(
+    study: &'static str,
+    scale: &Scale,
+    spec: &SceneSpec,
+    light: &'static str,
+    entries: Vec<Entry>,
+) -> Group {
+    // The card's truth is exact in every view.
+    let exact = spec.source == Source::Made("card");
+    Group {
+        study,
+        scene: spec.name.clone(),
+        light: light.into(),
+        stage: Stage::Seen(spec.clone(), light),
+        extent: scale.view,
+        against: if exact { Against::Card } else { Against::Traced },
+        at: None,
+        entries,
+    }
 }
 
 #[cfg(test)]
