@@ -91,7 +91,8 @@ impl Bench {
 fn main() {
     let switch = |name| Arg::new(name).long(name).action(ArgAction::SetTrue).global(true);
     let out = Arg::new("out").long("out").value_name("DIR").global(true);
-    let arguments = Command::new("cargo bench --bench techniques --")
+    let arguments = Command::new("techniques")
+        .bin_name("cargo bench --bench techniques --")
         .about("What single techniques cost, and what their parts are worth; all benches without a name")
         .subcommands(BENCHES.iter().map(Bench::command))
         .arg(switch("quick").help("Fewer rounds, and without what takes minutes on a CPU"))

@@ -185,19 +185,19 @@ fn spikes(swept: &Swept) -> Told {
     Some((holds, format!("neighbours are off a straight line by {:.0} %", 100.0 * own)))
 }
 
+/// The ends of a curve of errors in a phrase, whether it rises, and by how much in all.
+fn rise(points: &[(f64, f64)]) -> Option<(bool, f64, String)> {
+    let ((x0, first), (x1, last)) = (*points.first()?, *points.last()?);
+    let order = rising(points)?;
+    let (from, to) = (percent(first), percent(last));
+    let text = format!("{from} at {x0} m to {to} at {x1} m (τ = {order:.2})");
+    Some((order > 0.5, last - first, text))
+}
+
 fn grows(swept: &Swept) -> Told {
     let mut points = swept.errors(TWO);
     points.retain(|p| p.0 > POINT_LIGHT);
-    let (first, last) = (points.first()?, points.last()?);
-    let order = rising(&points)?;
-    let text = format!(
-        "{} at {} m to {} at {} m (τ = {order:.2})",
-        percent(first.1),
-        first.0,
-        percent(last.1),
-        last.0
-    );
-    Some((order > 0.5, text))
+    rise(&points).map(|(rises, _, text)| (rises, text))
 }
 
 fn under(swept: &Swept) -> Told {
@@ -209,17 +209,7 @@ fn under(swept: &Swept) -> Told {
 }
 
 fn towards(swept: &Swept) -> Told {
-    let points = swept.errors(TWO);
-    let (first, last) = (points.first()?, points.last()?);
-    let order = rising(&points)?;
-    let text = format!(
-        "{} at {} m to {} at {} m (τ = {order:.2})",
-        percent(first.1),
-        first.0,
-        percent(last.1),
-        last.0
-    );
-    Some((order > 0.5 && last.1 > first.1, text))
+    rise(&swept.errors(TWO)).map(|(rises, gain, text)| (rises && gain > 0.0, text))
 }
 
 fn polygons(swept: &Swept) -> Told {

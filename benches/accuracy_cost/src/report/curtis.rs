@@ -25,51 +25,40 @@ struct Table {
     published: [[[u32; 3]; 2]; 3],
 }
 
+const fn table(
+    number: &'static str,
+    title: &'static str,
+    [cube, screens]: [bool; 2],
+    published: [[[u32; 3]; 2]; 3],
+) -> Table {
+    Table { number, title, cube, screens, published }
+}
+
 const TABLES: [Table; 4] = [
-    Table {
-        number: "4.1",
-        title: "map resolution, dragon, 1024×768 pixels",
-        cube: false,
-        screens: false,
-        published: [
-            [[46, 40, 28], [37, 34, 21]],
-            [[30, 26, 18], [18, 16, 12]],
-            [[25, 18, 15], [12, 11, 10]],
-        ],
-    },
-    Table {
-        number: "4.2",
-        title: "map resolution, elongated cube, 1024×768 pixels",
-        cube: true,
-        screens: false,
-        published: [
-            [[70, 50, 35], [60, 45, 31]],
-            [[66, 47, 34], [50, 44, 30]],
-            [[36, 32, 23], [25, 22, 17]],
-        ],
-    },
-    Table {
-        number: "4.3",
-        title: "screen resolution, dragon, 512×512 texels",
-        cube: false,
-        screens: true,
-        published: [
-            [[45, 40, 32], [40, 34, 22]],
-            [[33, 26, 19], [20, 16, 12]],
-            [[27, 18, 14], [17, 11, 8]],
-        ],
-    },
-    Table {
-        number: "4.4",
-        title: "screen resolution, elongated cube, 512×512 texels",
-        cube: true,
-        screens: true,
-        published: [
-            [[74, 50, 41], [61, 45, 34]],
-            [[70, 47, 41], [49, 44, 35]],
-            [[41, 32, 23], [31, 22, 15]],
-        ],
-    },
+    table(
+        "4.1",
+        "map resolution, dragon, 1024×768 pixels",
+        [false, false],
+        [[[46, 40, 28], [37, 34, 21]], [[30, 26, 18], [18, 16, 12]], [[25, 18, 15], [12, 11, 10]]],
+    ),
+    table(
+        "4.2",
+        "map resolution, elongated cube, 1024×768 pixels",
+        [true, false],
+        [[[70, 50, 35], [60, 45, 31]], [[66, 47, 34], [50, 44, 30]], [[36, 32, 23], [25, 22, 17]]],
+    ),
+    table(
+        "4.3",
+        "screen resolution, dragon, 512×512 texels",
+        [false, true],
+        [[[45, 40, 32], [40, 34, 22]], [[33, 26, 19], [20, 16, 12]], [[27, 18, 14], [17, 11, 8]]],
+    ),
+    table(
+        "4.4",
+        "screen resolution, elongated cube, 512×512 texels",
+        [true, true],
+        [[[74, 50, 41], [61, 45, 34]], [[70, 47, 41], [49, 44, 35]], [[41, 32, 23], [31, 22, 15]]],
+    ),
 ];
 
 impl Table {
