@@ -192,7 +192,7 @@ fn measure(bench: &Bench, groups: &[Group], store: &mut Store) -> Result<Vec<Str
 /// The folder of truths and pictures that belong to this run; those of other runs are removed.
 fn kept(out: &Path, header: &Header) -> Result<PathBuf, Problem> {
     let mut hash = FnvHasher::default();
-    hash.write(format!("{header:?}").as_bytes());
+    format!("{header:?}").bytes().for_each(|b| hash.write_u64(u64::from(b)));
     let all = out.join("cache");
     let own = all.join(format!("{:016x}", hash.finish()));
     std::fs::create_dir_all(&own).map_err(|e| format!("--out {}: {e}", out.display()))?;
