@@ -37,12 +37,7 @@ ifndef QUICK
 endif
 	$(CARGO) bench --bench accuracy_cost -- $(if $(QUICK),--quick)
 ifndef QUICK
-	$(CARGO) bench --bench soft_shadow_map -- --out out/bench
-	$(CARGO) bench --bench ray_march
-	$(CARGO) bench --bench occlusion_textures
-	$(CARGO) bench --bench linear_light
-	$(CARGO) bench --bench planner
-	$(CARGO) bench --bench tiles
+	$(CARGO) bench --bench techniques
 endif
 
 # ---------------------------------------------------------------------------------------------

@@ -59,29 +59,39 @@ impl Table {
 
     /// Reads a table; lines that are no measurement of a candidate are left out, as are views that lack one.
     pub fn read(text: &str) -> Self {
+        Self::parse(text).0
+    }
+
+    /// A table, and what was left out of it: lines with their numbers, and views.
+    fn parse(text: &str) -> (Self, Vec<String>) {
         let mut views: Vec<View> = Vec::new();
         let mut probe = Measured { error: 0.0, maps_ms: 1.0, pixels_ms: 1.0 };
-        for line in text.lines() {
+        let mut left_out = Vec::new();
+        for (number, line) in (1..).zip(text.lines()).filter(|(_, line)| *line != COLUMNS) {
             let cells: Vec<&str> = line.split(',').collect();
             if let [PROBE, maps, pixels] = cells[..]
                 && let (Ok(maps_ms), Ok(pixels_ms)) = (maps.parse(), pixels.parse())
             {
                 probe = Measured { maps_ms, pixels_ms, ..probe };
+                continue;
             }
             let Some((name, likeness, triangles, candidate, measured)) = row(&cells) else {
+                left_out.push(format!("line {number}: {line}"));
                 continue;
             };
             if views.last().is_none_or(|v| v.name != name) {
                 views.push(View { name, likeness, triangles, measured: Vec::new() });
             }
-            if let Some(view) = views.last_mut()
-                && view.measured.len() == candidate
-            {
-                view.measured.push(measured);
+            match views.last_mut() {
+                Some(view) if view.measured.len() == candidate => view.measured.push(measured),
+                _ => left_out.push(format!("line {number}, out of its place: {line}")),
             }
         }
-        views.retain(|v| v.measured.len() == CANDIDATES.len());
-        Self { views, probe }
+        let (views, torn): (Vec<View>, Vec<View>) =
+            views.into_iter().partition(|v| v.measured.len() == CANDIDATES.len());
+        left_out
+            .extend(torn.iter().map(|v| format!("{}, which lacks candidates", v.name.join(", "))));
+        (Self { views, probe }, left_out)
     }
 
     /// The same without one scene, to see what the others say of it.
@@ -108,4 +118,29 @@ fn row(cells: &[&str]) -> Option<Row> {
     };
     let name = [cells.first()?.to_string(), cells.get(1)?.to_string()];
     Some((name, Likeness::from_parts(parts), number(2)?, candidate, measured))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_line_of_the_committed_table_is_read() {
+        let (table, left_out) = Table::parse(TEXT);
+        assert!(left_out.is_empty(), "{left_out:#?}");
+        assert!(!table.views.is_empty() && table.probe.maps_ms != 1.0);
+    }
+
+    #[test]
+    fn a_line_that_cannot_be_read_is_named_with_its_number() {
+        let lines: Vec<&str> = TEXT.lines().collect();
+        let names = |changed: Vec<&str>| Table::parse(&changed.join("\n")).1.join("\n");
+        let mut torn = lines.clone();
+        torn[3] = "card,small,torn";
+        assert!(names(torn).starts_with("line 4: card,small,torn\n"));
+        let mut swapped = lines.clone();
+        swapped.swap(3, 4);
+        assert!(names(swapped).starts_with("line 4, out of its place: "));
+        assert!(names(lines[..lines.len() - 1].to_vec()).ends_with("which lacks candidates"));
+    }
 }

@@ -1,9 +1,11 @@
 //! The table that `auto` chooses by: what every candidate did in every view, as text for the crate.
 
 use crate::Problem;
-use crate::groups::{self, Group};
+use crate::groups::Group;
 use crate::options::Options;
+use crate::report::csv_of;
 use crate::store::{Row, Store};
+use crate::studies;
 use antumbra::Technique;
 use antumbra::auto::{Auto, Budget, CANDIDATES, COLUMNS, Costs, Likeness, Measured, PROBE};
 use antumbra::effects::Situation;
@@ -36,8 +38,11 @@ pub fn write(options: &Options) -> Result<(), Problem> {
     let (_, rows) = Store::read(&options.out.join("measured.jsonl"))?;
     let device = HeadlessDevice::new(&HeadlessOptions::default()).map_err(|e| e.to_string())?;
     let Measured { maps_ms, pixels_ms, .. } = probe(&device).map_err(|e| e.to_string())?;
-    let mut text = format!("{COLUMNS}\n{PROBE},{maps_ms:.3},{pixels_ms:.3}\n");
-    for group in groups::choices(&options.choice()) {
+    let mut lines = vec![
+        COLUMNS.split(',').map(String::from).collect(),
+        vec![PROBE.into(), format!("{maps_ms:.3}"), format!("{pixels_ms:.3}")],
+    ];
+    for group in studies::choices(&options.choice()) {
         let own: Vec<&Row> =
             rows.iter().filter(|r| r.scene == group.scene && r.light == group.light).collect();
         if own.is_empty() {
@@ -45,27 +50,22 @@ pub fn write(options: &Options) -> Result<(), Problem> {
         }
         let situation = situation(&device, &group)?;
         let parts = Likeness::of(&situation).parts().map(|p| format!("{p:.3}"));
-        let parts = parts.join(",");
         for row in own {
             let Some((errors, times)) = row.measured() else { continue };
             let is_map = |name: &str| MAPS.iter().any(|m| name.starts_with(m));
             let sum = |maps: bool| -> f64 {
                 times.passes.iter().filter(|(n, _)| is_map(n) == maps).map(|(_, ms)| ms).sum()
             };
-            text.push_str(&format!(
-                "{},{},{},{parts},{},{},{:.5},{:.5},{:.3},{:.3}\n",
-                row.scene,
-                row.light,
-                situation.triangles,
-                row.technique,
-                row.settings,
-                errors.mean_abs_error,
-                errors.noise_floor,
-                sum(true),
-                sum(false),
-            ));
+            let mut line = vec![row.scene.clone(), row.light.clone()];
+            line.push(situation.triangles.to_string());
+            line.extend(parts.clone());
+            line.extend([row.technique.clone(), row.settings.clone()]);
+            line.extend([errors.mean_abs_error, errors.noise_floor].map(|e| format!("{e:.5}")));
+            line.extend([true, false].map(|maps| format!("{:.3}", sum(maps))));
+            lines.push(line);
         }
     }
+    let text = csv_of(lines)?;
     let path = Options::root().join("src/auto/table.csv");
     write_to(&path, &text)?;
     println!("{}", path.display());
@@ -84,7 +84,7 @@ pub fn exam(options: &Options) -> Result<(), Problem> {
     let (_, rows) = Store::read(&options.out.join("measured.jsonl"))?;
     let device = HeadlessDevice::new(&HeadlessOptions::default()).map_err(|e| e.to_string())?;
     let mut views = Vec::new();
-    for group in groups::choices(&options.choice()) {
+    for group in studies::choices(&options.choice()) {
         let own: Vec<&Row> =
             rows.iter().filter(|r| r.scene == group.scene && r.light == group.light).collect();
         if !own.is_empty() {

@@ -1,32 +1,17 @@
 //! What Curtis 2009 measures in chapter 4: its two scenes, its versions of ray marching, and what
 //! tables 4.1 to 4.4 vary.
 
-use crate::Problem;
 use crate::findings::{Finding, Verdict};
-use crate::groups::{Against, Entry, Group, Scale, Stage};
-use crate::scenes::{SceneSpec, Source};
+use crate::groups::{Against, Entry, Group, Stage};
+use crate::options::Scale;
+use crate::scenes::{self, CUBE, DRAGON, SceneSpec, Source};
 use crate::store::Row;
 use crate::techniques::{FORWARD, value_of};
-use antumbra::RectangleLight;
-use antumbra::scene::generate::{self, cuboid};
-use antumbra::scene::{Camera, Role, Scene};
-use antumbra_harness::ply::ply;
-use glam::{DMat4, DVec3};
-use std::path::PathBuf;
 
 /// The study's name.
 pub const STUDY: &str = "Curtis 2009";
-/// The scene of tables 4.1 and 4.3, where it was fetched.
-pub const DRAGON: &str = "dragon";
 /// The scene of tables 4.1 and 4.3, where it was not.
 pub const STAND_IN: &str = "bunny in the dragon's place";
-/// The scene of tables 4.2 and 4.4.
-pub const CUBE: &str = "elongated cube";
-
-/// The paper's dragon has 100,000 triangles. Of the versions that `benches/fetch_dragon.sh` fetches
-/// this one's 47,794 are nearest; the next has 202,520.
-const DRAGON_FILE: &str = "dragon_vrip_res3";
-
 /// The light of both, as large as the objects: the paper shows wide penumbrae.
 const LIGHT: &str = "large";
 
@@ -44,28 +29,18 @@ pub struct Version {
 /// the node's defaults. The hierarchical search has two layers there and the linear one three (its chapter
 /// 4). At fragments there is no filter.
 pub const VERSIONS: [Version; 5] = [
-    Version {
-        name: "hierarchical",
-        technique: "ray-march",
-        words: "search=hierarchical layers=2 sampling=jittered hash=md5",
-    },
-    Version {
-        name: "hierarchical, at fragments",
-        technique: FORWARD,
-        words: "search=hierarchical layers=2 sampling=jittered hash=md5 filter=off",
-    },
-    Version {
-        name: "linear/binary",
-        technique: "ray-march",
-        words: "search=linear layers=3 sampling=jittered hash=md5",
-    },
-    Version {
-        name: "hierarchical, unfiltered",
-        technique: "ray-march",
-        words: "search=hierarchical layers=2 sampling=jittered hash=md5 filter=off",
-    },
-    Version { name: "the node's defaults", technique: "ray-march", words: "" },
+    version("hierarchical", "ray-march", "search=hierarchical layers=2 sampling=jittered hash=md5"),
+    version("hierarchical, at fragments", FORWARD, UNFILTERED),
+    version("linear/binary", "ray-march", "search=linear layers=3 sampling=jittered hash=md5"),
+    version("hierarchical, unfiltered", "ray-march", UNFILTERED),
+    version("the node's defaults", "ray-march", ""),
 ];
+
+const UNFILTERED: &str = "search=hierarchical layers=2 sampling=jittered hash=md5 filter=off";
+
+const fn version(name: &'static str, technique: &'static str, words: &'static str) -> Version {
+    Version { name, technique, words }
+}
 
 /// Rays a pixel: 2×2 and 3×3.
 pub const RAYS: [u32; 2] = [4, 9];
@@ -74,61 +49,10 @@ pub const MAPS: [u32; 3] = [256, 512, 1024];
 /// Tables 4.3 and 4.4 vary the screen with the second of [`MAPS`].
 pub const SCREENS: [[u32; 2]; 3] = [[800, 600], [1024, 768], [1280, 1024]];
 
-/// A cube stretched to four times its height and floating half a metre over the ground. The paper's cube casts
-/// a shadow that is darker just beneath it by its extent towards the light; here the light of 1 m sees past
-/// its top to all of the ground below, which is in umbra for the bottom alone: seen from there the top hides
-/// (0.25 · 4/1.5)² = 0.44 of the light, the bottom all.
-pub fn elongated_cube(light: RectangleLight) -> Scene {
-    let mut scene = generate::stage(light);
-    scene.add(
-        CUBE,
-        cuboid(DVec3::new(0.25, 1.0, 0.25)),
-        DMat4::from_translation(DVec3::Y),
-        Role::Both,
-    );
-    with_camera(scene)
-}
-
-/// A camera nearer than one that frames all of the scene: what is compared should fill the picture.
-fn with_camera(mut scene: Scene) -> Scene {
-    let mut camera = Camera::framing(&scene, 4.0 / 3.0);
-    let target = scene.bounds(|i| i.role.blocks()).map_or(DVec3::ZERO, |b| b.center());
-    let eye = camera.world_from_view.w_axis.truncate();
-    camera.world_from_view.w_axis = (target + (eye - target) * 0.6).extend(1.0);
-    scene.camera = Some(camera);
-    scene
-}
-
-fn dragon_path() -> PathBuf {
-    crate::options::Options::root().join(format!("target/dragon/{DRAGON_FILE}.ply"))
-}
-
-/// The dragon, its largest extent 1 m, standing on the ground. Both scenes' objects block and receive, as
-/// in the paper.
-///
-/// # Errors
-/// A sentence where it was not fetched.
-pub fn dragon(light: RectangleLight) -> Result<Scene, Problem> {
-    let path = dragon_path();
-    let mesh = ply(&path).ok_or_else(|| {
-        format!("{}: no PLY of triangles; benches/fetch_dragon.sh fetches it", path.display())
-    })?;
-    let mut object = Scene::default();
-    object.add(DRAGON, mesh, DMat4::IDENTITY, Role::Both);
-    let scene = generate::normalized(&object, light).map_err(|e| e.to_string())?;
-    let low = scene.bounds(|i| i.role.blocks()).map_or(0.0, |b| b.min.y);
-    let mut scene = scene.with_occluders_as(Role::Both);
-    for instance in scene.instances.iter_mut().filter(|i| i.role.blocks()) {
-        instance.world_from_mesh =
-            DMat4::from_translation(DVec3::NEG_Y * low) * instance.world_from_mesh;
-    }
-    Ok(with_camera(scene))
-}
-
 /// Both scenes under their lights, the cube first: a quick run has room for one.
-fn scenes() -> [(SceneSpec, &'static str); 2] {
+fn both() -> [(SceneSpec, &'static str); 2] {
     let spec = |name: &str, source| SceneSpec { name: name.into(), source };
-    let dragon = if dragon_path().exists() {
+    let dragon = if scenes::dragon_path().exists() {
         (spec(DRAGON, Source::Made(DRAGON)), LIGHT)
     } else {
         (spec(STAND_IN, Source::Committed("bunny")), "medium")
@@ -157,7 +81,7 @@ fn entries(maps: &[u32], shown: bool) -> Vec<Entry> {
 /// A group a scene and screen.
 pub fn groups(scale: &Scale) -> Vec<Group> {
     let mut groups = Vec::new();
-    for (spec, light) in scenes() {
+    for (spec, light) in both() {
         for extent in SCREENS {
             groups.push(Group {
                 study: STUDY,
@@ -259,19 +183,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_cubes_top_hides_less_than_half_of_the_light_from_below() {
-        let scene = elongated_cube(crate::scenes::square(1.0).unwrap());
-        let bounds = scene.bounds(|i| i.role.blocks()).unwrap();
-        let light = scene.light(None).unwrap().light;
-        let height = light.center().y;
-        let share = |y: f64| {
-            let side = bounds.size().x * height / y;
-            (side / (2.0 * light.half_extents()[0])).powi(2)
-        };
-        assert!(share(bounds.max.y) < 0.5 && share(bounds.min.y) > 1.0);
-    }
-
-    #[test]
     fn findings_compare_what_is_alike() {
         let row = |curve: &str, scene: &str, map: f64, ms| {
             let mut row = crate::store::tests::row(curve, map, ms, 0.01);
@@ -303,7 +214,7 @@ mod tests {
 
     #[test]
     fn the_tables_are_complete() {
-        let groups = groups(&crate::groups::FULL);
+        let groups = groups(&crate::options::FULL);
         assert_eq!(groups.len(), 6);
         let count =
             |extent: [u32; 2]| groups.iter().find(|g| g.extent == extent).unwrap().entries.len();

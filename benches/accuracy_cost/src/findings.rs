@@ -11,13 +11,9 @@ use std::collections::BTreeSet;
 /// A finding of the paper beside what was measured.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
-    /// The paper's figure.
     pub figure: &'static str,
-    /// What the paper says.
     pub claim: &'static str,
-    /// Whether it holds here.
     pub verdict: Verdict,
-    /// What was measured.
     pub sentence: String,
 }
 
@@ -46,20 +42,36 @@ const ALIKE: f64 = 5e-4;
 /// Lights up to this side, in metres, are the paper's points: the error is all at the rim.
 const POINT_LIGHT: f64 = 0.05;
 
-/// One curve: x against some measure, in the order of x.
-fn curve(
-    rows: &[Row],
-    study: &str,
-    scene: &str,
-    name: &str,
-    of: fn(&Row) -> Option<f64>,
-) -> Vec<(f64, f64)> {
-    let wanted = |r: &&Row| r.study == study && r.scene == scene && r.curve == name;
-    let mut points: Vec<_> =
-        rows.iter().filter(wanted).filter_map(|r| Some((r.x, of(r)?))).collect();
-    points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    points
+/// What was swept of one object.
+struct Swept<'a> {
+    rows: &'a [Row],
+    study: &'static str,
+    scene: &'a str,
 }
+
+/// A curve: x against some measure, in the order of x.
+type Points = Vec<(f64, f64)>;
+
+impl Swept<'_> {
+    fn curve(&self, name: &str, of: fn(&Row) -> Option<f64>) -> Points {
+        let wanted = |r: &&Row| r.study == self.study && r.scene == self.scene && r.curve == name;
+        let own = self.rows.iter().filter(wanted);
+        let mut points: Points = own.filter_map(|r| Some((r.x, of(r)?))).collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        points
+    }
+
+    fn errors(&self, name: &str) -> Points {
+        self.curve(name, Row::mean)
+    }
+
+    fn times(&self, name: &str) -> Points {
+        self.curve(name, Row::ms)
+    }
+}
+
+/// Whether a law holds of an object, and a phrase of what was measured.
+type Told = Option<(bool, String)>;
 
 /// The objects of a study, in the rows' order.
 pub fn scenes<'a>(rows: &'a [Row], study: &str) -> Vec<&'a str> {
@@ -68,16 +80,10 @@ pub fn scenes<'a>(rows: &'a [Row], study: &str) -> Vec<&'a str> {
     all.filter(|s| seen.insert(*s)).collect()
 }
 
-/// Asks a law of each object: whether it holds, and a phrase of what was measured.
-fn ask(
-    rows: &[Row],
-    study: &str,
-    law: impl Fn(&str) -> Option<(bool, String)>,
-) -> (Verdict, String) {
-    let told: Vec<_> = scenes(rows, study)
-        .into_iter()
-        .filter_map(|s| law(s).map(|(holds, t)| (s, holds, t)))
-        .collect();
+/// Asks a law of each object.
+fn ask(rows: &[Row], study: &'static str, law: fn(&Swept) -> Told) -> (Verdict, String) {
+    let of = |scene| law(&Swept { rows, study, scene }).map(|(holds, text)| (scene, holds, text));
+    let told: Vec<_> = scenes(rows, study).into_iter().filter_map(of).collect();
     let verdict = match (told.iter().any(|t| t.1), told.iter().all(|t| t.1)) {
         _ if told.is_empty() => Verdict::Unmeasured,
         (_, true) => Verdict::Holds,
@@ -99,172 +105,152 @@ fn percent(fraction: f64) -> String {
     format!("{:.2} %", 100.0 * fraction)
 }
 
-/// All findings, in the paper's order.
+/// The paper's figure, what it says there, and the study and the law that tell.
+type Claim = (&'static str, &'static str, &'static str, fn(&Swept) -> Told);
+
+/// In the paper's order.
+const CLAIMS: [Claim; 10] = [
+    ("Fig. 17", "More than about 200² texels bring no improvement.", sweeps::SIDE, flat),
+    (
+        "Fig. 17",
+        "Two sides are better than one, but for the card, where they are equal.",
+        sweeps::SIDE,
+        sides,
+    ),
+    (
+        "Fig. 17",
+        "The aligned card's curve has spikes, where the others' have none.",
+        sweeps::SIDE,
+        spikes,
+    ),
+    ("Fig. 18", "Point lights aside, the error grows with the light.", sweeps::LIGHT, grows),
+    ("Fig. 19", "The error is least under the light.", sweeps::LATERAL, under),
+    ("Fig. 20", "The error grows towards the light.", sweeps::VERTICAL, towards),
+    ("Fig. 21", "Time is linear in the number of polygons.", sweeps::POLYGONS, polygons),
+    ("Fig. 22", "Time is proportional to the map's pixels, N².", sweeps::SIDE, pixels),
+    ("Fig. 24a", "Time grows with the light.", sweeps::LIGHT, time_and_light),
+    (
+        "Fig. 24b",
+        "Small lights want large maps; under large ones a small map does as well.",
+        sweeps::LIGHT,
+        small_maps,
+    ),
+];
+
+/// All findings.
 pub fn findings(rows: &[Row]) -> Vec<Finding> {
-    let finding = |figure, claim, (verdict, sentence)| Finding { figure, claim, verdict, sentence };
-    vec![
-        finding("Fig. 17", "More than about 200² texels bring no improvement.", flat(rows)),
-        finding(
-            "Fig. 17",
-            "Two sides are better than one, but for the card, where they are equal.",
-            sides(rows),
-        ),
-        finding(
-            "Fig. 17",
-            "The aligned card's curve has spikes, where the others' have none.",
-            spikes(rows),
-        ),
-        finding("Fig. 18", "Point lights aside, the error grows with the light.", grows(rows)),
-        finding("Fig. 19", "The error is least under the light.", under(rows)),
-        finding("Fig. 20", "The error grows towards the light.", towards(rows)),
-        finding("Fig. 21", "Time is linear in the number of polygons.", polygons(rows)),
-        finding("Fig. 22", "Time is proportional to the map's pixels, N².", pixels(rows)),
-        finding("Fig. 24a", "Time grows with the light.", time_and_light(rows)),
-        finding(
-            "Fig. 24b",
-            "Small lights want large maps; under large ones a small map does as well.",
-            small_maps(rows),
-        ),
-    ]
-}
-
-fn flat(rows: &[Row]) -> (Verdict, String) {
-    ask(rows, sweeps::SIDE, |scene| {
-        let points = curve(rows, sweeps::SIDE, scene, TWO, Row::mean);
-        let mean = |points: Vec<f64>| {
-            (!points.is_empty()).then(|| points.iter().sum::<f64>() / points.len() as f64)
-        };
-        let part = |keep: &dyn Fn(f64) -> bool| {
-            mean(points.iter().filter(|p| keep(p.0)).map(|p| p.1).collect())
-        };
-        let near = part(&|n| (0.75 * ENOUGH..=1.25 * ENOUGH).contains(&n))?;
-        let beyond = part(&|n| n > 1.5 * ENOUGH)?;
-        let text = format!("{} around N = 200, {} above 300", percent(near), percent(beyond));
-        Some((beyond > near * (1.0 - FLAT) - ALIKE, text))
-    })
-}
-
-fn sides(rows: &[Row]) -> (Verdict, String) {
-    ask(rows, sweeps::SIDE, |scene| {
-        let one = curve(rows, sweeps::SIDE, scene, ONE, Row::mean);
-        let two = curve(rows, sweeps::SIDE, scene, TWO, Row::mean);
-        let gains: Vec<f64> = one.iter().zip(&two).map(|(a, b)| a.1 - b.1).collect();
-        let most = gains.iter().fold(0.0, |m: f64, g| m.max(g.abs()));
-        let better = gains.iter().filter(|g| **g > 0.0).count();
-        let mean = gains.iter().sum::<f64>() / gains.len().max(1) as f64;
-        if scene == "card" {
-            return Some((most <= ALIKE, format!("differ by {} at most", percent(most))));
-        }
-        let text =
-            format!("better at {better} of {} sizes, by {:.2} points", gains.len(), 100.0 * mean);
-        (!gains.is_empty()).then_some((better == gains.len(), text))
-    })
-}
-
-fn spikes(rows: &[Row]) -> (Verdict, String) {
-    let jagged = |scene: &str| {
-        let points = curve(rows, sweeps::SIDE, scene, TWO, Row::mean);
-        jaggedness(&points.iter().map(|p| p.1).collect::<Vec<_>>())
+    let finding = |(figure, claim, study, law)| {
+        let (verdict, sentence) = ask(rows, study, law);
+        Finding { figure, claim, verdict, sentence }
     };
-    let card = jagged("card");
-    ask(rows, sweeps::SIDE, |scene| {
-        let own = jagged(scene)?;
-        let holds = scene == "card" || own < 0.5 * card?;
-        Some((holds, format!("neighbours are off a straight line by {:.0} %", 100.0 * own)))
-    })
+    CLAIMS.map(finding).into()
 }
 
-fn grows(rows: &[Row]) -> (Verdict, String) {
-    ask(rows, sweeps::LIGHT, |scene| {
-        let mut points = curve(rows, sweeps::LIGHT, scene, TWO, Row::mean);
-        points.retain(|p| p.0 > POINT_LIGHT);
-        let (first, last) = (points.first()?, points.last()?);
-        let order = rising(&points)?;
-        let text = format!(
-            "{} at {} m to {} at {} m (τ = {order:.2})",
-            percent(first.1),
-            first.0,
-            percent(last.1),
-            last.0
-        );
-        Some((order > 0.5, text))
-    })
+fn flat(swept: &Swept) -> Told {
+    let points = swept.errors(TWO);
+    let mean = |points: Vec<f64>| {
+        (!points.is_empty()).then(|| points.iter().sum::<f64>() / points.len() as f64)
+    };
+    let part = |keep: &dyn Fn(f64) -> bool| {
+        mean(points.iter().filter(|p| keep(p.0)).map(|p| p.1).collect())
+    };
+    let near = part(&|n| (0.75 * ENOUGH..=1.25 * ENOUGH).contains(&n))?;
+    let beyond = part(&|n| n > 1.5 * ENOUGH)?;
+    let text = format!("{} around N = 200, {} above 300", percent(near), percent(beyond));
+    Some((beyond > near * (1.0 - FLAT) - ALIKE, text))
 }
 
-fn under(rows: &[Row]) -> (Verdict, String) {
-    ask(rows, sweeps::LATERAL, |scene| {
-        let points = curve(rows, sweeps::LATERAL, scene, TWO, Row::mean);
-        let least = points.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
-        let reach = points.iter().map(|p| p.0.abs()).fold(0.0, f64::max);
-        let text = format!("least ({}) at {} m of ±{reach} m", percent(least.1), least.0);
-        Some((least.0.abs() <= 0.5 * reach, text))
-    })
+fn sides(swept: &Swept) -> Told {
+    let one = swept.errors(ONE);
+    let two = swept.errors(TWO);
+    let gains: Vec<f64> = one.iter().zip(&two).map(|(a, b)| a.1 - b.1).collect();
+    let most = gains.iter().fold(0.0, |m: f64, g| m.max(g.abs()));
+    let better = gains.iter().filter(|g| **g > 0.0).count();
+    let mean = gains.iter().sum::<f64>() / gains.len().max(1) as f64;
+    if swept.scene == "card" {
+        return Some((most <= ALIKE, format!("differ by {} at most", percent(most))));
+    }
+    let text =
+        format!("better at {better} of {} sizes, by {:.2} points", gains.len(), 100.0 * mean);
+    (!gains.is_empty()).then_some((better == gains.len(), text))
 }
 
-fn towards(rows: &[Row]) -> (Verdict, String) {
-    ask(rows, sweeps::VERTICAL, |scene| {
-        let points = curve(rows, sweeps::VERTICAL, scene, TWO, Row::mean);
-        let (first, last) = (points.first()?, points.last()?);
-        let order = rising(&points)?;
-        let text = format!(
-            "{} at {} m to {} at {} m (τ = {order:.2})",
-            percent(first.1),
-            first.0,
-            percent(last.1),
-            last.0
-        );
-        Some((order > 0.5 && last.1 > first.1, text))
-    })
+fn spikes(swept: &Swept) -> Told {
+    let jagged = |scene: &str| {
+        let errors = Swept { scene, ..*swept }.errors(TWO);
+        jaggedness(&errors.iter().map(|p| p.1).collect::<Vec<_>>())
+    };
+    let own = jagged(swept.scene)?;
+    let holds = swept.scene == "card" || own < 0.5 * jagged("card")?;
+    Some((holds, format!("neighbours are off a straight line by {:.0} %", 100.0 * own)))
 }
 
-fn polygons(rows: &[Row]) -> (Verdict, String) {
-    ask(rows, sweeps::POLYGONS, |scene| {
-        let points = curve(rows, sweeps::POLYGONS, scene, TWO, Row::ms);
-        let line = line(&points)?;
-        let text = format!(
-            "{:.1} ms + {:.2} ms a thousand, R² = {:.3}",
-            line.base,
-            1000.0 * line.slope,
-            line.r2
-        );
-        Some((line.r2 > 0.95 && line.slope > 0.0, text))
-    })
+/// The ends of a curve of errors in a phrase, whether it rises, and by how much in all.
+fn rise(points: &[(f64, f64)]) -> Option<(bool, f64, String)> {
+    let ((x0, first), (x1, last)) = (*points.first()?, *points.last()?);
+    let order = rising(points)?;
+    let (from, to) = (percent(first), percent(last));
+    let text = format!("{from} at {x0} m to {to} at {x1} m (τ = {order:.2})");
+    Some((order > 0.5, last - first, text))
 }
 
-fn pixels(rows: &[Row]) -> (Verdict, String) {
-    ask(rows, sweeps::SIDE, |scene| {
-        let points = curve(rows, sweeps::SIDE, scene, TWO, Row::ms);
-        let all = exponent(&points)?;
-        let squares: Vec<_> = points.iter().map(|p| (p.0 * p.0, p.1)).collect();
-        let line = line(&squares)?;
-        let text = format!("grows as N^{all:.1}; straight in N² with R² = {:.3}", line.r2);
-        Some((line.r2 > 0.95, text))
-    })
+fn grows(swept: &Swept) -> Told {
+    let mut points = swept.errors(TWO);
+    points.retain(|p| p.0 > POINT_LIGHT);
+    rise(&points).map(|(rises, _, text)| (rises, text))
 }
 
-fn time_and_light(rows: &[Row]) -> (Verdict, String) {
-    ask(rows, sweeps::LIGHT, |scene| {
-        let points = curve(rows, sweeps::LIGHT, scene, TWO, Row::ms);
-        let (first, last) = (points.first()?, points.last()?);
-        let text =
-            format!("{:.1} ms at {} m to {:.1} ms at {} m", first.1, first.0, last.1, last.0);
-        Some((rising(&points)? > 0.5, text))
-    })
+fn under(swept: &Swept) -> Told {
+    let points = swept.errors(TWO);
+    let least = points.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let reach = points.iter().map(|p| p.0.abs()).fold(0.0, f64::max);
+    let text = format!("least ({}) at {} m of ±{reach} m", percent(least.1), least.0);
+    Some((least.0.abs() <= 0.5 * reach, text))
 }
 
-fn small_maps(rows: &[Row]) -> (Verdict, String) {
-    ask(rows, sweeps::LIGHT, |scene| {
-        let small = curve(rows, sweeps::LIGHT, scene, "N = 64", Row::mean);
-        let large = curve(rows, sweeps::LIGHT, scene, "N = 256", Row::mean);
-        let ratio = |i: usize| Some(small.get(i)?.1 / large.get(i)?.1);
-        let (first, last) = (ratio(0)?, ratio(small.len().checked_sub(1)?)?);
-        let text = format!(
-            "N = 64 has {first:.1} times the error of N = 256 under {} m, {last:.1} times under {} m",
-            small[0].0,
-            small[small.len() - 1].0
-        );
-        Some((last < first && last < 1.25, text))
-    })
+fn towards(swept: &Swept) -> Told {
+    rise(&swept.errors(TWO)).map(|(rises, gain, text)| (rises && gain > 0.0, text))
+}
+
+fn polygons(swept: &Swept) -> Told {
+    let points = swept.times(TWO);
+    let line = line(&points)?;
+    let text = format!(
+        "{:.1} ms + {:.2} ms a thousand, R² = {:.3}",
+        line.base,
+        1000.0 * line.slope,
+        line.r2
+    );
+    Some((line.r2 > 0.95 && line.slope > 0.0, text))
+}
+
+fn pixels(swept: &Swept) -> Told {
+    let points = swept.times(TWO);
+    let all = exponent(&points)?;
+    let squares: Vec<_> = points.iter().map(|p| (p.0 * p.0, p.1)).collect();
+    let line = line(&squares)?;
+    let text = format!("grows as N^{all:.1}; straight in N² with R² = {:.3}", line.r2);
+    Some((line.r2 > 0.95, text))
+}
+
+fn time_and_light(swept: &Swept) -> Told {
+    let points = swept.times(TWO);
+    let (first, last) = (points.first()?, points.last()?);
+    let text = format!("{:.1} ms at {} m to {:.1} ms at {} m", first.1, first.0, last.1, last.0);
+    Some((rising(&points)? > 0.5, text))
+}
+
+fn small_maps(swept: &Swept) -> Told {
+    let small = swept.errors("N = 64");
+    let large = swept.errors("N = 256");
+    let ratio = |i: usize| Some(small.get(i)?.1 / large.get(i)?.1);
+    let (first, last) = (ratio(0)?, ratio(small.len().checked_sub(1)?)?);
+    let text = format!(
+        "N = 64 has {first:.1} times the error of N = 256 under {} m, {last:.1} times under {} m",
+        small[0].0,
+        small[small.len() - 1].0
+    );
+    Some((last < first && last < 1.25, text))
 }
 
 #[cfg(test)]

@@ -1,16 +1,11 @@
 //! What is measured together: the same pixels, the same truth, in turns.
 
 use crate::Problem;
-use crate::scenes::{self, SceneSpec, Source};
-use crate::sweeps;
-use crate::techniques::{CURVES, value_of};
-use antumbra::auto::{CANDIDATES, Candidate};
+use crate::scenes::{self, SceneSpec};
+use antumbra::Technique;
 use antumbra::scene::{Camera, Instance, Role, Scene, generate};
-use antumbra_harness::View;
+use antumbra_harness::{HeadlessDevice, Stage as Pixels, View};
 use glam::{DMat4, DVec3};
-
-/// The study of what `auto` chooses among.
-pub const CHOICES: &str = "choices";
 
 /// The study of error against time.
 pub const MATRIX: &str = "matrix";
@@ -42,7 +37,6 @@ pub enum Stage {
 /// What a group's images are compared with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Against {
-    /// The traced truth.
     Traced,
     /// The closed form of the one card there is: no noise.
     Card,
@@ -51,7 +45,6 @@ pub enum Against {
 /// One row to be.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
-    /// The technique's name.
     pub technique: &'static str,
     /// The curve it is a point of.
     pub curve: String,
@@ -68,21 +61,15 @@ pub struct Entry {
 /// Rows that are measured together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Group {
-    /// The study they belong to.
     pub study: &'static str,
-    /// The scene's name.
     pub scene: String,
-    /// The light's name.
     pub light: String,
-    /// Where the scene comes from.
     pub stage: Stage,
     /// Width and height of the images.
     pub extent: [u32; 2],
-    /// What they are compared with.
     pub against: Against,
     /// Where the group is on the axis that is swept, where the entries are not.
     pub at: Option<f64>,
-    /// The rows.
     pub entries: Vec<Entry>,
 }
 
@@ -90,11 +77,9 @@ pub struct Group {
 pub struct Ready {
     /// The scene; its first light is used.
     pub scene: Scene,
-    /// How pixels look at it.
     pub view: View,
     /// The occluder map's tangents, where they are not fitted.
     pub window: Option<[[f64; 2]; 2]>,
-    /// Whether pixels see what only occludes.
     pub occluders_seen: bool,
 }
 
@@ -102,6 +87,18 @@ impl Ready {
     /// Whether pixels see an instance.
     pub fn keeps(&self, instance: &Instance) -> bool {
         self.occluders_seen || instance.role != Role::Occluder
+    }
+
+    /// A stage of these settings at so many pixels.
+    pub fn stage(
+        &self,
+        device: &HeadlessDevice,
+        extent: [u32; 2],
+        settings: Technique,
+    ) -> Result<Pixels, Problem> {
+        let keep = |i: &Instance| self.keeps(i);
+        Pixels::new(device, &self.scene, &self.view, extent, settings, keep)
+            .map_err(|e| e.to_string())
     }
 }
 
@@ -113,9 +110,6 @@ impl Group {
     }
 
     /// Loads or makes the scene and the view.
-    ///
-    /// # Errors
-    /// A sentence that names the scene.
     pub fn ready(&self) -> Result<Ready, Problem> {
         match &self.stage {
             Stage::Seen(spec, light) => {
@@ -164,143 +158,4 @@ fn window(scene: &Scene, reach: f64) -> [[f64; 2]; 2] {
     let top = scene.bounds(|i| i.role.blocks()).map_or(0.0, |b| b.max.y);
     let tan = (0.5 * 2f64.sqrt() * 1.05 + reach) / (4.0 - top).max(0.1);
     [[-tan; 2], [tan; 2]]
-}
-
-/// How much is measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Scale {
-    /// Width and height of the views.
-    pub view: [u32; 2],
-    /// Side of the grids on the ground.
-    pub grid: u32,
-    /// Rays a pixel of the traced truth.
-    pub rays: u32,
-    /// Rounds in turns.
-    pub rounds: usize,
-    /// Only what the quick run has.
-    pub quick: bool,
-}
-
-/// Rays are cheap beside frames on two cores, so that even the quick truth takes 256: with 64, its
-/// noise was half of what is told apart here.
-pub const QUICK: Scale = Scale { view: [256, 192], grid: 96, rays: 256, rounds: 3, quick: true };
-
-/// See [`QUICK`].
-pub const FULL: Scale = Scale { view: [512, 384], grid: 160, rays: 512, rounds: 7, quick: false };
-
-/// For [`choices`]: as large as the full run, with half of its truth's rays.
-pub const CHOICE: Scale = Scale { rays: 256, rounds: 3, ..FULL };
-
-/// The entries of error against time; the picture strip is of one light of each scene.
-fn matrix_entries(scale: &Scale, in_strip: bool) -> Vec<Entry> {
-    let mut entries = Vec::new();
-    for curve in CURVES {
-        for (i, (words, in_quick)) in curve.steps.iter().enumerate() {
-            if scale.quick && !in_quick {
-                continue;
-            }
-            entries.push(Entry {
-                technique: curve.technique,
-                curve: curve.label.into(),
-                words: (*words).into(),
-                x: value_of(words, curve.sweeps).unwrap_or(i as f64),
-                light_scale: 1.0,
-                shown: in_strip && curve.shown == Some(i),
-            });
-        }
-    }
-    entries
-}
-
-/// Every group of a run: first whether the measuring can be trusted, then what a reader looks at
-/// first.
-pub fn all(scale: &Scale, own: &[SceneSpec]) -> Vec<Group> {
-    let mut groups = vec![sweeps::wrong(scale)];
-    let matrix = |spec: &SceneSpec, light: &'static str| Group {
-        study: MATRIX,
-        scene: spec.name.clone(),
-        light: light.into(),
-        stage: Stage::Seen(spec.clone(), light),
-        extent: scale.view,
-        // The card's truth is exact in every view.
-        against: if spec.source == Source::Made("card") { Against::Card } else { Against::Traced },
-        at: None,
-        entries: matrix_entries(scale, light != "small" && light != "large"),
-    };
-    let standard = scenes::standard();
-    groups.extend(standard.iter().map(|spec| matrix(spec, "medium")));
-    groups.extend(
-        own.iter()
-            .flat_map(|spec| spec.lights().into_iter().map(move |l| (spec, l)))
-            .map(|(spec, light)| matrix(spec, light)),
-    );
-    groups.extend(sweeps::all(scale));
-    for light in ["large", "small"] {
-        groups.extend(standard.iter().map(|spec| matrix(spec, light)));
-    }
-    groups
-}
-
-/// The scenes that `auto` is made from beyond the report's: what touches, and what shadows itself.
-const MORE_SCENES: [&str; 4] =
-    ["spheres", "contact", "spheres on themselves", "suzanne on herself"];
-
-/// Everything that `auto` chooses among, in every view.
-pub fn choices(scale: &Scale) -> Vec<Group> {
-    let entry = |c: &Candidate| Entry {
-        technique: c.technique,
-        curve: c.technique.into(),
-        words: c.words.into(),
-        x: 0.0,
-        light_scale: 1.0,
-        shown: false,
-    };
-    let more = MORE_SCENES.map(|name| SceneSpec { name: name.into(), source: Source::Made(name) });
-    let scenes: Vec<_> = scenes::standard().into_iter().chain(more).collect();
-    let lights = scenes::LIGHTS.iter().map(|l| l.0);
-    let of = |light: &'static str| {
-        let group = move |spec: &SceneSpec| Group {
-            study: CHOICES,
-            scene: spec.name.clone(),
-            light: light.into(),
-            stage: Stage::Seen(spec.clone(), light),
-            extent: scale.view,
-            against: if spec.source == Source::Made("card") {
-                Against::Card
-            } else {
-                Against::Traced
-            },
-            at: None,
-            entries: CANDIDATES.iter().map(entry).collect(),
-        };
-        scenes.iter().map(group).collect::<Vec<_>>()
-    };
-    lights.flat_map(of).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use std::collections::BTreeSet;
-
-    #[test]
-    fn keys_tell_groups_apart_and_the_quick_run_is_part_of_the_full_one() {
-        let [quick, full] = [QUICK, FULL].map(|scale| all(&scale, &[]));
-        let keys = |groups: &[Group]| groups.iter().map(Group::key).collect::<BTreeSet<_>>();
-        assert_eq!(keys(&full).len(), full.len());
-        assert_eq!(keys(&quick).len(), quick.len());
-        assert!(quick.len() < full.len());
-        for group in quick.iter().chain(&full) {
-            assert!(!group.entries.is_empty(), "{}", group.key());
-        }
-    }
-
-    #[test]
-    fn every_scene_of_the_report_can_be_made() {
-        for group in all(&QUICK, &[]) {
-            let ready = group.ready().unwrap_or_else(|e| panic!("{}: {e}", group.key()));
-            assert!(ready.scene.light(None).is_ok());
-            assert!(ready.view.clip_from_world.is_finite());
-        }
-    }
 }

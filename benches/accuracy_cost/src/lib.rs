@@ -11,7 +11,13 @@
 //! Everything left of `measure` is data, and everything right of `store` is a pure function of the
 //! stored rows: a report can be made of whatever a killed run left behind.
 
+#![allow(
+    missing_docs,
+    reason = "the package is not published: a line stands where the name does not say it"
+)]
+
 pub mod choices;
+pub mod commit;
 pub mod curtis;
 pub mod envelope;
 pub mod findings;
@@ -30,9 +36,10 @@ pub mod runner;
 pub mod scenes;
 pub mod stats;
 pub mod store;
+pub mod studies;
 pub mod sweeps;
 pub mod techniques;
 pub mod truth;
 
-/// What went wrong, as a sentence for a person.
+/// What went wrong, as a sentence for a person that names the file, scene or setting: every error of the bench.
 pub type Problem = String;

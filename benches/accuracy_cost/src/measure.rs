@@ -1,7 +1,8 @@
 //! One group: its stages, its truth, its frames in turns, its errors.
 
 use crate::Problem;
-use crate::groups::{Entry, Group, Ready, Scale};
+use crate::groups::{Entry, Group};
+use crate::options::Scale;
 use crate::picture::{self, Pictures};
 use crate::runner::Runner;
 use crate::scenes::scaled;
@@ -9,7 +10,7 @@ use crate::stats::{median, quartiles};
 use crate::store::{Errors, Outcome, Row, Times};
 use crate::techniques::method;
 use crate::truth::{self, Truth, mask};
-use antumbra::scene::{AreaLight, Instance};
+use antumbra::scene::AreaLight;
 use antumbra::truth::{ErrorSummary, Receiver, Tracer};
 use antumbra::{RectangleLight, Technique};
 use antumbra_harness::shade;
@@ -28,9 +29,7 @@ const SMALL_GROUP: usize = 8;
 
 /// What is measured with, and where pictures and truths are kept.
 pub struct Bench<'a> {
-    /// The device.
     pub device: &'a HeadlessDevice,
-    /// How much is measured.
     pub scale: Scale,
     /// The folder of kept truths and pictures.
     pub cache: &'a Path,
@@ -66,12 +65,13 @@ impl Bench<'_> {
         tell("scene");
         let ready = group.ready()?;
         let light = ready.scene.light(None).map_err(|e| e.to_string())?.clone();
-        let pixels = self.stage(&ready, group.extent, Technique::default())?;
+        let pixels = ready.stage(self.device, group.extent, Technique::default())?;
         let receivers = truth::receivers(pixels.gbuffer())?;
         let tracer = Tracer::new(&ready.scene).map_err(|e| e.to_string())?;
         let mut candidates: Vec<Candidate> = Vec::new();
         for (entry, method) in group.entries.iter().zip(methods) {
-            let state = Runner::new(self, &ready, group, entry, method, &light.light, &receivers);
+            let state =
+                Runner::new(self.device, &ready, group, entry, method, &light.light, &receivers);
             candidates.push(Candidate { entry, state, frames: Vec::new(), image: Vec::new() });
         }
         let lit = |c: &Candidate| scaled(&light.light, c.entry.light_scale);
@@ -106,18 +106,6 @@ impl Bench<'_> {
             blank(group, Some(entry), triangles, half, outcome.unwrap_or_else(Outcome::Failed))
         });
         Ok(compared.collect())
-    }
-
-    /// A stage of these settings at the group's pixels.
-    pub(crate) fn stage(
-        &self,
-        ready: &Ready,
-        extent: [u32; 2],
-        settings: Technique,
-    ) -> Result<Stage, Problem> {
-        let keep = |i: &Instance| ready.keeps(i);
-        Stage::new(self.device, &ready.scene, &ready.view, extent, settings, keep)
-            .map_err(|e| e.to_string())
     }
 
     /// Every candidate once a round. Those that have cost more than their share stop once they have
@@ -167,14 +155,10 @@ impl Candidate<'_> {
 
     /// The first frame compiles what the driver compiles, and is not counted; its image is kept.
     fn warm_up(&mut self, tracer: &Tracer, light: &RectangleLight, receivers: &[Receiver]) {
-        let done = self.run(tracer, light, receivers).and_then(|()| match &mut self.state {
-            Ok(Some(runner)) => {
-                if let Some(image) = runner.image()? {
-                    self.image = image;
-                }
-                Ok(())
-            }
-            _ => Ok(()),
+        let done = self.run(tracer, light, receivers).and_then(|()| {
+            let Ok(Some(runner)) = &mut self.state else { return Ok(()) };
+            self.image = runner.image()?.unwrap_or_else(|| std::mem::take(&mut self.image));
+            Ok(())
         });
         self.frames.clear();
         self.settle(done);

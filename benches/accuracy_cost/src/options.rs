@@ -1,8 +1,32 @@
 //! The command line.
 
-use crate::groups::{CHOICE, Scale};
 use clap::Parser;
 use std::path::{Path, PathBuf};
+
+/// How much is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Scale {
+    /// Width and height of the views.
+    pub view: [u32; 2],
+    /// Side of the grids on the ground.
+    pub grid: u32,
+    /// Rays a pixel of the traced truth.
+    pub rays: u32,
+    /// Rounds in turns.
+    pub rounds: usize,
+    /// Only what the quick run has.
+    pub quick: bool,
+}
+
+/// Rays are cheap beside frames on two cores, so that even the quick truth takes 256: with 64, its
+/// noise was half of what is told apart here.
+pub const QUICK: Scale = Scale { view: [256, 192], grid: 96, rays: 256, rounds: 3, quick: true };
+
+/// See [`QUICK`].
+pub const FULL: Scale = Scale { view: [512, 384], grid: 160, rays: 512, rounds: 7, quick: false };
+
+/// For `--choices`: as large as the full run, with half of its truth's rays.
+pub const CHOICE: Scale = Scale { rays: 256, rounds: 3, ..FULL };
 
 /// Error against time of every technique, in one report.
 #[derive(Parser, Debug, Clone)]

@@ -3,7 +3,6 @@
 /// One measurement: what it costs and how wrong it is. Less of both is better.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// Milliseconds.
     pub ms: f64,
     /// Mean |error|, 0..1.
     pub error: f64,

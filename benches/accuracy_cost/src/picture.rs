@@ -49,9 +49,6 @@ pub fn flip([width, height]: [u32; 2], truth: &[u8], image: &[u8]) -> f64 {
 }
 
 /// A PNG of three bytes a pixel.
-///
-/// # Errors
-/// A sentence where the size does not fit the pixels.
 pub fn png([width, height]: [u32; 2], rgb: &[u8]) -> Result<Vec<u8>, Problem> {
     let mut bytes = Vec::new();
     PngEncoder::new_with_quality(

@@ -1,6 +1,7 @@
 //! How long it will take: from what the groups measured so far took.
 
-use crate::groups::{Group, MATRIX, Scale};
+use crate::groups::{Group, MATRIX};
+use crate::options::Scale;
 use crate::store::Row;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::collections::HashMap;
@@ -170,7 +171,8 @@ impl Progress {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::groups::{FULL, QUICK, all};
+    use crate::options::{FULL, QUICK};
+    use crate::studies::all;
 
     #[test]
     fn durations_are_told_as_a_person_would() {

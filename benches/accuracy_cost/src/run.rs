@@ -2,29 +2,28 @@
 
 use crate::Problem;
 use crate::choices;
+use crate::commit::commit;
 use crate::envelope;
-use crate::groups::{self, FULL, Group, QUICK};
+use crate::groups::Group;
 use crate::hard_cases::store;
 use crate::measure::Bench;
-use crate::options::Options;
+use crate::options::{FULL, Options, QUICK};
 use crate::progress::{Estimate, Progress, duration};
 use crate::report::docs::{ENVELOPE, HARD_CASES, HEADLINE};
 use crate::report::{self, Report};
 use crate::scenes::{self, SceneSpec, Source};
 use crate::store::{Header, Outcome, Row, Store};
-use crate::truth::Fnv;
+use crate::studies;
 use antumbra_harness::{HeadlessDevice, HeadlessOptions};
+use fnv::FnvHasher;
+use std::hash::Hasher;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::time::Instant;
 
 /// What the quick run may take, less what the report takes to write.
 const QUICK_BUDGET_S: f64 = 270.0;
 
 /// Measures and reports; whether every row is good.
-///
-/// # Errors
-/// A sentence for what stops the run: no device, a folder that cannot be read or written.
 pub fn run(options: &Options) -> Result<bool, Problem> {
     if options.write_docs {
         let page = match (options.hard_cases, options.envelope) {
@@ -71,6 +70,13 @@ pub fn run(options: &Options) -> Result<bool, Problem> {
         _ => FULL,
     };
     let own = options.scenes.as_deref().map(scenes::own).transpose()?.unwrap_or_default();
+    let mut groups = match options.choices {
+        true => studies::choices(&scale),
+        false => studies::all(&scale, &own),
+    };
+    if let Some(text) = &options.only {
+        groups = only(groups, text)?;
+    }
     let device = HeadlessDevice::new(&HeadlessOptions::default()).map_err(|e| e.to_string())?;
     let header = Header {
         command: options.command(),
@@ -83,13 +89,6 @@ pub fn run(options: &Options) -> Result<bool, Problem> {
     };
     let cache = kept(&options.out, &header)?;
     let mut store = Store::open(&measured, &header)?;
-    let mut groups = match options.choices {
-        true => groups::choices(&scale),
-        false => groups::all(&scale, &own),
-    };
-    if let Some(text) = &options.only {
-        groups.retain(|g| g.key().contains(text.as_str()));
-    }
     let [width, height] = scale.view;
     println!("{}: {width}×{height} pixels, commit {}", header.driver, header.commit);
     let started = Instant::now();
@@ -106,6 +105,20 @@ pub fn run(options: &Options) -> Result<bool, Problem> {
     let report =
         Report { header: &header, rows: &rows, left_out: &left_out, cache: &cache, hard_cases };
     Ok(finish(&report, options)? && held)
+}
+
+/// The groups whose name holds a text.
+fn only(groups: Vec<Group>, text: &str) -> Result<Vec<Group>, Problem> {
+    let names = |of: fn(&Group) -> &str| report::once(groups.iter().map(of)).join(", ");
+    let problem = format!(
+        "--only {text}: no group's name holds it; a name is \"STUDY: SCENE, LIGHT light\", of the studies {}, the \
+         scenes {} and the lights {}",
+        names(|g| g.study),
+        names(|g| &g.scene),
+        names(|g| &g.light)
+    );
+    let kept: Vec<_> = groups.into_iter().filter(|g| g.key().contains(text)).collect();
+    if kept.is_empty() { Err(problem) } else { Ok(kept) }
 }
 
 /// Measures the table of hard cases; whether nothing is broken.
@@ -178,10 +191,10 @@ fn measure(bench: &Bench, groups: &[Group], store: &mut Store) -> Result<Vec<Str
 
 /// The folder of truths and pictures that belong to this run; those of other runs are removed.
 fn kept(out: &Path, header: &Header) -> Result<PathBuf, Problem> {
-    let mut hash = Fnv::default();
-    format!("{header:?}").bytes().for_each(|b| hash.add(u64::from(b)));
+    let mut hash = FnvHasher::default();
+    format!("{header:?}").bytes().for_each(|b| hash.write_u64(u64::from(b)));
     let all = out.join("cache");
-    let own = all.join(format!("{:016x}", hash.0));
+    let own = all.join(format!("{:016x}", hash.finish()));
     std::fs::create_dir_all(&own).map_err(|e| format!("--out {}: {e}", out.display()))?;
     let others = std::fs::read_dir(&all).into_iter().flatten().flatten().map(|e| e.path());
     for other in others.filter(|path| *path != own && path.is_dir()) {
@@ -198,29 +211,19 @@ fn told(spec: &SceneSpec) -> String {
     format!("{} {:?}", path.display(), date.ok())
 }
 
-/// git's commit, and a hash of this program where it is not that commit's.
-pub(crate) fn commit() -> String {
-    let git = |arguments: &[&str]| {
-        let output =
-            Command::new("git").current_dir(Options::root()).args(arguments).output().ok()?;
-        let text = String::from_utf8(output.stdout).ok()?;
-        output.status.success().then(|| text.trim().to_string())
-    };
-    let Some(commit) = git(&["rev-parse", "--short=10", "HEAD"]) else {
-        return format!("unknown, {}", program());
-    };
-    let clean =
-        git(&["status", "--porcelain", "--untracked-files=no"]).is_some_and(|s| s.is_empty());
-    if clean { commit } else { format!("{commit}-dirty, {}", program()) }
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-fn program() -> String {
-    let bytes = std::env::current_exe().and_then(std::fs::read).unwrap_or_default();
-    let mut hash = Fnv::default();
-    bytes.chunks(8).for_each(|c| {
-        let mut word = [0; 8];
-        word[..c.len()].copy_from_slice(c);
-        hash.add(u64::from_le_bytes(word));
-    });
-    format!("program {:08x}", hash.0 >> 32)
+    #[test]
+    fn only_what_is_named_is_measured_and_a_name_of_nothing_is_refused_with_those_there_are() {
+        let groups = studies::all(&QUICK, &[]);
+        let bunnies = only(groups.clone(), "bunny").unwrap();
+        assert!(!bunnies.is_empty() && bunnies.len() < groups.len());
+        let problem = only(groups, "rooom").unwrap_err();
+        assert!(problem.starts_with("--only rooom: no group's name holds it"), "{problem}");
+        for name in ["light size", "matrix", "bunny", "medium"] {
+            assert!(problem.contains(name), "{name}: {problem}");
+        }
+    }
 }

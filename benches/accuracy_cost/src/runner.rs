@@ -2,14 +2,13 @@
 
 use crate::Problem;
 use crate::groups::{Entry, Group, Ready};
-use crate::measure::Bench;
 use crate::scenes::scaled;
 use crate::techniques::Method;
 use crate::truth;
 use antumbra::scene::Instance;
 use antumbra::truth::{Receiver, Sampling, Tracer};
 use antumbra::{FramePlan, RectangleLight};
-use antumbra_harness::{Forward, FrameTimes, ReadbackScheme, Stage};
+use antumbra_harness::{Forward, FrameTimes, HeadlessDevice, ReadbackScheme, Stage};
 use std::time::{Duration, Instant};
 
 /// The random numbers of the ray tracer that is measured, which are not the truth's.
@@ -17,16 +16,12 @@ const TRACER_SEED: u64 = 2;
 
 /// What computes one row's image.
 pub enum Runner {
-    /// The node.
     Node {
-        /// Its pixels.
         stage: Box<Stage>,
-        /// Its frame.
         plan: Box<FramePlan>,
     },
     /// Rays by the processor.
     Rays {
-        /// How many and where.
         sampling: Sampling,
     },
     /// Rays of the fragments as they are drawn, by the node's maps.
@@ -37,13 +32,10 @@ pub enum Runner {
     /// The paper's scheme ends with its map. Its image is that of blending, whose sums are the same
     /// (a test of the crate's holds that), and its frame takes that one's last pass on top.
     Readback {
-        /// The scheme.
         scheme: Box<ReadbackScheme>,
         /// The occluder map's tangents.
         window: Option<[[f64; 2]; 2]>,
-        /// Whose image.
         stage: Box<Stage>,
-        /// Its frame.
         plan: Box<FramePlan>,
     },
 }
@@ -55,11 +47,8 @@ fn told<T>(result: Result<T, antumbra::Error>) -> Result<T, Problem> {
 
 impl Runner {
     /// What a method takes to run; nothing where the crate does not have it.
-    ///
-    /// # Errors
-    /// A sentence for what was refused.
     pub fn new(
-        bench: &Bench,
+        device: &HeadlessDevice,
         ready: &Ready,
         group: &Group,
         entry: &Entry,
@@ -67,7 +56,7 @@ impl Runner {
         light: &RectangleLight,
         receivers: &[Receiver],
     ) -> Result<Option<Self>, Problem> {
-        let stage = |settings| bench.stage(ready, group.extent, settings).map(Box::new);
+        let stage = |settings| ready.stage(device, group.extent, settings).map(Box::new);
         Ok(match method? {
             None => None,
             Some(Method::Rays(rays)) => {
@@ -86,7 +75,7 @@ impl Runner {
                 };
                 let mut stage = stage(*settings)?;
                 let plan = told(stage.plan(light, ready.window))?;
-                let scheme = ReadbackScheme::new(bench.device, &ready.scene, side, side);
+                let scheme = ReadbackScheme::new(device, &ready.scene, side, side);
                 let scheme = Box::new(told(scheme)?);
                 told(stage.run(&plan))?;
                 Some(Self::Readback { scheme, window: ready.window, stage, plan: Box::new(plan) })
@@ -101,16 +90,13 @@ impl Runner {
                 let mut stage = stage(*settings)?;
                 let plan = told(stage.plan(light, ready.window))?;
                 let keep = |i: &Instance| ready.keeps(i);
-                let forward = Forward::new(bench.device, *stage, plan, &ready.scene, keep);
+                let forward = Forward::new(device, *stage, plan, &ready.scene, keep);
                 Some(Self::Forward { forward: Box::new(told(forward)?) })
             }
         })
     }
 
     /// One frame; its image where that comes with it.
-    ///
-    /// # Errors
-    /// A sentence for what failed.
     pub fn run(
         &mut self,
         tracer: &Tracer,
@@ -148,9 +134,6 @@ impl Runner {
     }
 
     /// The last frame's image, where the device has it.
-    ///
-    /// # Errors
-    /// A sentence where it cannot be read.
     pub fn image(&mut self) -> Result<Option<Vec<f32>>, Problem> {
         match self {
             Self::Node { stage, .. } | Self::Readback { stage, .. } => {
@@ -162,9 +145,6 @@ impl Runner {
     }
 
     /// Bytes of the node's memory.
-    ///
-    /// # Errors
-    /// A sentence where there is no node.
     pub fn bytes(&mut self) -> Result<u64, Problem> {
         match self {
             Self::Rays { .. } => Ok(0),

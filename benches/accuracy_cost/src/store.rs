@@ -7,19 +7,17 @@
 
 use crate::Problem;
 use serde::{Deserialize, Serialize};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
-use std::io::{Read, Seek, SeekFrom, Write};
+use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// What a run is; runs that differ in any of it do not share rows.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Header {
-    /// The command that made it.
     pub command: String,
     /// git's commit, with `-dirty` and a hash of the program where the tree has changes.
     pub commit: String,
-    /// The device's name.
     pub driver: String,
     /// Whether the run is the quick one.
     pub quick: bool,
@@ -66,39 +64,34 @@ pub struct Times {
     pub passes: Vec<(String, f64)>,
     /// Median µs of recording.
     pub record_us: f64,
-    /// Memory of the node.
     pub gpu_bytes: u64,
 }
 
 /// How a row ended.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
-    /// Measured.
     Measured {
-        /// The errors.
         errors: Errors,
-        /// The times.
         times: Times,
     },
     /// The crate does not have the technique yet.
+    #[default]
     NotThere,
     /// It was tried and failed, for this reason.
     Failed(String),
 }
 
 /// One row of the report.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// Which study it belongs to: `matrix`, or the sweep's name.
     pub study: String,
-    /// The scene's name.
     pub scene: String,
     /// The light's name: small, medium, large.
     pub light: String,
     /// The light's width and height in metres.
     pub light_m: [f64; 2],
-    /// Triangles of the scene.
     pub triangles: usize,
     /// Width and height of the image.
     pub extent: [u32; 2],
@@ -110,7 +103,6 @@ pub struct Row {
     pub settings: String,
     /// The value that is swept; its meaning is the study's.
     pub x: f64,
-    /// How it ended.
     pub outcome: Outcome,
 }
 
@@ -150,135 +142,110 @@ enum Line {
     },
 }
 
-/// The file and what is in it.
-pub struct Store {
-    file: File,
-    path: PathBuf,
+/// What the lines of a file tell.
+#[derive(Default)]
+struct Told {
+    header: Option<Header>,
     rows: BTreeMap<String, Vec<Row>>,
-    whole: BTreeSet<String>,
+    /// The groups that are whole, in the order they were measured.
+    whole: Vec<String>,
 }
 
-impl Store {
-    /// Opens the file of a run, or begins it.
-    ///
-    /// # Errors
-    /// A sentence with the file's name where it cannot be read or written.
-    pub fn open(path: &Path, header: &Header) -> Result<Self, Problem> {
-        let told = |e: std::io::Error| format!("{}: {e}", path.display());
-        let mut text = Vec::new();
-        if path.exists() {
-            File::open(path).and_then(|mut f| f.read_to_end(&mut text)).map_err(told)?;
-        }
-        let (lines, good) = read(&text);
-        let same = matches!(lines.first(), Some(Line::Run(h)) if h == header);
-        if !lines.is_empty() && !same {
-            std::fs::rename(path, path.with_extension("earlier.jsonl")).map_err(told)?;
-        }
-        let open = OpenOptions::new().create(true).truncate(false).write(true).open(path);
-        let mut file = open.map_err(told)?;
-        let keep = if same { good as u64 } else { 0 };
-        file.set_len(keep).and_then(|()| file.seek(SeekFrom::End(0))).map_err(told)?;
-        let mut store =
-            Self { file, path: path.into(), rows: BTreeMap::new(), whole: BTreeSet::new() };
-        if same {
-            lines.into_iter().for_each(|line| store.take(line));
-            let Self { rows, whole, .. } = &mut store;
-            rows.retain(|group, _| whole.contains(group));
-        } else {
-            store.write(&Line::Run(header.clone()))?;
-        }
-        Ok(store)
-    }
-
-    /// The run that a file is of, and its whole groups' rows in the order they were measured.
-    ///
-    /// # Errors
-    /// A sentence where the file cannot be read or holds no run.
-    pub fn read(path: &Path) -> Result<(Header, Vec<Row>), Problem> {
-        let text = std::fs::read(path).map_err(|e| format!("{}: {e}", path.display()))?;
-        let mut header = None;
-        let mut groups: Vec<String> = Vec::new();
-        let mut rows: BTreeMap<String, Vec<Row>> = BTreeMap::new();
-        for line in read(&text).0 {
-            match line {
-                Line::Run(h) => header = Some(h),
-                Line::Row { group, row } => rows.entry(group).or_default().push(*row),
-                Line::Whole { group, rows: count, .. } => {
-                    let all = rows.entry(group.clone()).or_default();
-                    all.drain(..all.len().saturating_sub(count));
-                    groups.push(group);
-                }
-            }
-        }
-        let header = header.ok_or_else(|| format!("{}: no run is in it", path.display()))?;
-        Ok((header, groups.iter().filter_map(|g| rows.remove(g)).flatten().collect()))
-    }
-
+impl Told {
     fn take(&mut self, line: Line) {
         match line {
-            Line::Run(_) => {}
+            Line::Run(header) => self.header = Some(header),
             Line::Row { group, row } => self.rows.entry(group).or_default().push(*row),
             Line::Whole { group, rows, .. } => {
                 // Rows before those are of a run that was killed in the middle of the group.
                 let all = self.rows.entry(group.clone()).or_default();
                 if let Some(torn) = all.len().checked_sub(rows) {
                     all.drain(..torn);
-                    self.whole.insert(group);
+                    self.whole.push(group);
                 }
             }
         }
     }
 
+    /// What the whole lines of a file tell, without groups that are not whole, and how many bytes they take.
+    fn read(text: &[u8]) -> (Self, usize) {
+        let (mut told, mut good) = (Self::default(), 0);
+        for line in text.split_inclusive(|b| *b == b'\n').filter(|line| line.ends_with(b"\n")) {
+            good += line.len();
+            // A line that is whole and still not understood costs its group, which is measured again.
+            serde_json::from_slice(line).into_iter().for_each(|line| told.take(line));
+        }
+        told.rows.retain(|group, _| told.whole.contains(group));
+        (told, good)
+    }
+}
+
+/// The file and what is in it.
+pub struct Store {
+    file: File,
+    path: PathBuf,
+    told: Told,
+}
+
+impl Store {
+    /// Opens the file of a run, or begins it.
+    pub fn open(path: &Path, header: &Header) -> Result<Self, Problem> {
+        let problem = |e: std::io::Error| format!("{}: {e}", path.display());
+        let text = if path.exists() { std::fs::read(path).map_err(problem)? } else { Vec::new() };
+        let (mut told, mut good) = Told::read(&text);
+        let same = told.header.as_ref() == Some(header);
+        if !same && good > 0 {
+            std::fs::rename(path, path.with_extension("earlier.jsonl")).map_err(problem)?;
+        }
+        if !same {
+            (told, good) = (Told::default(), 0);
+        }
+        let open = OpenOptions::new().create(true).truncate(false).write(true).open(path);
+        let mut file = open.map_err(problem)?;
+        file.set_len(good as u64).and_then(|()| file.seek(SeekFrom::End(0))).map_err(problem)?;
+        let mut store = Self { file, path: path.into(), told };
+        if !same {
+            store.write(&Line::Run(header.clone()))?;
+        }
+        Ok(store)
+    }
+
+    /// The run that a file is of, and its whole groups' rows in the order they were measured.
+    pub fn read(path: &Path) -> Result<(Header, Vec<Row>), Problem> {
+        let text = std::fs::read(path).map_err(|e| format!("{}: {e}", path.display()))?;
+        let mut told = Told::read(&text).0;
+        let header = told.header.ok_or_else(|| format!("{}: no run is in it", path.display()))?;
+        Ok((header, told.whole.iter().filter_map(|g| told.rows.remove(g)).flatten().collect()))
+    }
+
     fn write(&mut self, line: &Line) -> Result<(), Problem> {
-        let told = |e: std::io::Error| format!("{}: {e}", self.path.display());
-        let mut text = serde_json::to_string(line).map_err(|e| told(e.into()))?;
-        text.push('\n');
-        self.file.write_all(text.as_bytes()).map_err(told)?;
+        let problem = |e: std::io::Error| format!("{}: {e}", self.path.display());
+        let text = serde_json::to_string(line).map_err(|e| problem(e.into()))? + "\n";
+        self.file.write_all(text.as_bytes()).map_err(problem)?;
         // A killed program loses nothing that was written; a machine that stops may.
-        self.file.sync_data().map_err(told)
+        self.file.sync_data().map_err(problem)
     }
 
     /// Whether the group is there, whole.
     pub fn has(&self, group: &str) -> bool {
-        self.whole.contains(group)
+        self.told.whole.iter().any(|whole| whole == group)
     }
 
     /// Adds a whole group's rows.
-    ///
-    /// # Errors
-    /// A sentence where the disk refuses; what was written before stays readable.
     pub fn add(&mut self, group: &str, rows: Vec<Row>, seconds: f64) -> Result<(), Problem> {
-        let count = rows.len();
-        for row in rows {
-            let line = Line::Row { group: group.into(), row: Box::new(row) };
+        let whole = Line::Whole { group: group.into(), rows: rows.len(), seconds };
+        let line = |row| Line::Row { group: group.into(), row: Box::new(row) };
+        rows.into_iter().map(line).chain([whole]).try_for_each(|line| {
             self.write(&line)?;
-            self.take(line);
-        }
-        let line = Line::Whole { group: group.into(), rows: count, seconds };
-        self.write(&line)?;
-        self.take(line);
-        Ok(())
+            self.told.take(line);
+            Ok(())
+        })
     }
 
     /// The rows of these groups, in their order.
     pub fn rows<'a>(&'a self, groups: impl Iterator<Item = &'a str>) -> Vec<Row> {
-        groups.filter_map(|g| self.rows.get(g)).flatten().cloned().collect()
+        groups.filter_map(|g| self.told.rows.get(g)).flatten().cloned().collect()
     }
-}
-
-/// The whole lines of a file, and how many bytes they take.
-fn read(text: &[u8]) -> (Vec<Line>, usize) {
-    let mut good = 0;
-    let mut lines = Vec::new();
-    for line in text.split_inclusive(|b| *b == b'\n') {
-        if !line.ends_with(b"\n") {
-            break;
-        }
-        good += line.len();
-        // A line that is whole and still not understood costs its group, which is measured again.
-        lines.extend(serde_json::from_slice(line).ok());
-    }
-    (lines, good)
 }
 
 #[cfg(test)]
@@ -351,7 +318,7 @@ pub(crate) mod tests {
         let store = Store::open(&path, &second).unwrap();
         assert!(!store.has("a"));
         let earlier = std::fs::read(path.with_extension("earlier.jsonl")).unwrap();
-        assert_eq!(read(&earlier).0.len(), 3);
+        assert_eq!(Told::read(&earlier).0.whole, ["a"]);
     }
 
     #[test]

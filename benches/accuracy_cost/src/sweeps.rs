@@ -1,8 +1,8 @@
 //! The sweeps that reproduce the figures of Atty 2006 and Eisemann 2008's table, the kinds of levels, and
 //! a technique that is wrong on purpose.
 
-use crate::curtis;
-use crate::groups::{Against, Entry, Group, Scale, Stage};
+use crate::groups::{Against, Entry, Group, Stage};
+use crate::options::Scale;
 use crate::scenes::SceneSpec;
 use crate::scenes::Source;
 use antumbra::stages::nbuffer::Kind;
@@ -70,7 +70,7 @@ fn both_sides(map: u32, x: f64) -> Vec<Entry> {
     SIDES.iter().map(|(name, sides)| entry(name, format!("{sides} map={map}"), x)).collect()
 }
 
-/// Every sweep but [`wrong`], in the report's order.
+/// Every sweep but [`wrong`] and [`eisemann`], in the report's order.
 pub fn all(scale: &Scale) -> Vec<Group> {
     let mut groups = Vec::new();
     for model in models(scale) {
@@ -80,8 +80,6 @@ pub fn all(scale: &Scale) -> Vec<Group> {
     }
     groups.extend(polygons(scale));
     groups.extend(levels(scale));
-    groups.extend(curtis::groups(scale));
-    groups.push(eisemann());
     groups
 }
 
@@ -188,7 +186,7 @@ fn levels(scale: &Scale) -> Vec<Group> {
 }
 
 /// Three prefilters at three map sizes, of one texture of four slices.
-fn eisemann() -> Group {
+pub fn eisemann() -> Group {
     let mut entries = Vec::new();
     for prefilter in ["mip", "sat", "n-buffer"] {
         for map in [256, 512, 1024] {

@@ -6,8 +6,10 @@ use antumbra::RectangleLight;
 use antumbra::scene::{Role, Scene};
 use antumbra::truth::{Receiver, Sampling, Tracer, visible_fraction_of_quad};
 use antumbra_harness::GBuffer;
+use fnv::FnvHasher;
 use glam::DVec3;
 use rayon::prelude::*;
+use std::hash::Hasher;
 use std::path::Path;
 
 /// The random numbers of the truth; the ray tracer that is measured takes others, since the same
@@ -24,9 +26,6 @@ pub struct Truth {
 }
 
 /// What each pixel of a G-buffer shows: position and normal, without a normal where nothing receives.
-///
-/// # Errors
-/// A sentence where the G-buffer cannot be read.
 pub fn receivers(gbuffer: &GBuffer) -> Result<Vec<Receiver>, Problem> {
     let told = |e: antumbra::Error| e.to_string();
     let positions = gbuffer.positions().map_err(told)?;
@@ -43,9 +42,6 @@ pub fn receivers(gbuffer: &GBuffer) -> Result<Vec<Receiver>, Problem> {
 
 /// What positions read from an f32 image add to a sampling: half a unit in the last place of the
 /// largest coordinate.
-///
-/// # Errors
-/// Whatever refused the sampling.
 pub fn sampling(
     rays: Result<Sampling, antumbra::Error>,
     receivers: &[Receiver],
@@ -65,9 +61,6 @@ fn card_corners(scene: &Scene) -> Result<[DVec3; 4], Problem> {
 }
 
 /// The truth by the means asked for.
-///
-/// # Errors
-/// A sentence where the scene cannot be traced.
 pub fn truth(
     scene: &Scene,
     receivers: &[Receiver],
@@ -131,39 +124,21 @@ fn load(path: &Path, pixels: usize) -> Option<Truth> {
 
 /// All that the truth depends on, but for the tracer's own code: the folder is one commit's.
 fn hash(scene: &Scene, light: &RectangleLight, receivers: &[Receiver], rays: u32) -> u64 {
-    let mut hash = Fnv::default();
-    hash.add(u64::from(rays));
+    let mut hash = FnvHasher::default();
+    hash.write_u32(rays);
     let frame = light.world_from_light().to_cols_array();
-    frame.iter().chain(&light.half_extents()).for_each(|f| hash.add(f.to_bits()));
+    frame.iter().chain(&light.half_extents()).for_each(|f| hash.write_u64(f.to_bits()));
     for instance in scene.instances.iter().filter(|i| i.role.blocks()) {
-        instance.world_from_mesh.to_cols_array().iter().for_each(|f| hash.add(f.to_bits()));
+        instance.world_from_mesh.to_cols_array().iter().for_each(|f| hash.write_u64(f.to_bits()));
         let mesh = &scene.meshes[instance.mesh];
-        mesh.indices.iter().for_each(|&i| hash.add(u64::from(i)));
-        mesh.positions.iter().flatten().for_each(|f| hash.add(u64::from(f.to_bits())));
+        mesh.indices.iter().for_each(|&i| hash.write_u32(i));
+        mesh.positions.iter().flatten().for_each(|f| hash.write_u32(f.to_bits()));
     }
     for r in receivers {
         let numbers = [r.position.to_array(), r.normal.to_array()];
-        numbers.iter().flatten().for_each(|f| hash.add(f.to_bits()));
+        numbers.iter().flatten().for_each(|f| hash.write_u64(f.to_bits()));
     }
-    hash.0
-}
-
-/// FNV-1a of 64 bits (Fowler, Noll, Vo), a word at a time.
-pub struct Fnv(pub u64);
-
-impl Default for Fnv {
-    fn default() -> Self {
-        Self(0xcbf2_9ce4_8422_2325)
-    }
-}
-
-impl Fnv {
-    /// Takes eight bytes.
-    pub fn add(&mut self, word: u64) {
-        for byte in word.to_le_bytes() {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        }
-    }
+    hash.finish()
 }
 
 #[cfg(test)]

@@ -3,8 +3,9 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
-use antumbra_bench::groups::{Group, QUICK, Scale, Stage};
+use antumbra_bench::groups::{Group, Stage};
 use antumbra_bench::measure::Bench;
+use antumbra_bench::options::{QUICK, Scale};
 use antumbra_bench::scenes::{SceneSpec, Source};
 use antumbra_bench::store::{Outcome, Row};
 use antumbra_bench::sweeps;

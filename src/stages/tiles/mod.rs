@@ -19,7 +19,7 @@
 //! hierarchy that the light's window touches, once, and 64 values written where it is lit. A pixel that finds
 //! for itself that it is lit fetches 13 depths for its normal, and four pixels the same nodes.
 //!
-//! Measured in 640×480 (`benches/tiles`): 5 to 15 ms to sort, of 55 to 5000 that the passes take without; with tiles
+//! Measured in 640×480 (`benches/techniques`): 5 to 15 ms to sort, of 55 to 5000 that the passes take without; with tiles
 //! of 4×4 and of 16×16 pixels the sums are within a tenth of each other.
 //!
 //! The order of the list is up to the device; each tile writes its own pixels alone, so the image is not.

@@ -15,9 +15,9 @@ mod page;
 mod place;
 mod range;
 
+use crate::commit::commit;
 use crate::options::Options;
 use crate::progress::duration;
-use crate::run::commit;
 use crate::techniques::{Method, method};
 use crate::truth::{mask, receivers};
 use crate::{Problem, report};
@@ -181,7 +181,7 @@ pub fn run(options: &Options) -> Result<bool, Problem> {
         &options.out,
         [
             ("envelope.md", made.markdown()),
-            ("envelope.csv", made.csv()),
+            ("envelope.csv", made.csv()?),
             ("envelope.json", made.json()?),
         ],
     )?;

@@ -3,6 +3,7 @@
 use super::{AXES, Axis, Envelope, FACTOR, FLOOR, Row, SCENES, Status, Step, TECHNIQUES};
 use crate::Problem;
 use crate::envelope::CENTRE;
+use crate::report::csv_of;
 use serde_json::json;
 
 /// The rows, and what made them.
@@ -73,30 +74,23 @@ impl Made {
     }
 
     /// Every error.
-    pub fn csv(&self) -> String {
-        let mut text = String::from(
-            "scene,axis,at,technique,mean_abs_error,pixels,penumbra_pixels,darkest,pixel_m,status\n",
-        );
-        for r in &self.rows {
-            let error = r.mean_abs_error.map_or_else(String::new, |e| e.to_string());
+    pub fn csv(&self) -> Result<String, Problem> {
+        let names =
+            "scene axis at technique mean_abs_error pixels penumbra_pixels darkest pixel_m status";
+        let head = names.split(' ').map(String::from).collect();
+        let line = |r: &Row| {
             let status = match r.status {
                 Status::Measured => "measured",
                 Status::Refused(_) => "refused",
                 Status::Failed(_) => "failed",
             };
-            text.push_str(&format!(
-                "{},{},{},{},{error},{},{},{},{},{status}\n",
-                r.scene,
-                r.axis,
-                r.at,
-                r.technique,
-                r.pixels,
-                r.penumbra_pixels,
-                r.darkest,
-                r.pixel_m
-            ));
-        }
-        text
+            let error = r.mean_abs_error.map_or_else(String::new, |e| e.to_string());
+            let [at, darkest, pixel] = [r.at, r.darkest, r.pixel_m].map(|v| v.to_string());
+            let [pixels, penumbra] = [r.pixels, r.penumbra_pixels].map(|v| v.to_string());
+            let [scene, axis, technique] = [r.scene, r.axis, r.technique].map(String::from);
+            vec![scene, axis, at, technique, error, pixels, penumbra, darkest, pixel, status.into()]
+        };
+        csv_of(std::iter::once(head).chain(self.rows.iter().map(line)))
     }
 
     /// Every error, and every envelope.

@@ -1,10 +1,13 @@
 //! An image beside what it must be.
 
 use super::cases::{HardCase, Limit, Noise};
-use super::pixels::Range;
-use super::run::SIDE;
+use super::pixels::{Range, SIDE};
 use super::techniques::Held;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// The table of each device, by its name.
+pub type Tables = BTreeMap<String, Vec<Row>>;
 
 /// What came of a row.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -22,11 +25,8 @@ pub enum Verdict {
 /// One row of the table.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Row {
-    /// What makes the case hard.
     pub limit: Limit,
-    /// The case.
     pub case: String,
-    /// The technique.
     pub technique: String,
     /// Least and largest truth.
     pub expected: [f64; 2],
@@ -34,7 +34,6 @@ pub struct Row {
     pub mean_bound: f64,
     /// What the error of the worst pixel may be.
     pub worst_bound: f64,
-    /// Why.
     pub why: String,
     /// The mean error over the pixels in shadow or penumbra.
     pub mean: f64,
@@ -44,7 +43,6 @@ pub struct Row {
     pub outside: f64,
     /// Pixels that are no number between 0 and 1.
     pub not_fractions: usize,
-    /// What came of it.
     pub verdict: Verdict,
 }
 

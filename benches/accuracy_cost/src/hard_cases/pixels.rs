@@ -14,6 +14,9 @@ use rayon::prelude::*;
 /// (`glsl/common/light_space.glsl`).
 const OWN_SLOPE: f64 = 0.3;
 
+/// The image's side in pixels.
+pub const SIDE: u32 = 32;
+
 /// The side of the soft shadow map, texels.
 pub const RECEIVER_MAP: u32 = 64;
 
@@ -24,7 +27,6 @@ pub struct Seen {
     pub position: DVec3,
     /// The floor's normal on the viewer's side.
     pub normal: DVec3,
-    /// Whether the floor blocks.
     pub blocks: bool,
 }
 
@@ -69,7 +71,6 @@ fn meet(floor: &Floor, near: DVec3, far: DVec3) -> Option<Seen> {
 /// Between which visible fractions a pixel's must be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
-    /// The truth.
     pub truth: f64,
     /// With occluders as large as they can be taken for.
     pub least: f64,
@@ -85,9 +86,6 @@ pub struct Maps {
 
 impl Maps {
     /// Those of a case, through the window that a host gives or fitted.
-    ///
-    /// # Errors
-    /// What refuses the light.
     pub fn of(case: &HardCase, windowed: bool) -> Result<Self, Problem> {
         let scene = case.set.scene(Place::HERE).map_err(|e| e.to_string())?;
         let boxes = |keep: fn(antumbra::Role) -> bool| -> Vec<(MeshBounds, DMat4)> {
@@ -159,9 +157,6 @@ fn faces_away(light: &RectangleLight, seen: &Seen) -> bool {
 }
 
 /// The ranges of a set's pixels under a light of its own; background is lit.
-///
-/// # Errors
-/// What the truth refuses.
 pub fn ranges(
     set: &Set,
     maps: &Maps,

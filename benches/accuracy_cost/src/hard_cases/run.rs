@@ -2,7 +2,7 @@
 
 use super::cases::HardCase;
 use super::judge::{Row, judge};
-use super::pixels::{self, Maps, Range, Reach};
+use super::pixels::{self, Maps, Range, Reach, SIDE};
 use super::techniques::{self, Expected, Held};
 use crate::Problem;
 use crate::scenes::scaled;
@@ -10,9 +10,6 @@ use antumbra::scene::{Instance, Role, Scene};
 use antumbra::{FramePlan, Technique};
 use antumbra_harness::{HeadlessDevice, Stage, View, technique_of};
 use std::collections::BTreeMap;
-
-/// The image's side in pixels.
-pub const SIDE: u32 = 32;
 
 /// How large a point is beside the light that it stands for.
 const POINT: f64 = 1e-6;
@@ -22,9 +19,6 @@ const GUESSED: f64 = 1.5;
 
 /// Runs all cases with all techniques, one node for as many as it serves; rows are in the order of the cases, and
 /// of the techniques within them.
-///
-/// # Errors
-/// What a device or the truth refuses, with the case.
 pub fn run(device: &HeadlessDevice, cases: &[HardCase]) -> Result<Vec<Row>, Problem> {
     let mut prepared: Vec<Prepared> = cases
         .iter()
@@ -67,9 +61,6 @@ fn told(error: antumbra::Error) -> Problem {
 }
 
 /// Settings from the words of a command line.
-///
-/// # Errors
-/// A sentence for one that is not known.
 pub fn settings(words: &str, map: u32) -> Result<Technique, Problem> {
     let mut settings = technique_of(words).map_err(told)?;
     settings.set("map", &map.to_string()).map_err(told)?;

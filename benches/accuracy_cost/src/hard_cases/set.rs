@@ -55,11 +55,9 @@ impl Shape {
 /// A shape at its place.
 #[derive(Clone, Debug)]
 pub struct Block {
-    /// What it is.
     pub shape: Shape,
     /// Shape to world; rigid.
     pub at: DMat4,
-    /// What it does.
     pub role: Role,
 }
 
@@ -125,27 +123,21 @@ pub enum Pixels {
         /// How high the eye's plane is, m.
         top: f64,
     },
-    /// By a perspective camera.
     Camera(antumbra::scene::Camera),
 }
 
 /// A whole scene, before it is scaled and moved.
 #[derive(Clone, Debug)]
 pub struct Set {
-    /// The light.
     pub light: RectangleLight,
-    /// What blocks.
     pub blocks: Vec<Block>,
-    /// What receives.
     pub floors: Vec<Floor>,
-    /// Who looks on.
     pub pixels: Pixels,
 }
 
 /// Where a whole scene goes: first scaled, then moved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
-    /// The factor.
     pub scale: f64,
     /// The way, m.
     pub offset: DVec3,
@@ -180,9 +172,6 @@ impl Place {
 
 impl Set {
     /// The scene at its place.
-    ///
-    /// # Errors
-    /// What refuses the light.
     pub fn scene(&self, place: Place) -> Result<Scene, antumbra::Error> {
         let mut scene = Scene::default();
         for (index, floor) in self.floors.iter().enumerate() {

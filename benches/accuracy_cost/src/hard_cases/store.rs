@@ -1,22 +1,15 @@
 //! What devices did, kept beside the report.
 
-use super::judge::Row;
+use super::judge::{Row, Tables};
 use super::table;
 use super::{cases, run};
 use crate::Problem;
 use antumbra_harness::HeadlessDevice;
-use std::collections::BTreeMap;
 use std::path::Path;
-
-/// The table of each device, by its name.
-pub type Tables = BTreeMap<String, Vec<Row>>;
 
 const FILE: &str = "hard_cases.json";
 
 /// The tables that a folder has; none where it has no file of them.
-///
-/// # Errors
-/// A sentence for a file that is none of these.
 pub fn read(out: &Path) -> Result<Tables, Problem> {
     let path = out.join(FILE);
     let text = match std::fs::read_to_string(&path) {
@@ -28,9 +21,6 @@ pub fn read(out: &Path) -> Result<Tables, Problem> {
 }
 
 /// Runs the table on a device, and keeps it with those of others; whether nothing is broken.
-///
-/// # Errors
-/// A sentence for what a device refuses or a file that cannot be written.
 pub fn measure(device: &HeadlessDevice, out: &Path) -> Result<bool, Problem> {
     let rows = run::run(device, &cases::all())?;
     println!("{}: {}", device.name(), table::counts(&rows));

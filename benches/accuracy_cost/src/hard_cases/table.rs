@@ -1,9 +1,8 @@
 //! The table for people: a row a case, a column a technique.
 
-use super::judge::{Row, Verdict};
-use super::store::Tables;
+use super::judge::{Row, Tables, Verdict};
 use super::techniques;
-use crate::plot::escape;
+use maud::{Markup, html};
 use std::fmt::Write as _;
 
 /// Rows of one case, in the order of the techniques.
@@ -103,33 +102,31 @@ fn of_driver(rows: &[Row], driver: &str) -> String {
 }
 
 /// The table in HTML, every row with its reason.
-pub fn html(rows: &[Row], driver: &str) -> String {
-    let mut out = format!("<p>{}: {}.</p>\n<table class=\"n\"><tr>", escape(driver), counts(rows));
-    let head = ["case", "technique", "truth", "mean", "≤", "worst", "≤", "verdict", "why"];
-    out += &head.map(|name| format!("<th>{name}</th>")).concat();
-    out += "</tr>\n";
-    for row in rows {
-        let (class, verdict, why) = match &row.verdict {
-            Verdict::Held => ("yes", "held", row.why.as_str()),
-            Verdict::Known(why) => ("part", "known fault", why.as_str()),
-            Verdict::Broken => ("no", "broken", row.why.as_str()),
-            Verdict::Mended(why) => ("no", "mended", why.as_str()),
-        };
-        let [least, most] = row.expected.map(told);
-        let cells = [
-            format!("{}: {}", row.limit, escape(&row.case)),
-            escape(&row.technique),
-            format!("{least} to {most}"),
-            told(row.mean),
-            told(row.mean_bound),
-            told(row.worst),
-            told(row.worst_bound),
-            format!("<span class=\"{class}\">{verdict}</span>"),
-            escape(why),
-        ];
-        let _ = writeln!(out, "<tr>{}</tr>", cells.map(|cell| format!("<td>{cell}</td>")).concat());
+pub fn html(rows: &[Row], driver: &str) -> Markup {
+    html! {
+        p { (driver) ": " (counts(rows)) "." }
+        table.n {
+            tr {
+                @for name in ["case", "technique", "truth", "mean", "≤", "worst", "≤", "verdict", "why"] {
+                    th { (name) }
+                }
+            }
+            @for row in rows {
+                @let (class, verdict, why) = match &row.verdict {
+                    Verdict::Held => ("yes", "held", &row.why),
+                    Verdict::Known(why) => ("part", "known fault", why),
+                    Verdict::Broken => ("no", "broken", &row.why),
+                    Verdict::Mended(why) => ("no", "mended", why),
+                };
+                tr {
+                    td { (row.limit) ": " (row.case) } td { (row.technique) }
+                    td { (told(row.expected[0])) " to " (told(row.expected[1])) }
+                    @for error in [row.mean, row.mean_bound, row.worst, row.worst_bound] { td { (told(error)) } }
+                    td { span class=(class) { (verdict) } } td { (why) }
+                }
+            }
+        }
     }
-    out + "</table>\n"
 }
 
 #[cfg(test)]
@@ -173,7 +170,7 @@ mod tests {
         ] {
             assert!(text.contains(part), "{part}: {text}");
         }
-        let page = html(&rows, "a <driver>");
+        let page = html(&rows, "a <driver>").into_string();
         assert!(page.contains("a &lt;driver&gt;") && page.contains("1 &amp; 2"), "{page}");
     }
 }

@@ -3,13 +3,9 @@
 /// One axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// What it measures, with its unit.
     pub label: String,
-    /// Logarithmic or linear.
     pub log: bool,
-    /// The least value.
     pub from: f64,
-    /// The largest value.
     pub to: f64,
 }
 

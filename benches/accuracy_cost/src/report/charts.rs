@@ -9,6 +9,7 @@ use crate::plot::{self, Axis, Chart, PALETTE, Point, Series, Style};
 use crate::store::Row;
 use crate::sweeps;
 use crate::techniques::CURVES;
+use maud::{Markup, html};
 
 const MS: &str = "time of a frame, ms";
 /// Errors below this, in percent, are drawn here: nobody sees them, and they would squeeze the rest.
@@ -82,12 +83,12 @@ fn series<'a>(
 }
 
 /// Error against time, a chart a scene and light; all on the same axes, so that they compare.
-pub fn matrix(report: &Report) -> Vec<(String, Vec<String>)> {
+pub fn matrix(report: &Report) -> Vec<(String, Vec<Markup>)> {
     let measured: Vec<&Row> = report.study(MATRIX).filter(|r| r.mean().is_some()).collect();
     let x = Axis::log(MS, measured.iter().filter_map(|r| r.ms()));
     let error = |r: &Row| Some((100.0 * r.mean()?).max(LEAST_SHOWN));
     let y = Axis::log(ERROR, measured.iter().filter_map(|r| error(r)));
-    let mut scenes: Vec<(String, Vec<String>)> = Vec::new();
+    let mut scenes: Vec<(String, Vec<Markup>)> = Vec::new();
     for (scene, light) in views(report) {
         let rows: Vec<&Row> =
             measured.iter().copied().filter(|r| r.scene == scene && r.light == light).collect();
@@ -126,17 +127,20 @@ pub fn matrix(report: &Report) -> Vec<(String, Vec<String>)> {
 }
 
 /// The legend that the matrix's charts share.
-pub fn legend(report: &Report) -> String {
+pub fn legend(report: &Report) -> Markup {
     let labels =
         once(report.study(MATRIX).filter(|r| r.mean().is_some()).map(|r| r.curve.as_str()));
-    let entry = |label: &&str| {
-        let sample = plot::sample(style(label), 1.0, 8.0);
-        let label = plot::escape(label);
-        format!("<span><svg width=\"28\" height=\"16\" fill=\"none\">{sample}</svg> {label}</span>")
-    };
-    let ring = "<span><svg width=\"28\" height=\"16\" fill=\"none\"><circle cx=\"14\" cy=\"8\" \
-                r=\"6.5\" stroke=\"#555\"/></svg> nobody is both faster and nearer to the truth</span>";
-    format!("<p class=\"legend\">{}{ring}</p>", labels.iter().map(entry).collect::<String>())
+    html! {
+        p.legend {
+            @for label in labels {
+                span { svg width="28" height="16" fill="none" { (plot::sample(style(label), 1.0, 8.0)) } " " (label) }
+            }
+            span {
+                svg width="28" height="16" fill="none" { circle cx="14" cy="8" r="6.5" stroke="#555" {} }
+                " nobody is both faster and nearer to the truth"
+            }
+        }
+    }
 }
 
 /// What a figure of the paper plots.
@@ -145,9 +149,7 @@ struct Figure {
     study: &'static str,
     /// What lies on x, and whether in logarithms.
     x: (&'static str, bool),
-    /// The curves, by name.
     curves: &'static [&'static str],
-    /// Time instead of error.
     time: bool,
     /// x squared: texels instead of a side.
     squared: bool,
@@ -191,12 +193,12 @@ const FIGURES: &[Figure] = &[
 ];
 
 /// The paper's figures: each its name and a chart an object.
-pub fn figures(report: &Report) -> Vec<(&'static str, Vec<String>)> {
+pub fn figures(report: &Report) -> Vec<(&'static str, Vec<Markup>)> {
     FIGURES.iter().map(|f| (f.name, f.charts(report))).filter(|f| !f.1.is_empty()).collect()
 }
 
 impl Figure {
-    fn charts(&self, report: &Report) -> Vec<String> {
+    fn charts(&self, report: &Report) -> Vec<Markup> {
         let value = |r: &Row| if self.time { r.ms() } else { Some(100.0 * r.mean()?) };
         let point = |r: &Row| Some((if self.squared { r.x * r.x } else { r.x }, value(r)?));
         let mine = |r: &&Row| self.curves.contains(&r.curve.as_str()) && r.mean().is_some();
@@ -256,7 +258,7 @@ mod tests {
     fn a_chart_a_view_with_its_front() {
         let charts = with(&rows(), matrix);
         assert_eq!(charts.len(), 1);
-        let svg = &charts[0].1[0];
+        let svg = &charts[0].1[0].0;
         assert!(svg.contains("card, medium light") && svg.contains("r=\"6.5\""));
         assert!(with(&rows(), figures).is_empty());
     }

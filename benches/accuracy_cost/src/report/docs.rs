@@ -49,9 +49,6 @@ pub const HARD_CASES: Page = Page {
 };
 
 /// The page with the table between its marks, which are added at the end where they are missing.
-///
-/// # Errors
-/// A sentence where only one of the marks is there.
 pub fn with_table(of: &Page, page: &str, table: &str) -> Result<String, Problem> {
     let [begin, end] = of.marks;
     let block = format!("{begin}\n{}\n{end}", table.trim());
@@ -70,9 +67,6 @@ pub fn with_table(of: &Page, page: &str, table: &str) -> Result<String, Problem>
 }
 
 /// Copies a run's table from its folder into the page under the project's root, and says where that is.
-///
-/// # Errors
-/// A sentence with the name of the file that cannot be read or written, or whose marks are wrong.
 pub fn copy(of: &Page, out: &Path, root: &Path) -> Result<PathBuf, Problem> {
     let (table, path) = (out.join(of.table), root.join(of.page));
     let told = |e: &dyn std::fmt::Display| format!("{}: {e}", path.display());

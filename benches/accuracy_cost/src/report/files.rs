@@ -85,43 +85,30 @@ pub fn json(report: &Report) -> Result<String, Problem> {
     serde_json::to_string_pretty(&whole).map_err(|e| format!("accuracy_cost.json: {e}"))
 }
 
-/// A cell by RFC 4180: in quotes where it must be.
-fn cell(value: &Value) -> String {
-    let text = match value {
+/// The rows measured and failed. Without any, the head alone.
+pub fn csv(report: &Report) -> Result<String, Problem> {
+    let text = |value: Value| match value {
         Value::Null => String::new(),
-        Value::String(text) => text.clone(),
+        Value::String(text) => text,
         other => other.to_string(),
     };
-    if text.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text
-    }
+    let line = |row: &Row| -> Vec<String> {
+        let passes = passes(row).into_iter().map(|(k, v)| format!("{k}={v:.4}"));
+        let passes = passes.collect::<Vec<_>>().join(" ");
+        columns(report, row).into_iter().map(|c| text(c.1)).chain([passes]).collect()
+    };
+    let names = columns(report, &Row::default()).into_iter().map(|c| c.0.to_string());
+    let rows = report.rows.iter().filter(|r| r.outcome != Outcome::NotThere);
+    csv_of(std::iter::once(names.chain(["passes_ms".into()]).collect()).chain(rows.map(line)))
 }
 
-/// The rows measured and failed. Without any, the head alone.
-pub fn csv(report: &Report) -> String {
-    let blank = Row {
-        study: String::new(),
-        scene: String::new(),
-        light: String::new(),
-        light_m: [0.0; 2],
-        triangles: 0,
-        extent: [0; 2],
-        technique: String::new(),
-        curve: String::new(),
-        settings: String::new(),
-        x: 0.0,
-        outcome: Outcome::NotThere,
-    };
-    let names: Vec<_> = columns(report, &blank).into_iter().map(|c| c.0).collect();
-    let mut text = format!("{},passes_ms\n", names.join(","));
-    for row in report.rows.iter().filter(|r| r.outcome != Outcome::NotThere) {
-        let cells: Vec<String> = columns(report, row).iter().map(|c| cell(&c.1)).collect();
-        let passes: Vec<String> = passes(row).iter().map(|(k, v)| format!("{k}={v:.4}")).collect();
-        text.push_str(&format!("{},{}\n", cells.join(","), passes.join(" ")));
-    }
-    text
+/// Lines of cells as CSV.
+pub fn csv_of(lines: impl IntoIterator<Item = Vec<String>>) -> Result<String, Problem> {
+    let told = |e: &dyn std::fmt::Display| format!("CSV: {e}");
+    let mut csv = csv::WriterBuilder::new().flexible(true).from_writer(Vec::new());
+    lines.into_iter().try_for_each(|line| csv.write_record(line)).map_err(|e| told(&e))?;
+    let bytes = csv.into_inner().map_err(|e| told(&e))?;
+    String::from_utf8(bytes).map_err(|e| told(&e))
 }
 
 #[cfg(test)]
@@ -131,20 +118,10 @@ mod tests {
 
     #[test]
     fn the_csv_has_the_columns_that_programs_rely_on_and_as_many_cells_in_each_row() {
-        let text = with(&rows(), csv);
+        let text = with(&rows(), csv).unwrap();
         let head = text.lines().next().unwrap();
-        for column in [
-            "scene",
-            "technique",
-            "settings",
-            "mean_abs_error",
-            "rmse",
-            "p99",
-            "worst",
-            "bias",
-            "frame_ms",
-            "driver",
-        ] {
+        let columns = "scene technique settings mean_abs_error rmse p99 worst bias frame_ms driver";
+        for column in columns.split(' ') {
             assert!(head.split(',').any(|c| c == column), "{column}");
         }
         assert_eq!(text.lines().count(), 4);

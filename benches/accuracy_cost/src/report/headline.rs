@@ -10,9 +10,7 @@ pub const GOALS: [f64; 3] = [0.05, 0.03, 0.02];
 
 /// One line: scene, light, and for each technique its times for [`GOALS`].
 pub struct Line<'a> {
-    /// The scene.
     pub scene: &'a str,
-    /// The light.
     pub light: &'a str,
     /// For each technique, the ms that each goal takes; none for never.
     pub times: Vec<[Option<f64>; 3]>,

@@ -3,7 +3,7 @@
 use super::{Report, charts, curtis, strip, tables};
 use crate::groups::MATRIX;
 use crate::hard_cases;
-use crate::plot::escape;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = "
 :root { color-scheme: light; }
@@ -34,93 +34,111 @@ svg path.f { stroke: #b03a00; stroke-dasharray: 2 3; } svg text.f { fill: #b03a0
 
 /// The whole page.
 pub fn page(report: &Report) -> String {
-    let head = report.header;
-    let mut out = format!(
-        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<meta name=\"viewport\" \
-         content=\"width=device-width\">\n<title>What accuracy costs in time</title>\n\
-         <style>{STYLE}</style></head><body>\n<h1>What accuracy costs in time</h1>\n<p><small>{} · \
-         {}×{} pixels · truth by {} rays a pixel · commit {} · <code>{}</code></small></p>\n",
-        escape(&head.driver),
-        head.extent[0],
-        head.extent[1],
-        head.truth_rays,
-        escape(&head.commit),
-        escape(&head.command)
-    );
-    out += &tables::in_short(report);
-    out += "<h2>What it looks like</h2>\n<p>Medium lights. Under each picture where it is wrong, and \
-            its mean error and time.</p>\n";
-    out += &strip::strip(report);
-    out += &matrix(report);
-    out += "<h2>Milliseconds for 5 / 3 / 2 % mean error</h2>\n<p>By the fastest of the settings that \
-            were measured; the fastest technique in bold.</p>\n";
-    out += &tables::headline(report);
-    out += "<h2>Soft shadow maps against Atty 2006</h2>\n<p>The set-up is the paper's: an object of 1 \
-            m at a height of 2 m (the tall box on the ground), a square light at 4 m facing down, \
-            pixels a regular grid on the ground, N = 128 and a light of 0.4 m where they are not \
-            swept. The card is held against its closed form, the others against traced truth.</p>\n";
-    out += &tables::wrong(report);
-    for (name, charts) in charts::figures(report) {
-        let findings = tables::findings_of(report, name);
-        out += &format!(
-            "<h3>{name}</h3>\n{findings}<div class=\"charts\">{}</div>\n",
-            charts.concat()
-        );
-    }
-    out += "<h2>Ray marching against Curtis 2009</h2>\n<p>Published times are of a GPU of their year; \
-            what compares is how they grow, and which of two is faster.</p>\n";
-    out += &curtis::tables(report);
-    out += "<h3>Kinds of levels</h3>\n";
-    out += &curtis::levels(report);
-    out += "<h2>Eisemann 2008</h2>\n<details><summary>The table</summary>\n";
-    out += &tables::eisemann(report);
-    out += "</details>\n<h2>Hard cases</h2>\n";
-    if report.hard_cases.is_empty() {
-        out += "<p>Not measured yet; <code>--hard-cases</code> does, as does a full run.</p>\n";
-    }
-    for (driver, rows) in report.hard_cases {
-        out += "<details><summary>Each with its bound and why</summary>\n";
-        out += &hard_cases::table::html(rows, driver);
-        out += "</details>\n";
-    }
-    out += "<h2>What is missing</h2>\n";
-    out += &tables::gaps(report);
-    out += &method();
-    out += "<h2>Every row</h2>\n<details><summary>Error against time in numbers; \
-            <code>accuracy_cost.csv</code> has all</summary>\n";
-    out += &tables::all(report);
-    out += "</details>\n</body></html>\n";
-    out
+    let Report { header: head, .. } = report;
+    let [width, height] = head.extent;
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width";
+                title { "What accuracy costs in time" }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                h1 { "What accuracy costs in time" }
+                p { small {
+                    (head.driver) " · " (width) "×" (height) " pixels · truth by " (head.truth_rays)
+                    " rays a pixel · commit " (head.commit) " · " code { (head.command) }
+                } }
+                (tables::in_short(report))
+                h2 { "What it looks like" }
+                p { "Medium lights. Under each picture where it is wrong, and its mean error and time." }
+                (strip::strip(report))
+                (matrix(report))
+                h2 { "Milliseconds for 5 / 3 / 2 % mean error" }
+                p { "By the fastest of the settings that were measured; the fastest technique in bold." }
+                (tables::headline(report))
+                h2 { "Soft shadow maps against Atty 2006" }
+                p {
+                    "The set-up is the paper's: an object of 1 m at a height of 2 m (the tall box on the ground), \
+                     a square light at 4 m facing down, pixels a regular grid on the ground, N = 128 and a light \
+                     of 0.4 m where they are not swept. The card is held against its closed form, the others \
+                     against traced truth."
+                }
+                (tables::wrong(report))
+                @for (name, charts) in charts::figures(report) {
+                    h3 { (name) }
+                    (tables::findings_of(report, name))
+                    div.charts { @for chart in charts { (chart) } }
+                }
+                h2 { "Ray marching against Curtis 2009" }
+                p {
+                    "Published times are of a GPU of their year; what compares is how they grow, and which of two \
+                     is faster."
+                }
+                (curtis::tables(report))
+                h3 { "Kinds of levels" }
+                (curtis::levels(report))
+                h2 { "Eisemann 2008" }
+                details { summary { "The table" } (tables::eisemann(report)) }
+                h2 { "Hard cases" }
+                @if report.hard_cases.is_empty() {
+                    p { "Not measured yet; " code { "--hard-cases" } " does, as does a full run." }
+                }
+                @for (driver, rows) in report.hard_cases {
+                    details {
+                        summary { "Each with its bound and why" }
+                        (hard_cases::table::html(rows, driver))
+                    }
+                }
+                h2 { "What is missing" }
+                (tables::gaps(report))
+                (method())
+                h2 { "Every row" }
+                details {
+                    summary { "Error against time in numbers; " code { "accuracy_cost.csv" } " has all" }
+                    (tables::all(report))
+                }
+            }
+        }
+    };
+    page.into_string()
 }
 
-fn matrix(report: &Report) -> String {
-    let mut out = String::from(
-        "<h2>Error against time</h2>\n<p>Down and left is better. Each curve is a technique whose \
-         quality sweeps (a pointer over a point shows its settings); bars are the quartiles of the \
-         time. Errors under 0.1 % are drawn as 0.1 %.</p>\n",
-    );
-    let failed = report.study(MATRIX).all(|r| r.mean().is_none());
-    if failed {
-        return out + "<p class=\"no\">Nothing was measured.</p>\n";
+fn matrix(report: &Report) -> Markup {
+    html! {
+        h2 { "Error against time" }
+        p {
+            "Down and left is better. Each curve is a technique whose quality sweeps (a pointer over a point shows \
+             its settings); bars are the quartiles of the time. Errors under 0.1 % are drawn as 0.1 %."
+        }
+        @if report.study(MATRIX).all(|r| r.mean().is_none()) {
+            p.no { "Nothing was measured." }
+        } @else {
+            (charts::legend(report))
+            @for (_, charts) in charts::matrix(report) {
+                div.charts { @for chart in charts { (chart) } }
+            }
+        }
     }
-    out += &charts::legend(report);
-    for (_, charts) in charts::matrix(report) {
-        out += &format!("<div class=\"charts\">{}</div>\n", charts.concat());
-    }
-    out
 }
 
-fn method() -> String {
-    String::from(
-        "<h2>How it was measured</h2>\n<p>The <b>visible fraction</b> of the light, by each technique \
-         and by the truth, at the same pixels of one G-buffer. <b>Mean error</b>: mean |error| over \
-         the pixels that either puts in shadow or penumbra (Atty 2006 section 5.2.1), in percent of \
-         the light. <b>FLIP</b>: mean over the whole shaded image, visibility × unshadowed \
-         irradiance. The card's truth is its closed form; the others' is traced, with random \
-         numbers that are not the measured ray tracer's. The dotted line is what the \
-         truth's own noise adds up to in a mean error.</p>\n<p><b>Time</b>: from submit to fence, \
-         G-buffer not counted, after a frame of warm-up, techniques in turns in one process, the \
-         median of all rounds. The ray tracer's is the wall time of its rays on all cores, its \
-         hierarchy built beforehand.</p>\n",
-    )
+fn method() -> Markup {
+    html! {
+        h2 { "How it was measured" }
+        p {
+            "The " b { "visible fraction" } " of the light, by each technique and by the truth, at the same pixels of \
+             one G-buffer. " b { "Mean error" } ": mean |error| over the pixels that either puts in shadow or \
+             penumbra (Atty 2006 section 5.2.1), in percent of the light. " b { "FLIP" } ": mean over the whole \
+             shaded image, visibility × unshadowed irradiance. The card's truth is its closed form; the others' is \
+             traced, with random numbers that are not the measured ray tracer's. The dotted line is what the truth's \
+             own noise adds up to in a mean error."
+        }
+        p {
+            b { "Time" } ": from submit to fence, G-buffer not counted, after a frame of warm-up, techniques in turns \
+             in one process, the median of all rounds. The ray tracer's is the wall time of its rays on all cores, \
+             its hierarchy built beforehand."
+        }
+    }
 }

@@ -10,22 +10,21 @@ mod strip;
 mod tables;
 
 use crate::Problem;
-use crate::hard_cases::store::Tables;
+use crate::hard_cases::judge::Tables;
 use crate::store::{Header, Outcome, Row};
 use std::path::Path;
 
 pub use charts::style;
+pub use files::csv_of;
 pub use headline::markdown;
 
 /// What the report is made of.
 pub struct Report<'a> {
-    /// What the run is.
     pub header: &'a Header,
     /// Every row, in the order of the groups.
     pub rows: &'a [Row],
     /// Groups that the quick run had no time for.
     pub left_out: &'a [String],
-    /// Where the pictures are.
     pub cache: &'a Path,
     /// The tables of hard cases, by the devices that they were measured on.
     pub hard_cases: &'a Tables,
@@ -45,7 +44,7 @@ impl Report<'_> {
 }
 
 /// Each of some names once, in their order.
-fn once<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+pub fn once<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     let mut seen: Vec<&str> = Vec::new();
     for name in names {
         if !seen.contains(&name) {
@@ -56,12 +55,9 @@ fn once<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
 }
 
 /// Writes every file of the report, each whole or not at all.
-///
-/// # Errors
-/// A sentence with the file that cannot be written.
 pub fn write(report: &Report, out: &Path) -> Result<(), Problem> {
     let files = [
-        ("accuracy_cost.csv", files::csv(report)),
+        ("accuracy_cost.csv", files::csv(report)?),
         ("accuracy_cost.json", files::json(report)?),
         ("headline.md", markdown(report)),
         ("index.html", html::page(report)),
@@ -70,9 +66,6 @@ pub fn write(report: &Report, out: &Path) -> Result<(), Problem> {
 }
 
 /// Writes files into a folder, each whole or not at all.
-///
-/// # Errors
-/// A sentence with the file that cannot be written.
 pub fn write_files<const N: usize>(out: &Path, files: [(&str, String); N]) -> Result<(), Problem> {
     for (name, text) in files {
         let path = out.join(name);

@@ -14,10 +14,7 @@ fn of(name: impl Into<String>, set: Set) -> HardCase {
 }
 
 pub(super) fn all() -> Vec<HardCase> {
-    let mut all = sizes();
-    all.extend(meets_occluder());
-    all.extend(meets_receiver());
-    all
+    [sizes(), meets_occluder(), meets_receiver()].concat()
 }
 
 fn sizes() -> Vec<HardCase> {

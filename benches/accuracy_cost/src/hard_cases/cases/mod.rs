@@ -22,7 +22,6 @@ const CARD: f64 = 2.0;
 /// What makes a case hard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Limit {
-    /// Its light.
     Light,
     /// What blocks it.
     Occluder,
@@ -46,26 +45,20 @@ impl fmt::Display for Limit {
 /// A technique that samples less than elsewhere, for a scene that is slow to draw.
 #[derive(Clone, Copy, Debug)]
 pub struct Noise {
-    /// The technique.
     pub technique: &'static str,
-    /// Its settings.
     pub words: &'static str,
     /// What sampling may add to a pixel.
     pub worst: f64,
     /// And in the mean.
     pub mean: f64,
-    /// Why.
     pub why: &'static str,
 }
 
 /// One hard case.
 #[derive(Clone, Debug)]
 pub struct HardCase {
-    /// What makes it hard.
     pub limit: Limit,
-    /// Its name: a few words.
     pub name: String,
-    /// Light, occluders, receivers.
     pub set: Set,
     /// What of the occluders can be known, where that is less.
     pub seen: Option<Vec<Block>>,
@@ -156,12 +149,8 @@ const SKINS: &str = "a skin ends at the receiver beside the occluder's edge; rec
 
 /// All of them.
 pub fn all() -> Vec<HardCase> {
-    let mut all = vec![HardCase::new(Limit::Light, "nothing hard", base())];
-    all.extend(lights::all());
-    all.extend(occluders::all());
-    all.extend(receivers::all());
-    all.extend(numbers::all());
-    all
+    let easy = vec![HardCase::new(Limit::Light, "nothing hard", base())];
+    [easy, lights::all(), occluders::all(), receivers::all(), numbers::all()].concat()
 }
 
 /// A rectangle that shines down, width along x and depth along z.

@@ -9,11 +9,7 @@ fn of(name: impl Into<String>) -> HardCase {
 }
 
 pub(super) fn all() -> Vec<HardCase> {
-    let mut all = scales();
-    all.extend(distances());
-    all.extend(maps());
-    all.extend(borders());
-    all
+    [scales(), distances(), maps(), borders()].concat()
 }
 
 fn scales() -> Vec<HardCase> {

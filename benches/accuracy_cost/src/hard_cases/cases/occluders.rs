@@ -10,10 +10,7 @@ fn of(name: impl Into<String>, blocks: Vec<Block>) -> HardCase {
 }
 
 pub(super) fn all() -> Vec<HardCase> {
-    let mut all = places();
-    all.extend(sizes());
-    all.extend(triangles());
-    all
+    [places(), sizes(), triangles()].concat()
 }
 
 /// Touching the receiver and the light.

@@ -7,7 +7,7 @@ use super::{
 use crate::hard_cases::set::{Floor, Pixels, Set};
 use antumbra::scene::{Camera, Role};
 use glam::{DMat4, DVec3};
-use std::f64::consts::FRAC_PI_3;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_3};
 
 fn of(name: impl Into<String>, set: Set) -> HardCase {
     HardCase::new(Limit::Receiver, name, set)
@@ -66,17 +66,11 @@ fn distances() -> Vec<HardCase> {
     let close = Floor { at: moved(0.0, LIGHT - 1e-2, 0.0), ..ground() };
     let between = sheet([0.1; 2], moved(0.0371, LIGHT - 5e-3, -0.0193));
     let at_near = Camera {
-        world_from_view: moved(0.6, 0.0101, 0.1)
-            * DMat4::from_rotation_x(-std::f64::consts::FRAC_PI_2),
+        world_from_view: moved(0.6, 0.0101, 0.1) * DMat4::from_rotation_x(-FRAC_PI_2),
         ..camera
     };
-    let aside = [
-        "soft-shadow-map",
-        "soft-shadow-map, blended",
-        "linear-light",
-        "many-lights",
-        "back-projection",
-    ];
+    let maps = ["soft-shadow-map", "soft-shadow-map, blended"];
+    let aside = [&maps[..], &["linear-light", "many-lights", "back-projection"]].concat();
     vec![
         of("nearer than every occluder", Set { floors: vec![near], ..base() }),
         HardCase {

@@ -1,92 +1,53 @@
 //! What leaving out what a scene does not call for saves, and what planning takes.
-//!
-//! `cargo bench --bench planner` (`-- --quick` for fewer rounds, names of tables for those alone).
-//! Everything is measured in one process, the things that are compared in turns, and told as medians.
 
-// A bench tells what goes wrong by panicking.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
-#[path = "../technique/mod.rs"]
-mod technique;
-
+use crate::ready::{frame_ms, median_of, settings};
+use crate::table::Table;
+use crate::{Bench, Scale};
+use antumbra::RectangleLight;
 use antumbra::frame::{Limits, plan_all};
 use antumbra::graph::{MeshList, Scope};
-use antumbra::scene::{Role, generate};
+use antumbra::scene::{Instance, Role, generate};
 use antumbra::{Description, Frame, FramePlans, Geometry, HostImage, MeshBuffers, MeshInstance};
-use antumbra::{RectangleLight, Technique};
+use antumbra_bench::stats::median;
 use antumbra_harness::cases;
-use antumbra_harness::{FrameTimes, HeadlessDevice, HeadlessOptions, Stage, View};
+use antumbra_harness::{FrameTimes, HeadlessDevice, HeadlessOptions, Invocations, Stage, View};
 use ash::vk::{self, Handle};
 use glam::{DMat4, DVec3};
 use std::time::Instant;
-use technique::table::Table;
-use technique::{Options, Study, make_tables};
 
-const STUDIES: [Study; 2] = [("pruned", pruned), ("planning", planning)];
-
-fn main() {
-    let full = Options { rounds: 15, sides: &[256] };
-    make_tables(&STUDIES, full, Options { rounds: 5, sides: &[256] });
-}
+pub const BENCH: Bench = Bench {
+    name: "planner",
+    about: "The planner: what leaving out effects saves, and what planning takes",
+    studies: &[("pruned", pruned), ("planning", planning)],
+    full: Scale { rounds: 15, sides: &[], quick: false },
+    quick: Scale { rounds: 5, sides: &[], quick: true },
+};
 
 /// The pixels of a view a side.
 const SIDE: u32 = 256;
 
-fn median(mut all: Vec<f64>) -> f64 {
-    all.sort_by(f64::total_cmp);
-    all[all.len() / 2]
-}
-
-fn settings(words: &str) -> Settings {
-    let mut settings = Technique::default();
-    for word in words.split_whitespace() {
-        match word.split_once('=').unwrap() {
-            ("technique", name) => settings.technique = name.parse().unwrap(),
-            (key, value) => settings.set(key, value).unwrap(),
-        }
-    }
-    settings
-}
-
 /// Each scene of `tests/planner`, with everything that its technique has and with what it calls for.
-fn pruned(_: &HeadlessDevice, options: &Options) -> Table {
+fn pruned(_: &HeadlessDevice, scale: &Scale) -> Table {
     let wish = HeadlessOptions { statistics: true, ..Default::default() };
     let device = HeadlessDevice::new(&wish).unwrap();
-    let columns = [
-        "passes",
-        "of",
-        "ms",
-        "of ",
-        "vertices",
-        "of  ",
-        "fragments",
-        "of   ",
-        "threads",
-        "of    ",
-    ];
+    let counted = ["passes", "of", "ms", "of ", "vertices", "of  "];
+    let columns = [&counted[..], &["fragments", "of   ", "threads", "of    "]].concat();
     let mut table = Table::new("pruned", &columns);
     for case in cases::cases() {
         let scene = &case.scene;
         let light = scene.light(None).unwrap().light;
         let view = View::map_of_ground(case.half, 8.0);
         let mut stages = [Some(1.0 / 256.0), None].map(|max_error| {
-            let keep = |i: &antumbra::scene::Instance| i.role != Role::Occluder;
-            let mut stage = Stage::new(
-                &device,
-                scene,
-                &view,
-                [SIDE; 2],
-                settings("technique=hard map=16"),
-                keep,
-            )
-            .unwrap();
+            let keep = |i: &Instance| i.role != Role::Occluder;
+            let hard = settings("hard map=16");
+            let mut stage = Stage::new(&device, scene, &view, [SIDE; 2], hard, keep).unwrap();
             stage.configure_with(settings(case.words), |d| d.max_error = max_error).unwrap();
             stage
         });
         let plans = stages.each_mut().map(|stage| stage.plan(&light, None).unwrap());
         let mut times: [Vec<FrameTimes>; 2] = Default::default();
         // The first frame compiles what the driver compiles.
-        for round in 0..=options.rounds {
+        for round in 0..=scale.rounds {
             for ((stage, plan), times) in stages.iter_mut().zip(&plans).zip(&mut times) {
                 let frame = stage.run(plan).unwrap();
                 if round > 0 {
@@ -95,25 +56,20 @@ fn pruned(_: &HeadlessDevice, options: &Options) -> Table {
             }
         }
         let counts = [0, 1].map(|i| stages[i].count(&plans[i]).unwrap());
-        let ms = times.map(|t| median(t.iter().map(|t| 1e3 * t.frame.as_secs_f64()).collect()));
-        let mut row = Vec::new();
-        let mut both = |of: [String; 2]| row.extend(of);
-        both(plans.each_ref().map(|p| p.plan.steps.len().to_string()));
-        both(ms.map(|ms| format!("{ms:.2}")));
-        let told = |of: fn(&antumbra_harness::Invocations) -> u64| {
-            counts.map(|c| c.map_or_else(|| "-".into(), |c| of(&c).to_string()))
+        let [passes, of] = plans.each_ref().map(|p| p.plan.steps.len());
+        let [ms, of_ms] = times.map(|t| median_of(&t, frame_ms));
+        let count = |of: fn(&Invocations) -> u64| {
+            counts.map(|c| c.map_or_else(|| "-".into(), |c| of(&c).to_string())).join("|")
         };
-        both(told(|c| c.vertex));
-        both(told(|c| c.fragment));
-        both(told(|c| c.compute));
+        let counts = [count(|c| c.vertex), count(|c| c.fragment), count(|c| c.compute)].join("|");
         println!("{}", case.name);
-        table.row(row);
+        table.row(format!("{passes}|{of}|{ms:.2}|{of_ms:.2}|{counts}"));
     }
     table
 }
 
 /// Frames of many meshes under many lights, of which each reaches some; no device.
-fn planning(_: &HeadlessDevice, options: &Options) -> Table {
+fn planning(_: &HeadlessDevice, scale: &Scale) -> Table {
     let columns = ["meshes", "lights", "reach m", "scene", "draws", "us a frame", "us a light"];
     let mut table = Table::new("planning", &columns);
     for (meshes, lights) in [(10, 1), (100, 4), (1000, 1), (1000, 4), (1000, 16)] {
@@ -129,22 +85,18 @@ fn planning(_: &HeadlessDevice, options: &Options) -> Table {
             let frames: Vec<Frame> = (0..lights).map(of).collect();
             let mut plans = FramePlans::new();
             let mut times = Vec::new();
-            for _ in 0..=40 * options.rounds {
+            for _ in 0..=40 * scale.rounds {
                 let started = Instant::now();
                 plan_all(&description, Limits::default(), &frames, &mut plans).unwrap();
                 times.push(1e6 * started.elapsed().as_secs_f64());
             }
             let draws = plans.all().iter().map(|p| p.meshes(MeshList::Occluders).len());
-            let us = median(times);
-            table.row(vec![
-                meshes.to_string(),
-                lights.to_string(),
-                reach.map_or_else(|| "-".into(), |r| r.to_string()),
-                if stays { "stays" } else { "moves" }.into(),
-                draws.sum::<usize>().to_string(),
-                format!("{us:.1}"),
-                format!("{:.1}", us / f64::from(lights)),
-            ]);
+            let draws: usize = draws.sum();
+            let us = median(&times);
+            let each = us / f64::from(lights);
+            let reach = reach.map_or_else(|| "-".into(), |r| r.to_string());
+            let moves = if stays { "stays" } else { "moves" };
+            table.row(format!("{meshes}|{lights}|{reach}|{moves}|{draws}|{us:.1}|{each:.1}"));
         }
     }
     table
@@ -190,6 +142,5 @@ fn frame(light: RectangleLight, meshes: &[MeshInstance]) -> Frame<'_> {
         before: Scope::FRAGMENT_SAMPLED,
         after: Scope::FRAGMENT_SAMPLED,
     };
-    let above = DMat4::from_scale(DVec3::new(50.0, 50.0, 4.0));
-    Frame { background: Some(0.0), ..Frame::new(light, above, meshes, depth) }
+    Frame::new(light, DMat4::from_scale(DVec3::new(50.0, 50.0, 4.0)), meshes, depth)
 }

@@ -1,0 +1,130 @@
+//! The groups of a run, in the order in which they are measured.
+
+use crate::curtis;
+use crate::groups::{Against, Entry, Group, MATRIX, Stage};
+use crate::options::Scale;
+use crate::scenes::{self, SceneSpec, Source};
+use crate::sweeps;
+use crate::techniques::{CURVES, value_of};
+use antumbra::auto::{CANDIDATES, Candidate};
+
+/// The study of what `auto` chooses among.
+pub const CHOICES: &str = "choices";
+
+/// The entries of error against time; the picture strip is of one light of each scene.
+fn matrix_entries(scale: &Scale, in_strip: bool) -> Vec<Entry> {
+    let mut entries = Vec::new();
+    for curve in CURVES {
+        for (i, (words, in_quick)) in curve.steps.iter().enumerate() {
+            if scale.quick && !in_quick {
+                continue;
+            }
+            entries.push(Entry {
+                technique: curve.technique,
+                curve: curve.label.into(),
+                words: (*words).into(),
+                x: value_of(words, curve.sweeps).unwrap_or(i as f64),
+                light_scale: 1.0,
+                shown: in_strip && curve.shown == Some(i),
+            });
+        }
+    }
+    entries
+}
+
+/// Every group of a run: first whether the measuring can be trusted, then what a reader looks at
+/// first.
+pub fn all(scale: &Scale, own: &[SceneSpec]) -> Vec<Group> {
+    let mut groups = vec![sweeps::wrong(scale)];
+    let matrix = |spec: &SceneSpec, light: &'static str| {
+        let entries = matrix_entries(scale, light != "small" && light != "large");
+        seen(MATRIX, scale, spec, light, entries)
+    };
+    let standard = scenes::standard();
+    groups.extend(standard.iter().map(|spec| matrix(spec, "medium")));
+    groups.extend(
+        own.iter()
+            .flat_map(|spec| spec.lights().into_iter().map(move |l| (spec, l)))
+            .map(|(spec, light)| matrix(spec, light)),
+    );
+    groups.extend(sweeps::all(scale));
+    groups.extend(curtis::groups(scale));
+    groups.push(sweeps::eisemann());
+    for light in ["large", "small"] {
+        groups.extend(standard.iter().map(|spec| matrix(spec, light)));
+    }
+    groups
+}
+
+/// The scenes that `auto` is made from beyond the report's: what touches, and what shadows itself.
+const MORE_SCENES: [&str; 4] =
+    ["spheres", "contact", "spheres on themselves", "suzanne on herself"];
+
+/// Everything that `auto` chooses among, in every view.
+pub fn choices(scale: &Scale) -> Vec<Group> {
+    let entry = |c: &Candidate| Entry {
+        technique: c.technique,
+        curve: c.technique.into(),
+        words: c.words.into(),
+        x: 0.0,
+        light_scale: 1.0,
+        shown: false,
+    };
+    let more = MORE_SCENES.map(|name| SceneSpec { name: name.into(), source: Source::Made(name) });
+    let scenes: Vec<_> = scenes::standard().into_iter().chain(more).collect();
+    let lights = scenes::LIGHTS.iter().map(|l| l.0);
+    let entries: Vec<_> = CANDIDATES.iter().map(entry).collect();
+    let of = |light| scenes.iter().map(move |spec| (spec, light));
+    let group = |(spec, light)| seen(CHOICES, scale, spec, light, entries.clone());
+    lights.flat_map(of).map(group).collect()
+}
+
+/// A group of a scene under one of its lights, by its camera.
+fn seen(
+    study: &'static str,
+    scale: &Scale,
+    spec: &SceneSpec,
+    light: &'static str,
+    entries: Vec<Entry>,
+) -> Group {
+    // The card's truth is exact in every view.
+    let exact = spec.source == Source::Made("card");
+    Group {
+        study,
+        scene: spec.name.clone(),
+        light: light.into(),
+        stage: Stage::Seen(spec.clone(), light),
+        extent: scale.view,
+        against: if exact { Against::Card } else { Against::Traced },
+        at: None,
+        entries,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::options::{FULL, QUICK};
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn keys_tell_groups_apart_and_the_quick_run_is_part_of_the_full_one() {
+        let [quick, full] = [QUICK, FULL].map(|scale| all(&scale, &[]));
+        let keys = |groups: &[Group]| groups.iter().map(Group::key).collect::<BTreeSet<_>>();
+        assert_eq!(keys(&full).len(), full.len());
+        assert_eq!(keys(&quick).len(), quick.len());
+        assert!(quick.len() < full.len());
+        for group in quick.iter().chain(&full) {
+            assert!(!group.entries.is_empty(), "{}", group.key());
+        }
+    }
+
+    #[test]
+    fn every_scene_of_the_report_can_be_made() {
+        for group in all(&QUICK, &[]) {
+            let ready = group.ready().unwrap_or_else(|e| panic!("{}: {e}", group.key()));
+            assert!(ready.scene.light(None).is_ok());
+            assert!(ready.view.clip_from_world.is_finite());
+        }
+    }
+}

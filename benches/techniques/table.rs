@@ -1,0 +1,41 @@
+//! Tables of what was measured.
+
+use std::path::{Path, PathBuf};
+
+/// A named table.
+pub struct Table {
+    name: &'static str,
+    columns: Vec<&'static str>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// An empty table; prints its head.
+    pub fn new(name: &'static str, columns: &[&'static str]) -> Self {
+        println!("\n== {name}");
+        println!("{}", columns.iter().map(|c| format!(" {c:>13}")).collect::<String>());
+        Self { name, columns: columns.to_vec(), rows: Vec::new() }
+    }
+
+    /// Adds and prints a row, whose cells are parted by bars.
+    pub fn row(&mut self, cells: impl AsRef<str>) {
+        let cells: Vec<_> = cells.as_ref().split('|').map(|c| c.trim().to_string()).collect();
+        assert_eq!(cells.len(), self.columns.len(), "{}: {cells:?}", self.name);
+        println!("{}", cells.iter().map(|c| format!(" {c:>13}")).collect::<String>());
+        self.rows.push(cells);
+    }
+
+    /// Writes the table into a folder as CSV, the driver in front; where.
+    pub fn write(&self, folder: &Path, driver: &str) -> PathBuf {
+        std::fs::create_dir_all(folder).unwrap();
+        let path = folder.join(format!("{}.csv", self.name));
+        let mut csv = csv::Writer::from_path(&path).unwrap();
+        csv.write_record(std::iter::once("driver").chain(self.columns.iter().copied())).unwrap();
+        for row in &self.rows {
+            csv.write_record(std::iter::once(driver).chain(row.iter().map(String::as_str)))
+                .unwrap();
+        }
+        csv.flush().unwrap();
+        path
+    }
+}
