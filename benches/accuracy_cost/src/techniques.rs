@@ -237,6 +237,7 @@ pub fn method(technique: &str, words: &str) -> Result<Option<Method>, Problem> {
     Ok(Some(if is_forward { Method::Forward(settings) } else { Method::Node(settings) }))
 }
 
+#[allow(clippy::needless_pass_by_value, reason = "it is what map_err gives")]
 fn told(error: antumbra::Error) -> Problem {
     error.to_string()
 }
