@@ -43,7 +43,7 @@ endif
 # ---------------------------------------------------------------------------------------------
 
 # Tests that use no device; they run once. Every other file in tests/ runs once a driver.
-NO_DEVICE := docs freshness line_truth naga_translation one_build planning reflection refusals row_limits rows untrusted
+NO_DEVICE := docs freshness house line_truth naga_translation one_build planning reflection refusals row_limits rows untrusted
 DEVICE := $(filter-out $(NO_DEVICE),$(basename $(notdir $(wildcard tests/*.rs))))
 test_once := $(CARGO) test --workspace --lib $(NO_DEVICE:%=--test %)
 # The embed example's own tests are what the node says to an engine that gets something wrong;

@@ -1,14 +1,13 @@
 //! What of a frame stays as long as light and meshes stay: which meshes matter, and how the maps look at them.
 
 use super::boxes::{Boxes, Surroundings};
-use super::doubts::Odd;
 use super::hull::Hull;
+use super::odd::Odd;
 use super::passes::PLACEHOLDER;
 use super::{Description, Frame};
 use crate::effects::{Seen, Situation};
 use crate::graph::{Need, Why};
-use crate::lent::MeshBounds;
-use crate::lent::MeshInstance;
+use crate::lent::{MeshBounds, MeshInstance};
 use crate::stages::depth_layers::{self, HostMapView, LightBox, MapView, Projection};
 use crate::stages::views::Views;
 use crate::technique::Technique;

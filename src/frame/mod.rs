@@ -13,6 +13,7 @@ mod keep;
 mod left;
 mod look;
 mod make;
+mod odd;
 mod passes;
 mod plan;
 mod plans;

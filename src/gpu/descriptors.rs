@@ -6,8 +6,8 @@
 //! view and gets the same handle for its next one.
 
 use super::host::Host;
+use super::maker::Maker;
 use super::objects::Object;
-use super::owner::Maker;
 use super::pipeline::PassObjects;
 use crate::Error;
 use crate::graph::{Graph, Pass};

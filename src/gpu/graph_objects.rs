@@ -1,8 +1,8 @@
 //! What a node has on the device for one of its settings.
 
 use super::descriptors::Descriptors;
+use super::maker::Maker;
 use super::objects::Objects;
-use super::owner::Maker;
 use super::pipeline::PassObjects;
 use crate::Error;
 use crate::frame::Description;

@@ -8,6 +8,7 @@ mod descriptors;
 mod graph_objects;
 mod host;
 mod layouts;
+mod maker;
 mod memory;
 mod node_objects;
 mod objects;

@@ -2,9 +2,10 @@
 
 use super::graph_objects::GraphObjects;
 use super::host::Host;
+use super::maker::Maker;
 use super::memory::Allocator;
 use super::objects::Object;
-use super::owner::{Made, Maker, ObjectOwner};
+use super::owner::{Made, ObjectOwner};
 use super::record::{HostDraw, Recorder};
 use super::result::ResultImage;
 use super::timing::Timing;

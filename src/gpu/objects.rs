@@ -1,8 +1,9 @@
 //! The images and buffers of a graph that are the node's own.
 
 use super::host::Host;
+use super::maker::Maker;
 use super::memory::MemoryRequest;
-use super::owner::{Made, Maker};
+use super::owner::Made;
 use crate::Error;
 use crate::graph::{Graph, Owner, Resource, ResourceId, Shape};
 use ash::vk::{self, Handle};

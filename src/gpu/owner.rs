@@ -1,8 +1,6 @@
 //! The one owner of Vulkan objects: it destroys what it keeps in the reverse order of creation.
 
-use super::host::Host;
-use super::memory::{Allocator, MemoryBlock, MemoryRequest};
-use crate::Error;
+use super::memory::MemoryBlock;
 use ash::vk;
 
 /// Declares [`Made`]: each kind of handle that an owner keeps, with the call that destroys it.
@@ -65,6 +63,11 @@ impl ObjectOwner {
         handle
     }
 
+    /// Keeps an object with the memory that is bound to it.
+    pub fn keep_bound(&mut self, handle: impl Into<Made>, block: Option<MemoryBlock>) {
+        self.0.push(Kept { made: handle.into(), block });
+    }
+
     /// The number of objects, memory apart.
     pub fn count(&self) -> usize {
         self.0.len()
@@ -87,58 +90,13 @@ impl ObjectOwner {
     }
 }
 
-/// Creates objects on a host's device, in its allocator's memory, for an owner.
-pub(crate) struct Maker<'a> {
-    pub host: &'a Host,
-    allocator: &'a mut dyn Allocator,
-    pub owner: ObjectOwner,
-}
-
-impl<'a> Maker<'a> {
-    /// Runs `make`, and returns its value and the owner of every object that it created. Where `make`
-    /// fails, those objects are destroyed: this is the only place that undoes a creation.
-    pub fn run<T>(
-        host: &'a Host,
-        allocator: &'a mut dyn Allocator,
-        make: impl FnOnce(&mut Self) -> Result<T, Error>,
-    ) -> Result<(T, ObjectOwner), Error> {
-        let mut maker = Self { host, allocator, owner: ObjectOwner::default() };
-        match make(&mut maker) {
-            Ok(value) => Ok((value, maker.owner)),
-            Err(e) => {
-                maker.owner.destroy(&host.device, |block| maker.allocator.free(block));
-                Err(e)
-            }
-        }
-    }
-
-    /// Keeps an object that has no memory of its own.
-    pub fn keep<T: Copy + Into<Made>>(&mut self, handle: T) -> T {
-        self.owner.keep(handle)
-    }
-
-    /// Keeps an image or a buffer, and allocates its memory, which the caller binds: the memory object,
-    /// and the offset in it.
-    pub fn allocate(
-        &mut self,
-        handle: impl Into<Made>,
-        request: &MemoryRequest,
-    ) -> Result<(vk::DeviceMemory, u64), Error> {
-        let (block, place) = match self.allocator.allocate(request) {
-            Ok(block) => {
-                let place = (block.memory, block.offset);
-                (Some(block), Ok(place))
-            }
-            Err(e) => (None, Err(e)),
-        };
-        self.owner.0.push(Kept { made: handle.into(), block });
-        place
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::host::Host;
+    use super::super::maker::Maker;
+    use super::super::memory::{Allocator, MemoryRequest};
     use super::*;
+    use crate::Error;
     use ash::vk::Handle;
     use std::any::Any;
     use std::cell::RefCell;

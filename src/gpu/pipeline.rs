@@ -2,8 +2,9 @@
 
 use super::host::Host;
 use super::layouts::{LayoutsInfo, PassLayouts};
+use super::maker::Maker;
 use super::objects::{Object, Objects, name};
-use super::owner::{Maker, ObjectOwner};
+use super::owner::ObjectOwner;
 use crate::Error;
 use crate::frame::Faces;
 use crate::graph::{Draw, Graph, Pass, Shape, Target, Work};

@@ -1,7 +1,8 @@
 //! The node's own visibility image: a layer for each light.
 
+use super::maker::Maker;
 use super::objects::{Backed, Object, layers, name};
-use super::owner::{Made, Maker};
+use super::owner::Made;
 use crate::Error;
 use crate::frame::Description;
 use crate::graph::{Owner, Resource, Shape};

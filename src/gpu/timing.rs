@@ -1,7 +1,7 @@
 //! Times of passes, by timestamps; read only when the host asks, never waited for.
 
 use super::host::Host;
-use super::owner::Maker;
+use super::maker::Maker;
 use crate::Error;
 use ash::vk;
 use std::sync::atomic::{AtomicU16, AtomicU32, Ordering};
