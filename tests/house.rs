@@ -4,6 +4,8 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
 use antumbra_tests::example::root;
+use antumbra_tests::headers::entry;
+use antumbra_tests::permutations::modules;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -299,4 +301,43 @@ fn unsafe_code_stands_where_vulkan_is_called() {
         }
     }
     assert!(found.is_empty(), "{}", found.join("\n"));
+}
+
+/// A pass is followed in at most so many files: its shaders with all that they include, the Rust file that declares it
+/// with its push struct and bindings, and what that imports from its own room.
+const FILES_A_PASS: usize = 9;
+
+/// The Rust files of its own room that a file imports, and those that they import.
+fn of_its_room(file: &Path, imports: &BTreeMap<PathBuf, BTreeSet<PathBuf>>) -> BTreeSet<PathBuf> {
+    let room = file.parent().unwrap();
+    let (mut found, mut next) = (BTreeSet::from([file.to_owned()]), vec![file.to_owned()]);
+    while let Some(file) = next.pop() {
+        for to in imports.get(&file).into_iter().flatten().filter(|to| to.starts_with(room)) {
+            if found.insert(to.clone()) {
+                next.push(to.clone());
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn a_pass_is_followed_in_few_files() {
+    let imports = imports();
+    // A raster's vertices and fragments are one pass; of a compute pass each permutation is followed by itself.
+    let mut passes: BTreeMap<(String, String), BTreeSet<PathBuf>> = BTreeMap::new();
+    for module in modules().into_iter().filter(|m| !m.name.starts_with("headless/")) {
+        let entry = entry(&module.file).unwrap();
+        let shared = !module.file.ends_with(".comp");
+        let which = if shared { String::new() } else { module.name.clone() };
+        let glsl = module.compile().included.into_iter().chain([module.file.clone()]);
+        let mut files: BTreeSet<PathBuf> = glsl.map(|name| Path::new("glsl").join(name)).collect();
+        files.extend(of_its_room(Path::new(&entry.declared_in), &imports));
+        for pass in entry.passes {
+            passes.entry((pass, which.clone())).or_default().extend(files.clone());
+        }
+    }
+    assert!(passes.len() > 50, "{} passes", passes.len());
+    let many: Vec<_> = passes.iter().filter(|(_, files)| files.len() > FILES_A_PASS).collect();
+    assert!(many.is_empty(), "more than {FILES_A_PASS} files:\n{many:#?}");
 }
