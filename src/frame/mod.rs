@@ -2,28 +2,28 @@
 
 mod accesses;
 mod boxes;
+mod cache;
 mod check;
 mod draws;
 mod fit;
 mod hull;
 mod images;
-mod keep;
-mod left;
-mod look;
+mod inputs;
 mod make;
 mod passes;
 mod plan;
 mod plans;
+mod reuse;
 #[cfg(test)]
 mod tests;
 
 pub use accesses::{BufferAccess, HostAccess, ImageBarrier, NodeUse};
-pub(crate) use boxes::Surroundings;
+pub(crate) use boxes::MeshBoxes;
+pub(crate) use cache::{Cache, CacheKey};
 pub use draws::{Faces, MeshDraw};
-pub(crate) use left::{Left, Whose};
-pub(crate) use look::Looker;
+pub(crate) use inputs::SituationCache;
 #[cfg(test)]
-pub(crate) use look::situation;
+pub(crate) use inputs::situation;
 pub(crate) use make::{Memory, Workspace, plan_into};
 pub use make::{plan, plan_all};
 pub(crate) use passes::all_passes;
