@@ -7,7 +7,8 @@ pub use shown::{Inspected, LayerPass, PlanObject, VisibilityImage};
 use crate::Error;
 use crate::auto::{self, Auto, Choice};
 use crate::frame::{
-    self, Description, Frame, FramePlan, FramePlans, Left, Limits, Memory, Stamp, Whose, Workspace,
+    self, Cache, CacheKey, Description, Frame, FramePlan, FramePlans, Limits, Memory, Stamp,
+    Workspace,
 };
 use crate::gpu::{Allocator, Host, HostDraw, NodeObjects, Object, Requirements, Retired};
 use crate::graph::{Draw, Graph, Layer, Owner, Pass, Shape, Target, Work};
@@ -33,8 +34,8 @@ pub struct ShadowNode {
     kinds: Vec<&'static str>,
     /// What plans for these objects carry.
     stamp: Stamp,
-    /// What recorded frames have left.
-    left: Mutex<Left>,
+    /// What the node still holds from recorded frames.
+    cache: Mutex<Cache>,
 }
 
 /// The next [`Stamp`]: no two nodes or sizes share one.
@@ -61,17 +62,18 @@ impl ShadowNode {
         requirements.met()?;
         description.check()?;
         requirements.allow(&description)?;
-        let limits = Limits { snap: 0.5f32.powi(requirements.sub_pixel_bits.min(16) as i32) };
+        let limits =
+            Limits { subpixel_step: 0.5f32.powi(requirements.sub_pixel_bits.min(16) as i32) };
         let graphs = graphs(&description, limits)?;
         let objects = NodeObjects::new(&host, allocator, &graphs, &description)?;
         let kinds = graphs.iter().flat_map(|graph| graph.kinds().map(|p| p.name)).collect();
-        let left = Mutex::new(Left::new(description.lights, graphs.len()));
+        let cache = Mutex::new(Cache::new(description.lights, graphs.len()));
         let chosen = chosen(&description)?;
-        Ok(Self { host, description, chosen, limits, objects, kinds, stamp: next_stamp(), left })
+        Ok(Self { host, description, chosen, limits, objects, kinds, stamp: next_stamp(), cache })
     }
 
-    fn left(&self) -> MutexGuard<'_, Left> {
-        self.left.lock().unwrap_or_else(PoisonError::into_inner)
+    fn cache(&self) -> MutexGuard<'_, Cache> {
+        self.cache.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// What the node was made for.
@@ -110,8 +112,8 @@ impl ShadowNode {
         memory: &mut Memory,
         plan: &mut FramePlan,
     ) -> Result<(), Error> {
-        let whose = Whose { light: frame.light_index, settings: frame.technique_index };
-        let kept = self.left().for_plan(whose);
+        let key = CacheKey { light: frame.light_index, technique: frame.technique_index };
+        let cached = self.cache().for_plan(key);
         let chosen;
         let description = match self.chosen.get(frame.technique_index as usize) {
             Some(description) => description,
@@ -121,8 +123,8 @@ impl ShadowNode {
                 &*chosen
             }
         };
-        frame::plan_into(description, self.limits, frame, &kept, workspace, memory, plan)?;
-        self.left().planned(whose, &plan.keeping);
+        frame::plan_into(description, self.limits, frame, &cached, workspace, memory, plan)?;
+        self.cache().planned(key, &plan.reuse);
         plan.stamp(self.stamp, self.objects.result().0);
         Ok(())
     }
@@ -164,15 +166,15 @@ impl ShadowNode {
         if cmd == vk::CommandBuffer::null() {
             return Err(Error::Frame("the command buffer to record into is a null handle".into()));
         }
-        let mut left = self.left();
-        if !left.agrees(plan.whose(), &plan.keeping) {
+        let mut cache = self.cache();
+        if !cache.agrees(plan.cache_key(), &plan.reuse) {
             return Err(Error::Frame(
                 "this plan counts on maps or pixels that a frame recorded since has replaced; plan the frame again"
                     .into(),
             ));
         }
-        left.recorded(plan.whose(), &plan.keeping);
-        drop(left);
+        cache.recorded(plan.cache_key(), &plan.reuse);
+        drop(cache);
         self.objects.record(&self.host, cmd, plan, draw);
         Ok(())
     }
@@ -234,7 +236,7 @@ impl ShadowNode {
         let old = self.objects.resize(&self.host, allocator, &graphs, &description)?;
         (self.description, self.chosen) = (description, chosen);
         self.stamp = next_stamp();
-        self.left().clear();
+        self.cache().clear();
         Ok(Retired::new(self.host.clone(), old))
     }
 

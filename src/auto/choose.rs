@@ -15,7 +15,7 @@ use super::table::Table;
 use super::{Budget, CANDIDATES, Choice, Costs, Likeness};
 use crate::Error;
 use crate::effects::Situation;
-use crate::frame::{Description, Frame, Looker, Surroundings};
+use crate::frame::{Description, Frame, MeshBoxes, SituationCache};
 use crate::technique::Technique;
 use crate::techniques::room::HostDraws;
 
@@ -37,7 +37,7 @@ const POLYGON: f64 = 0.01;
 #[derive(Clone, Debug)]
 struct Held {
     /// What its boxes tell.
-    looker: Looker,
+    situation: SituationCache,
     candidate: Option<usize>,
     /// For how many frames another one would have been better.
     waited: u32,
@@ -51,7 +51,7 @@ struct Held {
 impl Default for Held {
     fn default() -> Self {
         Self {
-            looker: Looker::default(),
+            situation: SituationCache::default(),
             candidate: None,
             waited: 0,
             worst: [0.0; CANDIDATES.len()],
@@ -82,13 +82,13 @@ pub struct Auto {
     budget: Budget,
     costs: Costs,
     held: Vec<Held>,
-    surroundings: Surroundings,
+    mesh_boxes: MeshBoxes,
 }
 
 impl Auto {
     /// By a budget, on a device of these costs.
     pub fn new(budget: Budget, costs: Costs) -> Self {
-        Self { budget, costs, held: Vec::new(), surroundings: Surroundings::default() }
+        Self { budget, costs, held: Vec::new(), mesh_boxes: MeshBoxes::default() }
     }
 
     /// What is known of the device, to be kept.
@@ -135,10 +135,10 @@ impl Auto {
         frames: &[Frame],
     ) -> Result<Vec<Choice>, Error> {
         self.held.resize(frames.len(), Held::default());
-        self.surroundings.forget();
+        self.mesh_boxes.forget();
         let lights = self.held.iter_mut().zip(frames);
         let situations: Vec<_> = lights
-            .map(|(held, frame)| held.looker.situation(description, frame, &mut self.surroundings))
+            .map(|(held, frame)| held.situation.situation(description, frame, &mut self.mesh_boxes))
             .collect::<Result<_, _>>()?;
         let sound = self.budget.sound();
         let pixels = f64::from(description.extent[0]) * f64::from(description.extent[1]);

@@ -109,14 +109,14 @@ impl Boxes {
 
 /// Boxes that are placed once for all lights whose frames lend the same list of meshes at the same time.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Surroundings {
+pub(crate) struct MeshBoxes {
     boxes: Boxes,
     near: Vec<u32>,
     /// Where the list lies, and how long it is.
     list: Option<(usize, usize)>,
 }
 
-impl Surroundings {
+impl MeshBoxes {
     /// Forgets which list was placed: the next one lies where it may, and is another.
     pub fn forget(&mut self) {
         self.list = None;

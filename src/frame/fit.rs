@@ -1,6 +1,6 @@
 //! What of a frame stays as long as light and meshes stay: which meshes matter, and how the maps look at them.
 
-use super::boxes::{Boxes, Surroundings};
+use super::boxes::{Boxes, MeshBoxes};
 use super::hull::Hull;
 use super::odd::Odd;
 use super::passes::PLACEHOLDER;
@@ -151,7 +151,7 @@ impl Fit {
         description: &Description,
         request: &FitRequest,
         frame: &Frame,
-        surroundings: &mut Surroundings,
+        mesh_boxes: &mut MeshBoxes,
     ) -> Result<(), Error> {
         let of = Inputs::of(request, frame);
         if of.is_some() && self.of == of {
@@ -160,7 +160,7 @@ impl Fit {
         self.of = None;
         self.views = None;
         self.number += 1;
-        let (boxes, near) = surroundings.of(frame.meshes);
+        let (boxes, near) = mesh_boxes.of(frame.meshes);
         frame.check_meshes(boxes, &request.takes)?;
         self.make(description, &request.maps, frame, boxes, near)?;
         self.of = of;

@@ -1,13 +1,13 @@
 //! From one frame to what it records.
 
 use super::accesses::{HostAccess, NodeUse};
-use super::boxes::Surroundings;
+use super::boxes::MeshBoxes;
 use super::doubts::Sight;
 use super::fit::{Fit, FitRequest};
-use super::keep::{self, Kept, Revisions, Ties};
-use super::look::look;
+use super::inputs::frame_inputs;
 use super::passes::{Ids, Limits, build};
 use super::plan::{FramePlan, Stamp};
+use super::reuse::{self, Cached, CameraDependence, Revisions};
 use super::{Description, Frame, FramePlans};
 use crate::Error;
 use crate::graph::{self, Border, Compiler, Draw, Graph, MeshList, ResourceId, Work};
@@ -22,16 +22,16 @@ pub(crate) struct Workspace {
     graph: Graph,
     compiler: Compiler,
     borders: Vec<Border>,
-    pub surroundings: Surroundings,
+    pub mesh_boxes: MeshBoxes,
 }
 
 /// What is remembered of a light from frame to frame.
 #[derive(Debug, Default)]
 pub(crate) struct Memory {
     fit: Fit,
-    ties: Ties,
+    camera: CameraDependence,
     /// What the rows of its last plan came of.
-    rows: Option<(Description, Shape)>,
+    built: Option<(Description, Shape)>,
     /// What its last draws came of: of which look at the meshes, from where.
     drawn: Option<(u64, Clips, Clips)>,
 }
@@ -44,7 +44,7 @@ type Clips = SmallVec<[DMat4; 1]>;
 struct Shape {
     needs: u8,
     views: usize,
-    kept: [bool; 3],
+    reuses: [bool; 3],
 }
 
 /// Plans one frame: fits the maps, decides what runs, derives the barriers. Pure: no Vulkan calls.
@@ -55,7 +55,7 @@ struct Shape {
 /// usage or layout than the description and the passes need, images or strides that the description
 /// does not have, a reach that is not above 0, or a light, settings or a frame slot beyond those of the description.
 pub fn plan(description: &Description, limits: Limits, frame: &Frame) -> Result<FramePlan, Error> {
-    plan_with(description, limits, frame, &Kept::default())
+    plan_with(description, limits, frame, &Cached::default())
 }
 
 /// As [`plan`], of several lights, in memory that is kept: see [`ShadowNode::plan_all`](crate::ShadowNode::plan_all).
@@ -69,11 +69,11 @@ pub fn plan_all(
     plans: &mut FramePlans,
 ) -> Result<(), Error> {
     plans.begin();
-    let kept = Kept::default();
+    let cached = Cached::default();
     frames.iter().try_for_each(|frame| {
         let description = &*description.choosing(frame.technique_index)?;
         plans.add(|workspace, memory, plan| {
-            plan_into(description, limits, frame, &kept, workspace, memory, plan)
+            plan_into(description, limits, frame, &cached, workspace, memory, plan)
         })
     })
 }
@@ -83,12 +83,12 @@ pub(crate) fn plan_with(
     description: &Description,
     limits: Limits,
     frame: &Frame,
-    kept: &Kept,
+    cached: &Cached,
 ) -> Result<FramePlan, Error> {
     let description = &*description.choosing(frame.technique_index)?;
     let (mut plan, mut memory) = (FramePlan::default(), Memory::default());
     let workspace = &mut Workspace::default();
-    plan_into(description, limits, frame, kept, workspace, &mut memory, &mut plan)?;
+    plan_into(description, limits, frame, cached, workspace, &mut memory, &mut plan)?;
     Ok(plan)
 }
 
@@ -98,7 +98,7 @@ pub(crate) fn plan_into(
     description: &Description,
     limits: Limits,
     frame: &Frame,
-    kept: &Kept,
+    cached: &Cached,
     workspace: &mut Workspace,
     memory: &mut Memory,
     plan: &mut FramePlan,
@@ -109,24 +109,26 @@ pub(crate) fn plan_into(
     frame.check(description, room)?;
     let (light, outline) = room.turned(&frame.light, frame.outline);
     let frame = &Frame { light, outline: outline.as_deref(), ..*frame };
-    let Workspace { graph, compiler, borders, surroundings } = workspace;
-    let Memory { fit, ties, rows, drawn } = memory;
-    fit.update(description, &FitRequest::of(&description.technique), frame, surroundings)?;
-    let (looks, verdicts) = look(description, frame, fit)?;
+    let Workspace { graph, compiler, borders, mesh_boxes } = workspace;
+    let Memory { fit, camera, built, drawn } = memory;
+    fit.update(description, &FitRequest::of(&description.technique), frame, mesh_boxes)?;
+    let (inputs, verdicts) = frame_inputs(description, frame, fit)?;
     graph.clear();
-    let ids = build(graph, description, limits, &light, &looks);
-    let occluder_clips = looks.occluder_clips();
-    let (receiver_view, views, needs) = (looks.receivers, looks.views.count(), looks.needs.bits());
+    let ids = build(graph, description, limits, &light, &inputs);
+    let occluder_clips = inputs.occluder_clips();
+    let (receiver_view, views, needs) =
+        (inputs.receivers, inputs.views.count(), inputs.needs.bits());
+    let lit = inputs.needs.unshadowed().is_some();
     // Which rows there are is told by description and needs, before it is told what of them is kept.
-    let before = rows
+    let before = built
         .take()
         .filter(|(of, shape)| of == description && (shape.needs, shape.views) == (needs, views));
     if before.is_none() {
-        ties.find(graph, ids.pixels());
+        camera.find(graph, ids.pixels());
     }
     let revisions = Revisions { scene: frame.revision, view: frame.view_revision };
-    plan.keeping = keep::apply(graph, ties, &frame.visibility, revisions, kept);
-    let shape = Shape { needs, views, kept: plan.keeping.uses() };
+    plan.reuse = reuse::apply(graph, camera, lit, &frame.visibility, revisions, cached);
+    let shape = Shape { needs, views, reuses: plan.reuse.uses() };
     plan.imports.clear();
     plan.imports.extend(imports(&ids, frame));
     fill_borders(borders, &plan.imports, ids.visibility, frame);
@@ -137,7 +139,7 @@ pub(crate) fn plan_into(
     graph.clear();
     graph.reserve_for(&plan.plan.graph);
     let of = before.map_or_else(|| description.clone(), |(of, _)| of);
-    *rows = Some((of, shape));
+    *built = Some((of, shape));
     plan.accesses.clear();
     for border in &*borders {
         plan.accesses.push(access_of(&plan.plan, border, &plan.imports, frame.light_index));

@@ -2,6 +2,7 @@
 
 mod accesses;
 mod boxes;
+mod cache;
 mod camera;
 mod check;
 mod doubts;
@@ -9,25 +10,24 @@ mod draws;
 mod fit;
 mod hull;
 mod images;
-mod keep;
-mod left;
-mod look;
+mod inputs;
 mod make;
 mod odd;
 mod passes;
 mod plan;
 mod plans;
+mod reuse;
 #[cfg(test)]
 mod tests;
 
 pub use accesses::{BufferAccess, HostAccess, ImageBarrier, NodeUse};
-pub(crate) use boxes::Surroundings;
+pub(crate) use boxes::MeshBoxes;
+pub(crate) use cache::{Cache, CacheKey};
 pub use doubts::Doubt;
 pub use draws::{Faces, MeshDraw};
-pub(crate) use left::{Left, Whose};
-pub(crate) use look::Looker;
+pub(crate) use inputs::SituationCache;
 #[cfg(test)]
-pub(crate) use look::situation;
+pub(crate) use inputs::situation;
 pub(crate) use make::{Memory, Workspace, plan_into};
 pub use make::{plan, plan_all};
 pub(crate) use passes::all_passes;

@@ -16,13 +16,13 @@ use smallvec::{SmallVec, smallvec};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     /// 2^−(sub-pixel bits): how far rasters move a vertex, in texels.
-    pub snap: f32,
+    pub subpixel_step: f32,
 }
 
 impl Default for Limits {
     /// The least that Vulkan guarantees: 4 sub-pixel bits.
     fn default() -> Self {
-        Self { snap: 1.0 / 16.0 }
+        Self { subpixel_step: 1.0 / 16.0 }
     }
 }
 
@@ -47,7 +47,7 @@ pub(super) const PLACEHOLDER: MapView =
     MapView { eye: Eye::Behind(0.0), min: [-1.0; 2], max: [1.0; 2], near: 1.0, far: 2.0, side: 16 };
 
 /// What the passes depend on, beyond the description.
-pub(super) struct Looks<'a> {
+pub(super) struct FrameInputs<'a> {
     /// How the occluder map looks at the scene.
     pub occluders: MapView,
     /// The technique's own views; none where nothing can be shadowed.
@@ -101,6 +101,14 @@ impl Needs {
         each.fold(0, |bits, (i, need)| bits | u8::from(need.is_yes()) << i)
     }
 
+    /// Why every pixel is lit; `None` where a technique or a hard shadow writes the pixels.
+    pub fn unshadowed(&self) -> Option<&Why> {
+        match (&self.technique, &self.hard) {
+            (Need::No(why), Need::No(_)) => Some(why),
+            _ => None,
+        }
+    }
+
     /// By whether anything can be shadowed, and what of it matters.
     pub fn of(description: &Description, need: Need<Why>, verdicts: &Verdicts) -> Self {
         let mut needs = Self::all(&need);
@@ -132,7 +140,7 @@ impl Needs {
     }
 }
 
-impl Looks<'_> {
+impl FrameInputs<'_> {
     /// Light space to the clip space of each view of the occluders.
     pub fn occluder_clips(&self) -> SmallVec<[DMat4; 1]> {
         match self.views.count() {
@@ -146,7 +154,7 @@ impl Looks<'_> {
 pub(crate) fn all_passes(description: &Description, limits: Limits) -> Graph {
     let room = description.technique.room();
     let view = MapView { side: room.maps().side, ..PLACEHOLDER };
-    let looks = Looks {
+    let frame = FrameInputs {
         occluders: view,
         views: &room.most_views(view),
         host_maps: description.occluder_maps.map(|_| HostMapView {
@@ -166,7 +174,7 @@ pub(crate) fn all_passes(description: &Description, limits: Limits) -> Graph {
         background: 0.0,
     };
     let mut graph = Graph::new();
-    build(&mut graph, description, limits, &RectangleLight::unit(), &looks);
+    build(&mut graph, description, limits, &RectangleLight::unit(), &frame);
     graph
 }
 
@@ -182,19 +190,19 @@ pub(super) fn build(
     description: &Description,
     limits: Limits,
     light: &RectangleLight,
-    looks: &Looks,
+    frame: &FrameInputs,
 ) -> Ids {
     let room = description.technique.room();
     let maps = room.maps();
     let ids = declare_host_images(graph, description);
     let Ids { depth, mask, occluder_maps: [front, back], light_texture, visibility } = ids;
     let extent = description.extent;
-    let Looks { light_from_ndc, background, .. } = *looks;
+    let FrameInputs { light_from_ndc, background, .. } = *frame;
     let gbuffer = GBuffer { depth, mask, extent, light_from_ndc, background };
-    let needs = &looks.needs;
+    let needs = &frame.needs;
     let [need, hard, front_need, back_need, inner, filter] = &needs.each().map(|n| graph.need(n));
     let layers = LightLayers {
-        occluders: match (front, &looks.host_maps) {
+        occluders: match (front, &frame.host_maps) {
             (Some(front), Some(camera)) => depth_layers::Occluders::Maps { front, back, camera },
             _ => depth_layers::Occluders::Meshes,
         },
@@ -208,18 +216,18 @@ pub(super) fn build(
     let color = description.has_color();
     let inputs = PassInputs {
         light,
-        occluders: &looks.occluders,
-        receivers: &looks.receivers,
-        views: looks.views,
+        occluders: &frame.occluders,
+        receivers: &frame.receivers,
+        views: frame.views,
         layers: &layers,
         gbuffer: &gbuffer,
         visibility,
-        ndc_from_light: looks.ndc_from_light,
-        noise: looks.noise,
+        ndc_from_light: frame.ndc_from_light,
+        noise: frame.noise,
         light_texture,
         color,
-        snap: limits.snap,
-        depth_error: looks.host_maps.map_or(0.0, |m| m.error),
+        snap: limits.subpixel_step,
+        depth_error: frame.host_maps.map_or(0.0, |m| m.error),
         need,
         filter,
     };
@@ -228,9 +236,9 @@ pub(super) fn build(
         let front = nearest.unwrap_or_else(|| depth_layers::hard(graph, maps.side, hard));
         hard::declare(graph, front, Filter::One, hard, &inputs);
     }
-    let lit = match (&needs.technique, &needs.hard) {
-        (Need::No(why), Need::No(_)) => Need::Yes(*why),
-        _ => Need::No("something can be shadowed, and is written elsewhere".into()),
+    let lit = match needs.unshadowed() {
+        Some(why) => Need::Yes(*why),
+        None => Need::No("something can be shadowed, and is written elsewhere".into()),
     };
     let lit = graph.need(&lit);
     visibility::lit(graph, visibility, extent, color, lit);

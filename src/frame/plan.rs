@@ -1,10 +1,10 @@
 //! What one frame records.
 
 use super::accesses::{self, BufferAccess, HostAccess, ImageBarrier, NodeUse};
+use super::cache::CacheKey;
 use super::doubts::{Doubt, Sight};
 use super::draws::{DrawList, MeshDraw};
-use super::keep::Keeping;
-use super::left::Whose;
+use super::reuse::Reuse;
 use crate::effects::Verdicts;
 use crate::graph::{self, MeshList, ResourceId};
 use crate::lent::{Geometry, HostImage};
@@ -33,7 +33,7 @@ pub struct FramePlan {
     /// Which of the description's settings it uses.
     pub technique_index: u32,
     pub(crate) stamp: Stamp,
-    pub(crate) keeping: Keeping,
+    pub(crate) reuse: Reuse,
     pub(super) sight: Sight,
     pub(super) accesses: Vec<HostAccess>,
     pub(super) occluders: DrawList,
@@ -52,7 +52,7 @@ impl Default for FramePlan {
             light_index: 0,
             technique_index: 0,
             stamp: Stamp::default(),
-            keeping: Keeping::default(),
+            reuse: Reuse::default(),
             sight: Sight::default(),
             accesses: Vec::new(),
             occluders: DrawList::default(),
@@ -133,9 +133,9 @@ impl FramePlan {
         all.any(|d| matches!(d.mesh.geometry, Geometry::HostDrawn(_)))
     }
 
-    /// Whose pixels it writes, by which settings.
-    pub(crate) fn whose(&self) -> Whose {
-        Whose { light: self.light_index, settings: self.technique_index }
+    /// Where its results lie in the node's cache.
+    pub(crate) fn cache_key(&self) -> CacheKey {
+        CacheKey { light: self.light_index, technique: self.technique_index }
     }
 
     /// Puts the node's mark on it, and the image that the node owns.

@@ -32,7 +32,7 @@ impl FramePlans {
     /// Forgets the frame before, but not what was learnt from it.
     pub(crate) fn begin(&mut self) {
         self.count = 0;
-        self.workspace.surroundings.forget();
+        self.workspace.mesh_boxes.forget();
     }
 
     /// Adds a plan that `make` fills.

@@ -1,7 +1,7 @@
 //! Several lights of one node: what each plan counts on and leaves, and which layer it names.
 
 use super::*;
-use crate::frame::Left;
+use crate::frame::Cache;
 use crate::frame::make::plan_with;
 
 /// Rows of a soft shadow map, and those of them that look at pixels.
@@ -11,30 +11,30 @@ const PIXELS: usize = 3;
 /// What a node does with its plans, without a device.
 struct Node {
     description: Description,
-    left: Left,
+    cache: Cache,
 }
 
 impl Node {
     fn new(lights: u32, other_techniques: Vec<Technique>) -> Self {
-        let left = Left::new(lights, 1 + other_techniques.len());
+        let cache = Cache::new(lights, 1 + other_techniques.len());
         let description = Description { lights, other_techniques, ..description(&[]) };
         description.check().unwrap();
-        Self { description, left }
+        Self { description, cache }
     }
 
     fn plan(&mut self, frame: &Frame) -> FramePlan {
-        let whose = Whose { light: frame.light_index, settings: frame.technique_index };
-        let kept = self.left.for_plan(whose);
-        let plan = plan_with(&self.description, Limits::default(), frame, &kept).unwrap();
-        self.left.planned(whose, &plan.keeping);
+        let key = CacheKey { light: frame.light_index, technique: frame.technique_index };
+        let cached = self.cache.for_plan(key);
+        let plan = plan_with(&self.description, Limits::default(), frame, &cached).unwrap();
+        self.cache.planned(key, &plan.reuse);
         plan
     }
 
     /// Whether the node takes it.
     fn record(&mut self, plan: &FramePlan) -> bool {
-        let agrees = self.left.agrees(plan.whose(), &plan.keeping);
+        let agrees = self.cache.agrees(plan.cache_key(), &plan.reuse);
         if agrees {
-            self.left.recorded(plan.whose(), &plan.keeping);
+            self.cache.recorded(plan.cache_key(), &plan.reuse);
         }
         agrees
     }

@@ -1,9 +1,9 @@
 //! What a frame's boxes and its camera tell: what of the technique is needed.
 
-use super::boxes::Surroundings;
+use super::boxes::MeshBoxes;
 use super::check::bad;
 use super::fit::{Fit, FitRequest};
-use super::passes::{Looks, Needs, PLACEHOLDER};
+use super::passes::{FrameInputs, Needs, PLACEHOLDER};
 use super::{Description, Frame};
 use crate::Error;
 use crate::effects::{Camera, Situation, Verdicts};
@@ -11,14 +11,14 @@ use crate::stages::views::Views;
 use crate::techniques::room::{Maps, Takes};
 
 /// What is needed of a frame whose meshes are fitted, and the views of the passes that run.
-pub(super) fn look<'a>(
+pub(super) fn frame_inputs<'a>(
     description: &Description,
     frame: &Frame,
     fit: &'a mut Fit,
-) -> Result<(Looks<'a>, Verdicts), Error> {
+) -> Result<(FrameInputs<'a>, Verdicts), Error> {
     let room = description.technique.room();
     let texture = description.light_texture.is_some();
-    let situation = seen(fit, frame, description.extent);
+    let situation = situation_seen(fit, frame, description.extent);
     let verdicts = Verdicts::judge(situation, room, description.max_error, texture);
     let needs = Needs::of(description, fit.need, &verdicts);
     let is_soft = needs.technique.is_yes();
@@ -37,7 +37,7 @@ pub(super) fn look<'a>(
         true => fit.views(room, frame)?,
         false => &Views::Centre,
     };
-    let looks = Looks {
+    let inputs = FrameInputs {
         views,
         occluders: behind.filter(|_| is_soft).or(centre).unwrap_or(PLACEHOLDER),
         host_maps,
@@ -48,11 +48,11 @@ pub(super) fn look<'a>(
         ndc_from_light: from_light.to_cols_array(),
         background: frame.far_depth(),
     };
-    Ok((looks, verdicts))
+    Ok((inputs, verdicts))
 }
 
 /// A fit's situation with what the frame's pixels are to it; none where nothing can be shadowed.
-fn seen(fit: &Fit, frame: &Frame, extent: [u32; 2]) -> Option<Situation> {
+fn situation_seen(fit: &Fit, frame: &Frame, extent: [u32; 2]) -> Option<Situation> {
     let (Some(centre), Some(shadowed)) = (&fit.centre, &fit.shadowed) else { return None };
     let camera = Camera {
         light_from_world: fit.light_from_world,
@@ -69,13 +69,13 @@ const SITUATION_MAP: u32 = 256;
 /// What a refusal calls the technique where none is chosen yet.
 const ANY: &str = "auto";
 
-/// Looks at a light's frames for what no technique changes, in the same memory from frame to frame.
+/// FrameInputs at a light's frames for what no technique changes, in the same memory from frame to frame.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Looker {
+pub(crate) struct SituationCache {
     fit: Fit,
 }
 
-impl Looker {
+impl SituationCache {
     /// What a frame's boxes tell of it, as a soft shadow map would see it; none where nothing can be shadowed.
     ///
     /// # Errors
@@ -84,7 +84,7 @@ impl Looker {
         &mut self,
         description: &Description,
         frame: &Frame,
-        surroundings: &mut Surroundings,
+        mesh_boxes: &mut MeshBoxes,
     ) -> Result<Option<Situation>, Error> {
         // What a technique takes is checked once it is chosen; the situation is seen from the light's centre.
         let takes = Takes { line: true, outline: true, ..Takes::RECTANGLES };
@@ -95,12 +95,12 @@ impl Looker {
         let request = FitRequest { technique: None, takes, maps: Maps::front(side) };
         let frame = Frame { outline: None, ..*frame };
         frame.check_numbers(description, ANY, &takes)?;
-        self.fit.update(description, &request, &frame, surroundings)?;
-        Ok(seen(&self.fit, &frame, description.extent))
+        self.fit.update(description, &request, &frame, mesh_boxes)?;
+        Ok(situation_seen(&self.fit, &frame, description.extent))
     }
 }
 
-/// As [`Looker::situation`], of one frame alone.
+/// As [`SituationCache::situation`], of one frame alone.
 ///
 /// # Errors
 /// As that.
@@ -109,5 +109,5 @@ pub(crate) fn situation(
     description: &Description,
     frame: &Frame,
 ) -> Result<Option<Situation>, Error> {
-    Looker::default().situation(description, frame, &mut Surroundings::default())
+    SituationCache::default().situation(description, frame, &mut MeshBoxes::default())
 }

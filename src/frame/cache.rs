@@ -1,0 +1,116 @@
+//! What the node still holds from recorded frames: pixels light by light, maps technique by technique.
+//!
+//! ```text
+//!              technique 0   technique 1      a light has a layer of the visibility image;
+//!   light 0  ┐                                a technique has maps, which show what the last
+//!   light 1  ├──  maps          maps          of its lights has drawn
+//!   light 2  ┘
+//! ```
+//! A host may plan every light before it records the first. A plan that reuses a light's maps would then be refused,
+//! because the plans before it draw over them: so no plan reuses maps while another light's plan that draws them is
+//! still to be recorded.
+
+use super::reuse::{self, Cached, Reuse};
+
+/// Where a frame's results lie in the cache: the light picks the layer, the technique the maps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct CacheKey {
+    pub light: u32,
+    pub technique: u32,
+}
+
+/// The state of a light's layer of the visibility image.
+#[derive(Clone, Copy, Debug, Default)]
+struct Pixels {
+    /// The technique that wrote it, and the scene and view revision that it shows.
+    written: Option<(u32, (u64, u64))>,
+    /// Whether every pixel is lit.
+    lit: bool,
+}
+
+/// The state of a technique's maps.
+#[derive(Clone, Copy, Debug, Default)]
+struct Maps {
+    /// The light that drew them, and what they show.
+    drawn: Option<(u32, reuse::Maps)>,
+    /// A bit for each light with a plan that draws them and is not recorded yet.
+    planned: u64,
+}
+
+/// What a node still holds from recorded frames.
+#[derive(Debug)]
+pub(crate) struct Cache {
+    pixels: Vec<Pixels>,
+    maps: Vec<Maps>,
+}
+
+impl Cache {
+    /// An empty cache for a number of lights and techniques.
+    pub fn new(lights: u32, techniques: usize) -> Self {
+        Self {
+            pixels: vec![Pixels::default(); lights as usize],
+            maps: vec![Maps::default(); techniques],
+        }
+    }
+
+    /// Forgets everything.
+    pub fn clear(&mut self) {
+        self.pixels.fill(Pixels::default());
+        self.maps.fill(Maps::default());
+    }
+
+    /// What a frame finds when it is recorded; nothing for a light or a technique that does not exist.
+    fn get(&self, key: CacheKey) -> Cached {
+        let CacheKey { light, technique } = key;
+        let pixels = self.pixels.get(light as usize).copied().unwrap_or_default();
+        let maps = self.maps.get(technique as usize).copied().unwrap_or_default();
+        Cached {
+            maps: maps.drawn.filter(|drawn| drawn.0 == light).map(|drawn| drawn.1),
+            pixels: pixels.written.filter(|by| by.0 == technique).map(|by| by.1),
+            lit: pixels.lit,
+        }
+    }
+
+    /// What a frame may reuse when it is planned.
+    pub fn for_plan(&self, key: CacheKey) -> Cached {
+        let cached = self.get(key);
+        let planned = self.maps.get(key.technique as usize).map_or(0, |maps| maps.planned);
+        let others = planned & !bit(key.light);
+        Cached { maps: cached.maps.filter(|_| others == 0), ..cached }
+    }
+
+    /// Notes that a plan was made, which will draw over a technique's maps.
+    pub fn planned(&mut self, key: CacheKey, reuse: &Reuse) {
+        if let Some(maps) = self.maps.get_mut(key.technique as usize)
+            && reuse.makes_maps.is_some()
+        {
+            maps.planned |= bit(key.light);
+        }
+    }
+
+    /// Whether the cache still holds what a plan reuses.
+    pub fn agrees(&self, key: CacheKey, reuse: &Reuse) -> bool {
+        reuse.agrees(&self.get(key))
+    }
+
+    /// Notes that a plan is recorded, and what it leaves.
+    pub fn recorded(&mut self, key: CacheKey, reuse: &Reuse) {
+        let cached = reuse.cached_after(&self.get(key));
+        if let Some(pixels) = self.pixels.get_mut(key.light as usize) {
+            let written = cached.pixels.map(|pixels| (key.technique, pixels));
+            *pixels = Pixels { written, lit: cached.lit };
+        }
+        // The light's earlier plans that were never recorded are not waited for any longer.
+        self.maps.iter_mut().for_each(|maps| maps.planned &= !bit(key.light));
+        if let Some(maps) = self.maps.get_mut(key.technique as usize)
+            && reuse.makes_maps.is_some()
+        {
+            maps.drawn = cached.maps.map(|made| (key.light, made));
+        }
+    }
+}
+
+/// The bit of a light; a node has up to 64.
+fn bit(light: u32) -> u64 {
+    1u64.checked_shl(light).unwrap_or(0)
+}
