@@ -103,10 +103,8 @@ fn compared(
                 let lit = on.iter().filter(|v| **v == 1.0).count() as f64 / on.len() as f64;
                 let times = in_turns(&mut pair, options.rounds);
                 let without = ms(&times[0], &[pass]);
-                let tiles = ms(
-                    &times[1],
-                    &["tiles_start", "tiles", "baseline.nearest", "textures.squares"],
-                );
+                let tiles =
+                    ms(&times[1], &["tiles_start", "tiles", "pcss.nearest", "textures.squares"]);
                 let listed = ms(&times[1], &[pass]);
                 table.row(vec![
                     (*scene_name).into(),
@@ -130,7 +128,7 @@ fn soft_shadow_map(device: &HeadlessDevice, options: &Options) -> Table {
 }
 
 fn pcss(device: &HeadlessDevice, options: &Options) -> Table {
-    compared("pcss", Technique::Pcss, "", "baseline.pcss", device, options)
+    compared("pcss", Technique::Pcss, "", "pcss.visibility", device, options)
 }
 
 fn occlusion_textures(device: &HeadlessDevice, options: &Options) -> Table {

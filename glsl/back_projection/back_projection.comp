@@ -1,4 +1,4 @@
-// Entry of the pass baseline.back_projection (src/techniques/back_projection/mod.rs); at first skip filled.glsl and levels.glsl.
+// Entry of the pass back_projection.visibility (src/techniques/back_projection/mod.rs); at first skip filled.glsl and levels.glsl.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require

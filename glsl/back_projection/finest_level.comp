@@ -1,4 +1,4 @@
-// Entry of the pass baseline.finest_level (src/techniques/back_projection/mod.rs).
+// Entry of the pass back_projection.finest_level (src/techniques/back_projection/mod.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require

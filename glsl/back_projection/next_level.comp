@@ -1,4 +1,4 @@
-// Entry of the pass baseline.next_level (src/techniques/back_projection/mod.rs).
+// Entry of the pass back_projection.next_level (src/techniques/back_projection/mod.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "back_projection/levels.glsl"

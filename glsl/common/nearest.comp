@@ -1,4 +1,4 @@
-// Entry of the pass baseline.nearest (src/techniques/pcss/mod.rs).
+// Entry of the pass pcss.nearest (src/techniques/pcss/mod.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require

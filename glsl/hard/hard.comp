@@ -1,4 +1,4 @@
-// Entry of the pass baseline.hard (src/techniques/hard/mod.rs).
+// Entry of the pass hard.visibility (src/techniques/hard/mod.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require

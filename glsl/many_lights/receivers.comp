@@ -1,4 +1,4 @@
-// Entry of the pass baseline.receivers (src/techniques/many_lights/mod.rs).
+// Entry of the pass many_lights.receivers (src/techniques/many_lights/mod.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require

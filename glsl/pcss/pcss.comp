@@ -1,4 +1,4 @@
-// Entry of the pass baseline.pcss (src/techniques/pcss/mod.rs); at first skip disc.glsl.
+// Entry of the pass pcss.visibility (src/techniques/pcss/mod.rs); at first skip disc.glsl.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require

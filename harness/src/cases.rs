@@ -70,8 +70,8 @@ const SSM_FRONT: &[&str] = &[
     "visibility.tiles",
     "soft_shadow_map.gather_pixels",
 ];
-const HARD: &[&str] = &["depth_layers.front", "baseline.hard"];
-const OWN_HARD: &[&str] = &["depth_layers.hard", "baseline.hard"];
+const HARD: &[&str] = &["depth_layers.front", "hard.visibility"];
+const OWN_HARD: &[&str] = &["depth_layers.hard", "hard.visibility"];
 const RAYS: &[&str] = &[
     "depth_layers.front",
     "depth_layers.back",

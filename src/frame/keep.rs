@@ -204,7 +204,7 @@ mod tests {
     use super::*;
 
     /// What stands for a technique where it is not needed.
-    const STAND_INS: [&str; 2] = ["visibility.lit", "baseline.hard"];
+    const STAND_INS: [&str; 2] = ["visibility.lit", "hard.visibility"];
 
     /// The kinds of row that run again while light and meshes stay: those of pixels alone.
     #[test]
@@ -249,7 +249,7 @@ mod tests {
         }
         // Each point's map is drawn where the one before was.
         let many = again("many-lights samples=2");
-        assert!(many.contains(&"baseline.point_depth"), "{many:?}");
+        assert!(many.contains(&"many_lights.point_depth"), "{many:?}");
         let rays = again("ray-march");
         assert!(!rays.contains(&"ray_march.columns") && rays.len() == 5, "{rays:?}");
     }
