@@ -1,4 +1,4 @@
-//! What it saves to tell tiles of pixels that no occluder can be felt from, and what it costs where there are none.
+//! What skipping the tiles that no occluder can shadow saves, and what it costs where there are none.
 //!
 //! `cargo bench --bench tiles` (`-- --quick` for fewer rounds, names of tables for those alone). With and without
 //! are measured in one process, in turns, and told as medians of the passes over the pixels.

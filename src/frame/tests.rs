@@ -242,7 +242,7 @@ fn what_is_lent_must_be_what_was_described() {
     let with = |maps| Frame { occluder_maps: Some(maps), ..f };
     assert_eq!(
         ran(&make(&maps, &with(both)))[..2],
-        ["depth_layers.take_front", "depth_layers.take_back"]
+        ["depth_layers.copy_front", "depth_layers.copy_back"]
     );
     assert!(refuse(&maps, f).contains("occluder maps"));
     assert!(refuse(&description(&[]), with(both)).contains("occluder maps"));
