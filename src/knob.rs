@@ -1,7 +1,7 @@
 //! Knobs: what a technique lets a user turn, each stated once.
 //!
-//! A room lists its knobs as [`Field`]s of its settings: key, unit, legal values, what the knob does, and how it is read
-//! and written. Ranges, defaults, help texts, errors and `docs/settings.md` follow from that. This file knows no
+//! A room lists its knobs as [`Field`]s of its settings: key, unit, legal values, what the knob does, and how it is
+//! read and written. Ranges, defaults, help texts, errors and `docs/settings.md` follow from that. This file knows no
 //! technique.
 
 use crate::Error;

@@ -53,7 +53,7 @@ modules! {
     /// Vertices to clip space, for depth alone.
     DEPTH_VERT = "depth_layers/depth.vert";
     /// A host's occluder map to a layer.
-    TAKE = "depth_layers/take.comp";
+    COPY_MAP = "depth_layers/copy_map.comp";
 
     /// The largest w of squares of texels.
     NEAREST = "common/nearest.comp";
@@ -190,7 +190,7 @@ modules! {
     /// Vertices as a sample sees them.
     SAMPLE_VERT = "linear_light/sample.vert";
     /// What a sample sees, into a layer.
-    LINE_TAKE = "linear_light/take.comp";
+    LINE_COPY = "linear_light/copy_depth.comp";
     /// What receivers see of a line.
     LINE_MASK = "linear_light/mask.comp";
     /// Samples where light is lost.

@@ -125,8 +125,8 @@ impl Technique {
         check(self.room())
     }
 
-    /// The technique for lines and polygons, which places its samples by an error itself: a visible fraction that may be
-    /// missed, the most samples on a line, and the most lines.
+    /// The technique for lines and polygons, which places its samples by an error itself: a visible fraction that may
+    /// be missed, the most samples on a line, and the most lines.
     pub(crate) fn along_lines(error: f32, samples: u32, lines: u32) -> Self {
         linear_light::Settings { error, samples, lines, ..Default::default() }.into()
     }
@@ -200,8 +200,8 @@ mod tests {
         }
     }
 
-    /// Both ends of every range are taken, what lies just beyond is refused with what would be right, and no knob writes
-    /// where another one reads.
+    /// Both ends of every range are taken, what lies just beyond is refused with what would be right, and no knob
+    /// writes where another one reads.
     #[test]
     fn every_knob_takes_its_range_and_nothing_else() {
         for plain in Technique::all() {

@@ -48,7 +48,7 @@ fn every_scene_runs_what_it_calls_for_and_what_is_left_out_costs_no_more_than_wa
         }
         // A bound is beyond what the maps' texels make of edges, in either image.
         if let Some(s) = plan.verdicts.situation()
-            && runs.contains(&"baseline.hard")
+            && runs.contains(&"hard.visibility")
         {
             bound += s.texel_pixels * s.edges_a_pixel;
         }

@@ -6,7 +6,7 @@
 use antumbra::scene::{Camera, Role, Scene, generate};
 use antumbra::stages::tiles::twin::{Bounds, listed_tile, rounded_tile};
 use antumbra::techniques::common::twin::nodes_around;
-use antumbra::techniques::soft_shadow_map::twin::{Node, Tile, is_felt, superblocks_around};
+use antumbra::techniques::soft_shadow_map::twin::{Node, Tile, may_shadow, superblocks_around};
 use antumbra_harness::{HeadlessDevice, View};
 use antumbra_tests::compare::Tolerance;
 use antumbra_tests::measure::{Setup, model};
@@ -56,13 +56,13 @@ fn same_image(device: &HeadlessDevice, setup: &Setup, words: &str, what: &str) -
     // Each tile is listed once or not at all; what is not listed is lit.
     let [columns, rows] = setup.extent.map(|e| e.div_ceil(8));
     let mut there = vec![false; (columns * rows) as usize];
-    let mut felt = 0;
+    let mut shadowable = 0;
     for word in &with.tiles {
-        let ([x, y], may_be_felt) = listed_tile(*word);
+        let ([x, y], may_be_shadowed) = listed_tile(*word);
         let at = (y / 8 * columns + x / 8) as usize;
         assert!(!there[at], "{what}: tile {x}, {y} is listed twice");
         there[at] = true;
-        felt += usize::from(may_be_felt);
+        shadowable += usize::from(may_be_shadowed);
     }
     for (i, v) in without.iter().enumerate() {
         let (x, y) = (i as u32 % setup.extent[0], i as u32 / setup.extent[0]);
@@ -70,8 +70,8 @@ fn same_image(device: &HeadlessDevice, setup: &Setup, words: &str, what: &str) -
             assert_eq!(*v, 1.0, "{what}: {x}, {y} was taken to be lit");
         }
     }
-    println!("{what}: {} of {} tiles listed, {felt} felt", with.tiles.len(), there.len());
-    (there.len(), felt)
+    println!("{what}: {} of {} tiles listed, {shadowable} shadowable", with.tiles.len(), there.len());
+    (there.len(), shadowable)
 }
 
 /// What a technique with tiles makes of every scene and light, with and without.
@@ -100,9 +100,9 @@ fn same_with_and_without(all_words: &[&str]) {
             let (seen, setup) = &setups[(nth_side + nth_scene) % setups.len()];
             let words = all_words[(nth_side + 2 * nth_scene) % all_words.len()];
             let what = format!("{name} {seen}, L = {side}, {words}");
-            let (all, felt) = same_image(&device, setup, words, &what);
-            assert!(side > 1.0 || felt < all, "{what}: no tile was spared");
-            assert!(felt > 0 || *seen == "window", "{what}: nothing is shadowed");
+            let (all, shadowable) = same_image(&device, setup, words, &what);
+            assert!(side > 1.0 || shadowable < all, "{what}: no tile was spared");
+            assert!(shadowable > 0 || *seen == "window", "{what}: nothing is shadowed");
         }
     }
 }
@@ -139,7 +139,7 @@ fn occlusion_textures_by_levels_are_the_same_with_tiles() {
     ]);
 }
 
-/// What no occluder can be felt from takes no workgroup.
+/// Tiles that no occluder can shadow take no workgroup.
 #[test]
 fn a_view_of_lit_ground_lists_nothing() {
     let device = device();
@@ -215,11 +215,11 @@ fn nodes_and_tiles() -> impl Strategy<Value = (Triple, [f32; 4], Pair, Pair)> {
 }
 
 #[test]
-fn nodes_that_are_felt() {
-    let glue = "bool felt(vec3 node, vec4 t, vec2 w, vec2 scale) { \
-                return is_felt(Node(1.0, 0.0, 0.0, node.z, 0.0, 0.0, uvec2(0u)), node.xy, 8.0, t.xy, t.zw, \
+fn nodes_that_may_shadow_a_tile() {
+    let glue = "bool node_may_shadow(vec3 node, vec4 t, vec2 w, vec2 scale) { \
+                return may_shadow(Node(1.0, 0.0, 0.0, node.z, 0.0, 0.0, uvec2(0u)), node.xy, 8.0, t.xy, t.zw, \
                 w.x, scale); }";
-    let prototype = "bool felt(vec3 node, vec4 t, vec2 w, vec2 scale)";
+    let prototype = "bool node_may_shadow(vec3 node, vec4 t, vec2 w, vec2 scale)";
     fn tile(x: &[f32]) -> Tile<f32> {
         Tile { t_min: [x[3], x[4]], t_max: [x[5], x[6]], w: [x[7], x[7] + x[8]] }
     }
@@ -227,11 +227,11 @@ fn nodes_that_are_felt() {
         .glue(glue)
         .random(20_000, nodes_and_tiles());
     let device = device();
-    let felt = test.outputs(&device).iter().filter(|c| c.output[0] == 1.0).count();
-    assert!((2_000..18_000).contains(&felt), "{felt}");
+    let shadowable = test.outputs(&device).iter().filter(|c| c.output[0] == 1.0).count();
+    assert!((2_000..18_000).contains(&shadowable), "{shadowable}");
     test.f32(Tolerance::exact(), |x| {
         let node = Node { count: 1.0, w: [0.0, 0.0, x[2]], lo: [x[0], x[1]], side: 8.0 };
-        vec![f32::from(is_felt(&node, &tile(x), [x[9], x[10]]))]
+        vec![f32::from(may_shadow(&node, &tile(x), [x[9], x[10]]))]
     })
     .check(&device);
 
@@ -265,8 +265,8 @@ fn nodes_of_a_searched_part_of_the_map() {
 #[test]
 fn the_list_holds_every_tile_of_the_largest_image() {
     let device = device();
-    let glue = "uint word(int x, int y, bool felt) { return tile_word(ivec2(x, y), felt); }";
-    Function::new("common/lists.glsl", "uint word(int x, int y, bool felt)")
+    let glue = "uint word(int x, int y, bool shadowable) { return tile_word(ivec2(x, y), shadowable); }";
+    Function::new("common/lists.glsl", "uint word(int x, int y, bool shadowable)")
         .glue(glue)
         .case((4095, 4095, true))
         .random(2_000, (0..4096_i32, 0..4096_i32, proptest::bool::ANY))

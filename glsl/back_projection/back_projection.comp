@@ -1,4 +1,4 @@
-// Entry of the pass baseline.back_projection (src/techniques/back_projection/mod.rs); at first skip filled.glsl and levels.glsl.
+// Entry of the pass back_projection.visibility (src/techniques/back_projection/mod.rs); at first skip filled.glsl and levels.glsl.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -11,7 +11,7 @@
 
 layout(set = 0, binding = 4, std430) readonly buffer Levels { vec2 levels[]; };
 
-// The least and the largest w of the texels from `lo` to `hi`, and of few around them.
+// The least and the largest w of the texels from `lo` to `hi`, and of a few more around them.
 vec2 range_over(ivec2 lo, ivec2 hi)
 {
     int level = min(level_of(max(hi.x - lo.x, hi.y - lo.y) + 1), push.count);
@@ -34,7 +34,7 @@ float magnification_at(MapPlane m, ivec2 texel)
     return in_front(m, vec2(texel) + 0.5, w_o) ? 1.0 / (w_o - m.w) : 0.0;
 }
 
-// The texel's share; `k_left` comes from the one before it and goes to the next.
+// The next texel's share of the occlusion; `k_left` is the magnification of the texel before it, and becomes its own.
 float next_texel(MapPlane m, ivec2 texel, vec2 scale, int end, inout float k_left)
 {
     float k = texel.x <= end ? magnification_at(m, texel) : 0.0;
@@ -47,8 +47,8 @@ float next_texel(MapPlane m, ivec2 texel, vec2 scale, int end, inout float k_lef
     return hidden;
 }
 
-// Whether every texel from `lo` to `hi` is in front, none further than 1/w_min: a surface without a hole
-// over all that the pixel sees of the light.
+// Whether every texel from `lo` to `hi` is in front of the pixel and none is further than 1/w_min: then a surface
+// without a hole covers all that the pixel sees of the light.
 bool covered(MapPlane m, vec2 lo, vec2 hi, float w_min)
 {
     vec2 middle = 0.5 * (lo + hi) + 0.5;
@@ -61,7 +61,7 @@ float hidden_of(MapPlane m)
 {
     vec2 texels = push.half_light * push.texels_per_uv;
     vec2 scale = 0.5 / texels;
-    // The window within which the nearest occluder could hide light, and again for the nearest within it.
+    // The window within which the nearest occluder could hide light; then that of the nearest occluder within it.
     float w_max = push.inv_near;
     vec2 range = vec2(0.0);
     ivec2 lo = ivec2(0);
@@ -69,7 +69,7 @@ float hidden_of(MapPlane m)
     bool inside = false;
     for (int i = 0; i < 4; ++i) {
         vec2 reach = texels * (w_max - m.w);
-        // Far outside the map an int would not hold it.
+        // A bound far outside the map would overflow an int.
         vec2 from = clamp(floor(m.t - reach), -2.0, float(push.map));
         vec2 to = clamp(floor(m.t + reach), -2.0, float(push.map));
         lo = max(ivec2(from), ivec2(0));
@@ -118,7 +118,7 @@ void main()
     float v = 1.0;
     if (r.receives) {
         MapPlane m = pixel_plane(r);
-        // The part of the light under the pixel's own surface, where that blocks.
+        // The light that the pixel's own surface hides, where that surface blocks.
         float hidden = r.blocks ? 1.0 - fraction_above(r.normal.xy * push.half_light, m.c) : 0.0;
         if (hidden < 1.0) {
             hidden += hidden_of(m);

@@ -1,14 +1,14 @@
 // Entered from back_projection.comp.
 //
-// Back-projection without gaps.
+// Back-projection of texels, with the gaps between neighbouring texels filled.
 
 #ifndef BACK_PROJECTION_FILLED_GLSL
 #define BACK_PROJECTION_FILLED_GLSL
 
 #include "common/light_space.glsl"
 
-// What a texel with magnification k hides of the light, reaching to the edges of the texels before it
-// along x and y, which its own edges may lie beyond: surfaces have no gaps.
+// The fraction of the light that a texel with magnification k hides, where its rectangle on the light is extended to
+// the edges of the texels before it along x and y: surfaces have no gaps.
 float filled_occlusion(vec2 lo, vec2 t, float k, float k_left, float k_above, vec2 scale)
 {
     vec2 a = (lo - t) * scale;

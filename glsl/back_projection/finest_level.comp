@@ -1,10 +1,10 @@
-// Entry of the pass baseline.finest_level (src/techniques/back_projection/mod.rs).
+// Entry of the pass back_projection.finest_level (src/techniques/back_projection/mod.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "back_projection/levels.glsl"
 
-// The first level: the least and the largest w of 2x2 texels, 0 where there is nothing.
+// Writes the first level: the least and the largest w of 2x2 texels, 0 where there is no occluder.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

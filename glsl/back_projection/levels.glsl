@@ -1,17 +1,17 @@
 // Entered from back_projection.comp, finest_level.comp and next_level.comp.
 //
-// The levels of a map: level k holds a pair for each 2^k x 2^k texels, from k = 1 on, one behind the other.
+// The levels of a map: level k, from 1 on, holds a pair of w for each 2^k x 2^k texels; levels lie one after the other.
 
 #ifndef BACK_PROJECTION_LEVELS_GLSL
 #define BACK_PROJECTION_LEVELS_GLSL
 
-// Nodes a side.
+// Nodes along a side of a level.
 int level_side(int map, int level)
 {
     return (map + (1 << level) - 1) >> level;
 }
 
-// Where a level's nodes start.
+// The index of a level's first node.
 int level_start(int map, int level)
 {
     int start = 0;

@@ -1,9 +1,9 @@
-// Entry of the pass baseline.next_level (src/techniques/back_projection/mod.rs).
+// Entry of the pass back_projection.next_level (src/techniques/back_projection/mod.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "back_projection/levels.glsl"
 
-// A level from the one before it.
+// Writes a level from the level before it.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -11,7 +11,7 @@ layout(set = 0, binding = 0, std430) buffer Levels { vec2 levels[]; };
 
 layout(push_constant) uniform Push {
     int map;   // the map's side in texels
-    int level; // the one to make
+    int level; // the level to make
 } push;
 
 void main()

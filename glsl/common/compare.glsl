@@ -1,6 +1,6 @@
 // Entered from one_map.glsl, many_lights/add_point.comp and linear_light/visibility.comp.
 //
-// A receiver's plane over an occluder map, and which of the map's texels lie in front of it.
+// A receiver's plane over an occluder map, and the test which of the map's texels lie in front of it.
 
 #ifndef COMMON_COMPARE_GLSL
 #define COMMON_COMPARE_GLSL
@@ -8,9 +8,9 @@
 #include "common/light_space.glsl"
 
 struct MapPlane {
-    vec2 t;        // the receiver, in texels
+    vec2 t;        // the receiver's place, in texels
     float w;
-    vec2 n;        // see light_space.glsl
+    vec2 n;        // the plane's normal over the texels a unit of u and v, see light_space.glsl
     float n_0;
     float c;       // above 0 where the map's eye is below the plane
     float rounding;
@@ -18,7 +18,7 @@ struct MapPlane {
     float slope;   // how steeply the receiver's own surface may rise above its plane
 };
 
-// `position` and `normal` as the map's eye has them: its own place is the origin.
+// `position` and `normal` are in light space with the map's eye as the origin.
 MapPlane map_plane(vec3 position, vec3 normal, bool blocks, vec2 texels_per_uv, vec2 first,
                    float snap, float depth_error)
 {
@@ -31,9 +31,9 @@ MapPlane map_plane(vec3 position, vec3 normal, bool blocks, vec2 texels_per_uv, 
     return MapPlane(t, w, n, n_0, c, rounding, 1.0 / texels_per_uv, own_slope(blocks));
 }
 
-// How far a texel's surface, w_o at its centre `at`, lies above the receiver's plane beyond what the
-// receiver's own surface may rise over a distance of `reach` in u and v; no texel is known better than to
-// half its diagonal.
+// How far a texel's surface, w_o at its centre `at`, lies above the receiver's plane beyond the height that the
+// receiver's own surface may rise over a distance of `reach` in u and v. That distance is at least half the texel's
+// diagonal, because the surface's place within the texel is not known.
 float clearance(MapPlane m, vec2 at, float w_o, float reach)
 {
     float above = dot(at, m.n) + m.n_0 - m.c * w_o;
@@ -46,8 +46,8 @@ bool in_front(MapPlane m, vec2 at, float w_o)
     return w_o > m.w && clearance(m, at, w_o, 0.0) > m.rounding;
 }
 
-// As `in_front`, where the texel is one of a filter around the receiver and stands for all of it: the receiver's
-// own surface must not, however far away it is within the filter.
+// Whether a texel's surface hides a receiver for a filter around it. The texel stands for the receiver's whole
+// neighbourhood, so the receiver's own surface may rise over the distance between the two and still not count.
 bool in_front_of_filter(MapPlane m, vec2 at, float w_o)
 {
     return w_o > m.w && clearance(m, at, w_o, length((at - m.t) * m.texel)) > m.rounding;

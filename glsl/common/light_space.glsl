@@ -1,12 +1,13 @@
 // Entered from one_map.glsl, soft_shadow_map/gather_pixels.comp, ray_march/pixel.glsl and others; at first skip what is behind GBUFFER.
 //
-// Light space: the light's own coordinates, receivers there, their planes, and what hides how much of the light.
+// Light space: the light's own coordinates. It holds the receivers, their planes, the occlusion by a micro-patch, and
+// the error of the test whether an occluder lies above a receiver's plane.
 //
 // A point of light space at distance d is kept as (u, v, w) = (x/d, y/d, 1/d). A texel of a light-space
 // map covers one step of u and v. t is (u, v) in occluder-map texels: texel (i, j) covers
 // [i, i+1] x [j, j+1]. `scale` is the texel's size over the light's: (du/Lx, dv/Ly), in 1/m.
 //
-// With `#define GBUFFER` also what reads the G-buffer.
+// `#define GBUFFER` adds the functions that read the G-buffer.
 
 #ifndef COMMON_LIGHT_SPACE_GLSL
 #define COMMON_LIGHT_SPACE_GLSL
@@ -18,13 +19,13 @@ struct Receiver {
     bool receives;
     bool blocks;   // its own surface blocks light
     vec3 position; // light space, metres
-    vec3 normal;   // of the plane that what hides it lies above: the surface's own where that blocks, on the
-                   // viewer's side; where it does not, it is in no map, and whatever is nearer to the light hides it
+    vec3 normal;   // its plane's: occluders lie above that plane. A surface that blocks has its own normal, on the
+                   // viewer's side; one that does not is in no map, and everything nearer to the light hides it
 };
 
 const vec3 TOWARDS_LIGHT = vec3(0.0, 0.0, -1.0);
 
-// A pixel with depth `depth` to a homogeneous point of light space. `ndc` runs from -1 to 1.
+// Converts a pixel with depth `depth` to a homogeneous point of light space. `ndc` runs from -1 to 1.
 vec4 unproject(mat4 light_from_ndc, vec2 pixel, vec2 extent, float depth)
 {
     vec2 ndc = (pixel + 0.5) * 2.0 / extent - 1.0;
@@ -89,10 +90,10 @@ float depth_or_far(GBuffer g, ivec2 p)
 }
 
 // The plane of the facet that a pixel shows. A plane's depth is linear over the image, so of the four
-// quadrants around the pixel the one is taken whose depths bend least: along both axes and across.
+// quadrants around the pixel this uses the one whose depths bend least, along both axes and across.
 vec3 facet_normal(GBuffer g, ivec2 p, float depth, vec3 position)
 {
-    // Neighbours along x and y, after and before; how much depth bends behind them.
+    // The depths of the neighbours along x and y, after and before, and how much depth bends behind them.
     vec4 near;
     vec4 bend;
     for (int i = 0; i < 4; ++i) {
@@ -113,7 +114,7 @@ vec3 facet_normal(GBuffer g, ivec2 p, float depth, vec3 position)
         }
     }
     ivec2 side = 1 - 2 * best;
-    // Alone, a pixel's plane faces the viewer.
+    // A pixel without neighbours on its surface has a plane that faces the viewer.
     float depth_x = near[best.x] > 1.0e29 ? depth : near[best.x];
     float depth_y = near[2 + best.y] > 1.0e29 ? depth : near[2 + best.y];
     vec2 extent = vec2(g.extent);
@@ -126,7 +127,7 @@ vec3 facet_normal(GBuffer g, ivec2 p, float depth, vec3 position)
                         towards_viewer(g.light_from_ndc, position, g.background));
 }
 
-// What a pixel shows, but for the normal.
+// The receiver that a pixel shows, without its normal.
 Receiver receiver_without_normal(GBuffer g, ivec2 p)
 {
     Receiver r = Receiver(false, false, vec3(0.0), vec3(0.0));
@@ -202,7 +203,7 @@ float fraction_above(vec2 slope, float c)
 }
 
 // ---------------------------------------------------------------------------------------------
-// Above or below a receiver's own plane, and what that may be off by.
+// The test whether a point lies above or below a receiver's own plane, and its largest error.
 //
 // The plane {p : dot(n, p) = c} of light space is linear in (u, v, w): a point of a light-space map with
 // its centre at (x, y) texels and at w lies n.x x + n.y y + n_0 - c w above it, in units of 1/w, with
@@ -214,17 +215,17 @@ float fraction_above(vec2 slope, float c)
 // 0.4, 0.3, 0.2 %.)
 const float OWN_SLOPE = 0.3;
 
-// What does not block is not in the maps, and has nothing of its own to rise.
+// A surface that does not block is not in the maps, so nothing of it can rise above its plane.
 float own_slope(bool blocks)
 {
     return blocks ? OWN_SLOPE : 0.0;
 }
 
-// Rounding of (u, v, w), of the sum that tells above from below, and of the G-buffer's position.
+// The relative rounding of (u, v, w), of the height above a plane, and of the G-buffer's position.
 const float ROUNDING = 1.0 / 2097152.0;
 
-// How far off the height may be by arithmetic: `snap` is how far the raster moves a vertex, in texels,
-// `depth_error` how far off an occluder's w may be beyond its rounding, 1/m; the receiver is at t and w.
+// The largest error of the height above a plane: `snap` is how far the raster moves a vertex, in texels,
+// `depth_error` the error of an occluder's w beyond its rounding, 1/m; the receiver is at t and w.
 float plane_rounding(vec2 n, float n_0, float c, vec2 t, float w, float snap, float depth_error)
 {
     return snap * (abs(n.x) + abs(n.y)) + depth_error * abs(c) +
@@ -232,9 +233,9 @@ float plane_rounding(vec2 n, float n_0, float c, vec2 t, float w, float snap, fl
 }
 
 // ---------------------------------------------------------------------------------------------
-// The occlusion by both sides of an occluder, from that by either.
+// The occlusion by both sides of an occluder, from the occlusion by either side.
 
-// Where either side hides all of the light it is umbra: a depth step inside a silhouette leaves a gap in
+// A receiver from which one side hides all of the light is in umbra: a depth step inside a silhouette leaves a gap in
 // the sum of one side alone. From this occlusion on the larger takes over from the mean. (Mean error of
 // the bunny's image without, from 0.97, from 0.9: 2.9, 2.8, 2.6 %; Suzanne's 1.5, 1.4, 1.4 %.)
 const float ALMOST_ALL = 0.9;

@@ -1,10 +1,10 @@
-// Entry of the pass baseline.nearest (src/techniques/pcss/mod.rs).
+// Entry of the pass pcss.nearest (src/techniques/pcss/mod.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "common/nearest.glsl"
 
-// The largest w of each node of the map. One invocation a node.
+// Writes the largest w of each node of the map. One invocation handles one node.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

@@ -1,6 +1,6 @@
 // Entered from hard/hard.comp, pcss/pcss.comp, pcss/tiles.comp and back_projection/back_projection.comp.
 //
-// What the techniques with one occluder map share: their numbers and, without `#define NO_MAP`, their inputs and
+// The techniques with one occluder map share these push constants and, without `#define NO_MAP`, their inputs and the
 // comparisons with the map.
 
 #ifndef COMMON_ONE_MAP_GLSL
@@ -21,7 +21,7 @@ layout(push_constant) uniform Push {
     float depth_error;  // how far off an occluder's w may be beyond its rounding, 1/m
     int map;            // the map's side in texels
     int masked;
-    int count;          // of taps or levels
+    int count;          // taps or levels
 } push;
 
 GBuffer gbuffer()
@@ -51,14 +51,14 @@ MapPlane pixel_plane(Receiver r)
                      push.depth_error);
 }
 
-// w of a texel, 0 where there is nothing.
+// The w of a texel's occluder, 0 where there is none.
 float w_of(ivec2 texel)
 {
     bool outside = any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(push.map)));
     return outside ? 0.0 : texelFetch(front_depth, texel, 0).x * push.inv_near;
 }
 
-// Whether the texel's surface hides the receiver of a filter, as 1 or 0.
+// 1 where the texel's surface hides the receiver for a filter around it, else 0.
 float hides(MapPlane m, ivec2 texel)
 {
     return in_front_of_filter(m, vec2(texel) + 0.5, w_of(texel)) ? 1.0 : 0.0;

@@ -1,7 +1,7 @@
 // Entry of the passes depth_layers.front, depth_layers.back, occlusion_textures.slices and others (src/stages/depth_layers/mod.rs).
 #version 450
 
-// Positions to a light-space map's clip space; the depth that results is near / d.
+// Converts positions to a light-space map's clip space; the depth that results is near / d.
 
 layout(location = 0) in vec3 position;
 

@@ -1,13 +1,14 @@
-// Entry of the pass baseline.hard (src/techniques/hard/mod.rs).
+// Entry of the pass hard.visibility (src/techniques/hard/mod.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "common/one_map.glsl"
 
-// A hard shadow map, 3x3 percentage-closer filtered (Reeves 1987): the mean of nine comparisons that are
-// each bilinear. Together they weigh 4x4 texels by (1 - f, 1, 1, f)/3 along each axis.
+// A hard shadow map with a 3x3 percentage-closer filter (Reeves 1987): the mean of nine comparisons, each of them
+// bilinear. Together they weigh 4x4 texels by (1 - f, 1, 1, f)/3 along each axis.
 //
-// Where it stands for a soft shadow whose penumbra no pixel shows, one bilinear comparison blurs less.
+// Where the result stands for a soft shadow whose penumbra is narrower than a pixel, one bilinear comparison is used,
+// which blurs less.
 
 void main()
 {
@@ -30,7 +31,7 @@ void main()
                 hidden += x[i] * y[j] * hides(m, ivec2(corner) + ivec2(i - 1, j - 1));
             }
         }
-        // From below the pixel's own surface nothing is seen of the light's centre.
+        // The light's centre lies below the pixel's own surface.
         v = m.c >= 0.0 && r.blocks ? 0.0 : 1.0 - min(hidden, 1.0);
     }
     imageStore(visibility, p, vec4(v));

@@ -2,21 +2,21 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// Ray marching without a G-buffer: every fragment that passes the depth test when it is drawn sends its
-// rays, whatever is drawn over it later (Curtis 2009 section 4.2, "deferred shading: no"). The functions are
-// those of classify.comp and trace.comp; there is no list and no filter.
+// Ray marching without a G-buffer: every fragment that passes the depth test when it is drawn traces its rays, whatever
+// is drawn over it later (Curtis 2009 section 4.2, "deferred shading: no"). The functions are those of classify.comp
+// and trace.comp; there is no list and no filter.
 
 #define FORWARD
 #define USUAL
 #include "ray_march/pixel.glsl"
 
 layout(push_constant) uniform Mesh {
-    layout(offset = 124) float role; // as the G-buffer's
+    layout(offset = 124) float role; // the G-buffer's role values
 } mesh;
 
 layout(location = 0) out float visible;
 
-// A triangle's plane is that of any fragment and its neighbours, though these are outside of it.
+// The normal of the triangle's plane, by the derivatives over neighbouring fragments, which may lie outside of it.
 vec3 fragment_normal;
 
 vec3 pixel_normal(ivec2 p, Receiver r)
@@ -30,7 +30,7 @@ void main()
     Receiver r;
     r.receives = mesh.role > 0.25;
     r.blocks = mesh.role > 0.75;
-    // What a G-buffer would hold is this very depth.
+    // A G-buffer would hold this very depth.
     r.position = dehomogenize(
         unproject(push.light_from_ndc, vec2(p), vec2(push.extent), gl_FragCoord.z));
     r.normal = vec3(0.0);

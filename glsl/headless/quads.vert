@@ -1,6 +1,6 @@
 #version 450
 
-// Penumbra rectangles that the processor made, for patch.frag (Atty 2006, section 4.1).
+// Penumbra rectangles that the CPU made, for patch.frag (Atty 2006, section 4.1).
 
 layout(location = 0) in vec2 at;       // a corner, in clip space
 layout(location = 1) in vec3 of_patch; // the patch: its texel and w
@@ -13,7 +13,7 @@ void main()
 {
     texel = of_patch.xy;
     w_o = of_patch.z;
-    // As in patch.vert: how this patch's contributions are rounded.
+    // This patch's contributions are rounded with patch.vert's thresholds.
     uint spread = uint(texel.x) * 3242174889u + uint(texel.y) * 2447445414u;
     threshold = float(spread >> 16) / 65536.0;
     gl_Position = vec4(at, 0.0, 1.0);

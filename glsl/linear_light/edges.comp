@@ -5,13 +5,13 @@
 #include "linear_light/skin.glsl"
 #include "linear_light/line.glsl"
 
-// Where occluders end in a sample's map, on the side of its neighbour, to skins. Their order differs from frame to
-// frame; what is drawn of them does not.
+// Writes a skin for each place where an occluder ends in a sample's map, on the side of the neighbouring sample. Their
+// order differs from frame to frame; the depth test makes what is drawn of them the same.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 0) uniform texture2DArray seen;
-layout(set = 0, binding = 1, std430) readonly buffer Here { Segment here; };
+layout(set = 0, binding = 1, std430) readonly buffer SegmentState { Segment segment; };
 layout(set = 0, binding = 2, std430) buffer Skins { vec4 skins[]; };
 layout(set = 0, binding = 3, std430) buffer Draws { uint draws[8]; }; // left, right
 
@@ -21,7 +21,7 @@ layout(push_constant) uniform Push {
     int side;      // -1: occluders that end towards -x; 1: towards +x
 } push;
 
-// w of the nearest occluder, and of the nearest surface of any kind.
+// The w of a texel's nearest occluder, and of its nearest surface of any kind.
 vec2 at(int layer, int x, int y)
 {
     if (x < 0 || x >= push.map) {
@@ -34,20 +34,20 @@ vec2 at(int layer, int x, int y)
 void main()
 {
     ivec2 p = ivec2(gl_GlobalInvocationID.xy);
-    int layer = push.side > 0 ? here.first : here.last;
+    int layer = push.side > 0 ? segment.first : segment.last;
     if (p.x >= push.map || p.y >= push.map) {
         return;
     }
     vec2 near = at(layer, p.x, p.y);
     float w_seen = at(layer, p.x + push.side, p.y).y;
-    // A receiver that lies in front of the occluder ends nothing.
+    // An occluder behind a receiver has no edge that the sample sees.
     if (near.x <= w_seen || near.x < near.y) {
         return;
     }
     float w_before = at(layer, p.x - push.side, p.y).y;
     float w_behind = at(layer, p.x + 2 * push.side, p.y).y;
     if (is_edge(w_before, near.x, w_seen, w_behind)) {
-        vec2 window = window_at(push.u_window, push.side > 0 ? here.along.x : here.along.y);
+        vec2 window = window_at(push.u_window, push.side > 0 ? segment.along.x : segment.along.y);
         float border = float(p.x) + (push.side > 0 ? 1.0 : 0.0);
         float u = mix(window.x, window.y, border / float(push.map));
         uint vertex = atomicAdd(draws[push.side > 0 ? 4 : 0], 6u);

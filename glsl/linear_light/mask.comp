@@ -4,12 +4,13 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "linear_light/mask.glsl"
 
-// What some of the receivers that the middle of a line sees, or that are hidden from it, see of the line: each occluder
-// in their row hides what it is projected back onto. Occluders behind others are missed; it is to place samples by.
+// Estimates which parts of a line are visible from a grid of receivers in the map of the line's middle: each occluder
+// in a receiver's row of texels is projected back onto the line and hides that part. Occluders behind others are
+// missed, which is good enough to place samples by.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0, binding = 0) uniform texture2DArray seen; // by the middle, in layer 0
+layout(set = 0, binding = 0) uniform texture2DArray seen; // layer 0: the middle's map
 layout(set = 0, binding = 1, std430) buffer Masks { uint masks[]; };
 
 layout(push_constant) uniform Push {
@@ -31,7 +32,7 @@ void main()
         float u = window.x + (float(p.x) + 0.5) * step;
         for (int x = 0; x < push.map; ++x) {
             float occluder = texelFetch(seen, ivec3(x, p.y, 0), 0).x;
-            // Its own surface is projected to where its plane meets the light's.
+            // The receiver's own texel is left out: it is projected to where its plane meets the light's.
             if (occluder > w && x != p.x) {
                 float scale = 1.0 / max((occluder - w) * push.line, 1.0e-30);
                 float a = (window.x + float(x) * step - u) * scale;

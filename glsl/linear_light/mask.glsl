@@ -1,14 +1,14 @@
 // Entered from mask.comp and place.comp.
 //
-// What a receiver sees of a line, a bit for every 32nd of it, the first end's the lowest.
+// Which parts of a line a receiver sees, as one bit for every 32nd of the line; the lowest bit is at its first end.
 //
-// Samples see runs of it: a sample that the receiver is not hidden from tells, by its skins, how far the line goes on
-// until the first occluder on either side. What lies beyond that is lost, unless another sample sees it.
+// A sample represents a run of bits: where it sees the receiver, its skins show how far the visible part reaches to
+// the first occluder on either side. Visible parts beyond that are lost, unless another sample lies in them.
 
 #ifndef LINEAR_LIGHT_MASK_GLSL
 #define LINEAR_LIGHT_MASK_GLSL
 
-// Receivers along the rows of a line's middle map, where what is seen of the line changes most, and across.
+// The grid of receivers in the map of the line's middle. It is finer along rows, where visibility changes most.
 const ivec2 RECEIVERS = ivec2(128, 32);
 
 const uint ALL = 0xffffffffu;
@@ -27,13 +27,13 @@ uint between(float a, float b)
     return bits(max(int(ceil(low)), 0), min(int(floor(high)), 31));
 }
 
-// The bits that a sample at `at` tells of: the run of ones around it.
+// The bits that a sample at bit `at` represents: the run of ones around it, none where that bit is 0.
 uint run_at(uint mask, int at)
 {
     if ((mask >> at & 1u) == 0u) {
         return 0u;
     }
-    // How many more there are on either side; -1 is up to the end.
+    // The distance to the first 0 on either side; -1 where all bits up to the end are 1.
     int above = findLSB(int(~(mask >> at)));
     int below = findLSB(int(~(bitfieldReverse(mask) >> (31 - at))));
     return bits(below < 0 ? 0 : at - below + 1, above < 0 ? 31 : at + above - 1);

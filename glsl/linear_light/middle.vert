@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "linear_light/view.glsl"
 
-// The meshes as the line's middle sees them.
+// Converts the meshes' vertices to the clip space of the map at the line's middle.
 
 void main()
 {

@@ -4,35 +4,35 @@
 #include "linear_light/mask.glsl"
 #include "linear_light/line.glsl"
 
-// Where a line's samples are (the paper's open problem, section 5): at its ends, and then where the most light is lost,
-// until what is lost is no more than the error allowed, or there are as many samples as may be.
+// Places a line's samples (the paper's open problem, section 5): two at its ends, and then one after the other where
+// the most light is lost, until the lost share is within the allowed error or the samples are used up.
 
 layout(local_size_x = 128) in;
 
 layout(set = 0, binding = 0, std430) readonly buffer Masks { uint masks[]; };
-layout(set = 0, binding = 1, std430) buffer Of { Samples of; };
+layout(set = 0, binding = 1, std430) buffer Placed { Samples samples; };
 
 layout(push_constant) uniform Push {
-    float error; // allowed: a share of the line, in the mean over what is not wholly lit
-    int most;    // samples
-    int even;    // 1: as many as may be, evenly: the middle does not tell
+    float error; // the allowed loss: a share of the line, in the mean over receivers that do not see all of it
+    int most;    // the most samples
+    int even;    // 1: `most` samples, evenly spaced: the middle's map is no guide
 } push;
 
 const int EACH = RECEIVERS.x * RECEIVERS.y / 128;
 
-shared int begins[33];  // at the first bit of each lost run, its length; behind the last, less so
-shared int shadowed;    // receivers that do not see the whole line
-shared int lost;        // bits
-shared uint taken;      // where samples are
+shared int begins[33];  // plus a lost run's length at its first bit, minus it behind its last
+shared int shadowed;    // the number of receivers that do not see the whole line
+shared int lost;        // the number of visible bits that no sample represents
+shared uint placed;      // where samples are
 shared int done;
 
-uint known(uint mask, uint samples)
+uint seen_from(uint mask, uint places)
 {
-    uint told = 0u;
-    for (uint left = samples; left != 0u; left &= left - 1u) {
-        told |= run_at(mask, findLSB(int(left)));
+    uint seen = 0u;
+    for (uint left = places; left != 0u; left &= left - 1u) {
+        seen |= run_at(mask, findLSB(int(left)));
     }
-    return told;
+    return seen;
 }
 
 void main()
@@ -40,13 +40,13 @@ void main()
     int me = int(gl_LocalInvocationID.x);
     if (push.even != 0) {
         if (me < push.most) {
-            of.at[me] = float(me) / float(push.most - 1);
-            of.count = push.most;
+            samples.at[me] = float(me) / float(push.most - 1);
+            samples.count = push.most;
         }
         return;
     }
     if (me == 0) {
-        taken = 0x80000001u;
+        placed = 0x80000001u;
         done = 0;
     }
     for (int count = 2;; ++count) {
@@ -63,7 +63,7 @@ void main()
         for (int i = 0; i < EACH; ++i) {
             uint mask = masks[i * 128 + me];
             my_shadowed += mask == ALL ? 0 : 1;
-            uint left = mask & ~known(mask, taken);
+            uint left = mask & ~seen_from(mask, placed);
             my_lost += bitCount(int(left));
             while (left != 0u) {
                 int first = findLSB(int(left));
@@ -78,7 +78,7 @@ void main()
         atomicAdd(shadowed, my_shadowed);
         barrier();
         if (me == 0) {
-            // The middle of the first places that tell most.
+            // The next sample goes to the middle of the first run of bits with the largest gain.
             int first = 0;
             int last = 0;
             int most = 0;
@@ -93,7 +93,7 @@ void main()
             if (enough || most == 0 || count >= push.most) {
                 done = 1;
             } else {
-                taken |= 1u << ((first + last) / 2);
+                placed |= 1u << ((first + last) / 2);
             }
         }
         barrier();
@@ -103,11 +103,11 @@ void main()
     }
     if (me == 0) {
         int count = 0;
-        for (uint left = taken; left != 0u; left &= left - 1u) {
+        for (uint left = placed; left != 0u; left &= left - 1u) {
             int bit = findLSB(int(left));
-            of.at[count] = bit == 0 ? 0.0 : bit == 31 ? 1.0 : (float(bit) + 0.5) / 32.0;
+            samples.at[count] = bit == 0 ? 0.0 : bit == 31 ? 1.0 : (float(bit) + 0.5) / 32.0;
             count += 1;
         }
-        of.count = count;
+        samples.count = count;
     }
 }

@@ -4,12 +4,12 @@
 #include "linear_light/line.glsl"
 #include "linear_light/view.glsl"
 
-// The meshes as a sample sees them; nothing where there is no such sample.
+// Converts the meshes' vertices to the clip space of a sample's map; nothing is drawn where there is no such sample.
 
-layout(set = 0, binding = 0, std430) readonly buffer Of { Samples of; };
+layout(set = 0, binding = 0, std430) readonly buffer Placed { Samples samples; };
 
 void main()
 {
-    vec4 p = seen_from(of.at[push.nth]);
-    gl_Position = push.nth < of.count ? p : vec4(2.0, 2.0, 2.0, 1.0);
+    vec4 p = seen_from(samples.at[push.nth]);
+    gl_Position = push.nth < samples.count ? p : vec4(2.0, 2.0, 2.0, 1.0);
 }

@@ -1,7 +1,8 @@
 // Entered from edges.comp, skins.vert and skins.frag.
 //
-// Skins: where one sample of the light sees an occluder end, and what the light that lies between it and its
-// neighbour sees of what is behind (Heidrich, Brabec and Seidel 2000, sections 3.1 and 3.2).
+// Skins: strips from the edge of an occluder that one sample sees to the receiver behind it, and the part of the light
+// between that sample and its neighbour that a point behind a skin sees (Heidrich, Brabec and Seidel 2000, sections 3.1
+// and 3.2).
 //
 // Samples of a line see a point at one height v, so a skin lies in one row of texels of either map. In inverse
 // distance w it is straight: a ray that leaves the sample at tangent u_e is seen by the neighbour, `apart` metres
@@ -13,40 +14,40 @@
 struct Skin {
     float u_edge; // the sample's ray past the occluder's edge, tangent
     float w_edge; // the edge, 1/m
-    float w_seen; // what the sample sees beside it
-    float row;    // of texels
+    float w_seen; // the w of the surface that the sample sees beside the edge
+    float row;    // the row of texels
 };
 
-// Whether an occluder ends between two texels that lie side by side: by a step that is no plane's, whichever way it
-// leans, because a plane's w falls by as much from each texel to the next. A step that goes the other way says nothing
-// of this one. A surface that bends away by more than a fifth counts as one that ends. It hides as one does, so that
-// its skin is not wrong; one that is missed lets light through. (Missed in the bunny's shadow: 15 spots with a step of
-// twice as much, 2 with a fifth more, 2 with none, which takes twice as many skins.)
+// Whether an occluder ends between two neighbouring texels: the step in w is one that no plane makes, because a plane's
+// w falls by the same amount from each texel to the next. Steps in the other direction are ignored. A surface that
+// bends away by more than a fifth counts as one that ends. It hides as one does, so that its skin is not wrong; a
+// missed edge lets light through. (Missed in the bunny's shadow: 15 spots with a threshold of twice the step, 2 with a
+// fifth more, 2 with none, which takes twice as many skins.)
 bool is_edge(float w_before, float w_near, float w_seen, float w_behind)
 {
     float step = w_near - w_seen;
     float before = max(w_before - w_near, 0.0);
     float behind = max(w_seen - w_behind, 0.0);
-    // Rounding of the four.
+    // The last term is the rounding of the four values.
     return step > 1.2 * min(before, behind) + 1.0e-6 * w_near;
 }
 
-// The receiver beside the edge; where the map shows none, as far as the furthest there is.
+// The w of the receiver beside the edge, or of the furthest receiver where the map shows none.
 float w_beside(Skin s, float w_far)
 {
     return max(s.w_seen, w_far);
 }
 
-// The ray's w where the neighbour sees it at u, in tangents or in texels: it is at `ray` for w = 0 and moves by `step`
-// with w.
+// The w at which the ray past the edge crosses the neighbour's u, in tangents or in texels. The neighbour sees the ray
+// at `ray` for w = 0, and moving by `step` with w.
 float crossing_of(float ray, float u, float step)
 {
     return (u - ray) / step;
 }
 
-// What a point behind the skin sees of the light between the two samples, seen at w_crossing by the neighbour: 0 at
-// the occluder, 1 at the receiver. With the w of the receiver beside the edge it grows evenly (section 3.2); with
-// the point's own it is the rational function of eq. 1, exact on receivers of any slope.
+// The part of the light between the two samples that a point behind the skin sees, where the skin's ray is at
+// w_crossing: 0 at the occluder, 1 at the receiver. With the w of the receiver beside the edge it grows evenly
+// (section 3.2); with the point's own w it is the rational function of eq. 1, exact on receivers of any slope.
 float transition(float w_edge, float w_crossing, float w_receiver)
 {
     float whole = w_edge - w_receiver;

@@ -4,8 +4,8 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "linear_light/skin.glsl"
 
-// What a surface behind a skin sees of the segment, as depth: of all skins the depth test keeps the one that hides
-// most. 1 stays where there is none.
+// Writes the part of the segment that a surface behind a skin sees, as depth: the depth test keeps the skin that hides
+// most. Texels without a skin keep 1.
 
 layout(set = 0, binding = 2) uniform texture2DArray seen;
 
@@ -20,7 +20,7 @@ void main()
     float w_crossing = crossing_of(skin.x, float(p.x) + 0.5, skin.y);
     vec2 w = texelFetch(seen, ivec3(p, layer), 0).xy;
     float w_receiver = max(w.x, w.y);
-    // What lies in front of the skin sees past it.
+    // A surface in front of the skin is not shadowed by it.
     if (w_receiver >= w_crossing) {
         discard;
     }

@@ -3,11 +3,11 @@
 #extension GL_GOOGLE_include_directive : require
 #include "linear_light/line.glsl"
 
-// Samples evenly along a line, ends included.
+// Places samples evenly along a line, ends included.
 
 layout(local_size_x = 16) in;
 
-layout(set = 0, binding = 0, std430) buffer Of { Samples of; };
+layout(set = 0, binding = 0, std430) buffer Placed { Samples samples; };
 
 layout(push_constant) uniform Push {
     int count;
@@ -17,9 +17,9 @@ void main()
 {
     int nth = int(gl_GlobalInvocationID.x);
     if (nth < push.count) {
-        of.at[nth] = float(nth) / float(push.count - 1);
+        samples.at[nth] = float(nth) / float(push.count - 1);
     }
     if (nth == 0) {
-        of.count = push.count;
+        samples.count = push.count;
     }
 }

@@ -1,6 +1,6 @@
 // Entered from middle.vert and sample.vert.
 //
-// A mesh's vertices to the clip space of a map on a line, whose eye moves along x alone.
+// Converts a mesh's vertices to the clip space of a map on a line, whose eye moves along x alone.
 
 #ifndef LINEAR_LIGHT_VIEW_GLSL
 #define LINEAR_LIGHT_VIEW_GLSL
@@ -12,11 +12,11 @@ layout(location = 0) in vec3 position;
 layout(push_constant) uniform Push {
     mat4 line_from_mesh; // x in metres from the line's middle; y, z and w of clip space
     vec4 u_window;       // least and largest u at the line's first end, at its last
-    float line;          // its length, m
-    int nth;             // sample; of the middle none
+    float line;          // the line's length, m
+    int nth;             // the sample's number; unused for the middle
 } push;
 
-// As the place `at` sees them, 0 at the first end and 1 at the last. Depth is near / d.
+// The clip-space position seen from the place `at`, 0 at the first end and 1 at the last. Depth is near / d.
 vec4 seen_from(float at)
 {
     vec4 p = push.line_from_mesh * vec4(position, 1.0);

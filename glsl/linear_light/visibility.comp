@@ -3,7 +3,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// The visible fraction: what the samples that a pixel sees say of it, summed (section 3 and 3.3).
+// Writes the visible fraction: the parts of all segments that a pixel sees, summed over the lines (Heidrich, Brabec and
+// Seidel 2000, sections 3 and 3.3).
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -17,16 +18,16 @@ layout(set = 0, binding = 4, r32f) writeonly uniform image2D visibility;
 
 layout(push_constant) uniform Push {
     mat4 light_from_ndc;
-    ivec2 extent; // of the G-buffer
+    ivec2 extent; // the G-buffer's width and height
     float background;
     float snap;   // how far a raster moves a vertex, in texels
     int map;      // the maps' side in texels
-    int most;     // samples that a line may have: layers of maps
+    int most;     // the most samples of a line: its layers of `maps`
     int lines;
     int masked;
 } push;
 
-// What a line of the light is to a pixel.
+// A line of the light: the windows of its maps, its length in metres, and its row of `places`.
 struct Line {
     vec4 u_window;
     vec2 v_window;
@@ -34,14 +35,14 @@ struct Line {
     int row;
 };
 
-// What a sample tells of the segments before and behind it: in x and y what skins say, in z and w how far there are
-// none; and how far it sees the receiver. Of the four texels around the receiver those count, by their weights, that do
-// not hide it. `position` and `normal` are the line's, from its middle.
-vec4 told_by(Line line, int nth, float at, vec3 position, vec3 normal, bool blocks, out float sees)
+// A sample's channels for the segments before and after it, filtered over the four texels around the receiver: in x and
+// y the part by skins, in z and w the weight of texels without a skin. `sees` is how far the sample sees the receiver.
+// Texels that hide the receiver have no weight. `position` and `normal` are in the line's space, from its middle.
+vec4 seen_from_sample(Line line, int nth, float at, vec3 position, vec3 normal, bool blocks, out float sees)
 {
     sees = 0.0;
     vec3 p = position - vec3((at - 0.5) * line.span, 0.0, 0.0);
-    // The sample is below the pixel's own surface.
+    // The sample lies below the pixel's own surface.
     if (dot(normal, p) >= 0.0) {
         return vec4(0.0);
     }
@@ -60,18 +61,18 @@ vec4 told_by(Line line, int nth, float at, vec3 position, vec3 normal, bool bloc
     bool clear = true;
     for (int row = 0; row < 2; ++row) {
         ivec2 texel = ivec2(corner) + ivec2(0, row);
-        vec4 told = texelFetch(maps, ivec3(texel, line.row * push.most + nth), 0);
+        vec4 texels = texelFetch(maps, ivec3(texel, line.row * push.most + nth), 0);
         float weight = row == 1 ? f.y : 1.0 - f.y;
         vec2 at_centre = vec2(texel) + 0.5;
-        bool hides = in_front_of_filter(m, at_centre, told.x);
+        bool hides = in_front_of_filter(m, at_centre, texels.x);
         float part = hides ? 0.0 : weight * (1.0 - f.x);
-        vec4 by = unpacked(told.y);
+        vec4 by = unpacked(texels.y);
         sum += part * by;
         sees += part;
         clear = clear && !hides && by.z * by.w == 1.0;
-        hides = in_front_of_filter(m, at_centre + vec2(1.0, 0.0), told.z);
+        hides = in_front_of_filter(m, at_centre + vec2(1.0, 0.0), texels.z);
         part = hides ? 0.0 : weight * f.x;
-        by = unpacked(told.w);
+        by = unpacked(texels.w);
         sum += part * by;
         sees += part;
         clear = clear && !hides && by.z * by.w == 1.0;
@@ -87,17 +88,17 @@ float part_of(Line line, int count, vec3 position, vec3 normal, bool blocks)
     float sum = 0.0;
     float least = 1.0;
     float before = 0.0;
-    vec2 told = vec2(0.0);
+    vec2 first = vec2(0.0);
     float saw = 0.0;
     for (int nth = 0; nth < count; ++nth) {
         float at = texelFetch(places, ivec2(SAMPLES_AT + nth, line.row), 0).x;
         float sees;
-        vec4 by = told_by(line, nth, at, position, normal, blocks, sees);
-        float part = nth > 0 ? part_of_segment(told, by.xz, vec2(saw, sees)) : 1.0;
+        vec4 by = seen_from_sample(line, nth, at, position, normal, blocks, sees);
+        float part = nth > 0 ? part_of_segment(first, by.xz, vec2(saw, sees)) : 1.0;
         sum += nth > 0 ? (at - before) * part : 0.0;
         least = min(least, part);
         before = at;
-        told = by.yw;
+        first = by.yw;
         saw = sees;
     }
     // Segments add up to the line but for rounding, as lines do to the light.
@@ -119,9 +120,9 @@ void main()
         float least = 1.0;
         for (int row = 0; row < push.lines; ++row) {
             vec4 turn = texelFetch(places, ivec2(0, row), 0);
-            vec4 of_line = texelFetch(places, ivec2(2, row), 0);
+            vec4 bounds = texelFetch(places, ivec2(2, row), 0);
             int count = int(texelFetch(places, ivec2(3, row), 0).x);
-            Line line = Line(texelFetch(places, ivec2(1, row), 0), of_line.xy, of_line.z, row);
+            Line line = Line(texelFetch(places, ivec2(1, row), 0), bounds.xy, bounds.z, row);
             // The line's own x and y.
             mat2 turned = mat2(turn.x, -turn.y, turn.y, turn.x);
             vec3 position = vec3(turned * (r.position.xy - turn.zw), r.position.z);
@@ -132,7 +133,7 @@ void main()
                 vec2 slope = vec2(normal.x * 0.5 * line.span, 0.0);
                 sum = min(sum, fraction_above(slope, dot(normal, position)));
             }
-            v += of_line.w * sum;
+            v += bounds.w * sum;
             least = min(least, sum);
         }
         v = least == 1.0 ? 1.0 : min(v, 1.0);

@@ -1,10 +1,10 @@
-// Entry of the pass baseline.add_point (src/techniques/many_lights/mod.rs).
+// Entry of the pass many_lights.add_point (src/techniques/many_lights/mod.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "common/compare.glsl"
 
-// Whether one point of the light is hidden from each pixel: one comparison with the map drawn from there.
+// Adds 1 to the count of each pixel from which one point of the light is hidden: one comparison with the point's map.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -14,10 +14,10 @@ layout(set = 0, binding = 2) uniform texture2D point_depth;
 layout(set = 0, binding = 3, r32f) uniform image2D hidden_points;
 
 layout(push_constant) uniform Push {
-    vec2 point;         // on the light, m
-    vec2 texels_per_uv; // map texels a unit of u and v, as the point has them
+    vec2 point;         // the point's place on the light, m
+    vec2 texels_per_uv; // map texels a unit of u and v, in the point's map
     vec2 first;         // texel coordinates of u = v = 0
-    ivec2 extent;       // of the G-buffer
+    ivec2 extent;       // the G-buffer's width and height
     float inv_near;     // 1 over the map's near plane, 1/m
     float snap;         // how far a raster moves a vertex, in texels
     int map;            // the map's side in texels
@@ -31,7 +31,7 @@ bool hidden(ivec2 pixel)
     }
     vec3 normal = texelFetch(normals, pixel, 0).xyz;
     vec3 p = position.xyz - vec3(push.point, 0.0);
-    // The point is below the pixel's own surface.
+    // The point lies below the pixel's own surface.
     if (dot(normal, p) >= 0.0) {
         return true;
     }

@@ -1,8 +1,8 @@
-// Entry of the pass baseline.average (src/techniques/many_lights/mod.rs).
+// Entry of the pass many_lights.average (src/techniques/many_lights/mod.rs).
 #version 450
 #extension GL_EXT_samplerless_texture_functions : require
 
-// The share of the points that each pixel sees.
+// Writes the share of the light's points that each pixel sees.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -10,7 +10,7 @@ layout(set = 0, binding = 0) uniform texture2D hidden_points;
 layout(set = 0, binding = 1, r32f) writeonly uniform image2D visibility;
 
 layout(push_constant) uniform Push {
-    ivec2 extent; // of the G-buffer
+    ivec2 extent; // the G-buffer's width and height
     float points;
 } push;
 

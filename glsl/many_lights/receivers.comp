@@ -1,9 +1,9 @@
-// Entry of the pass baseline.receivers (src/techniques/many_lights/mod.rs).
+// Entry of the pass many_lights.receivers (src/techniques/many_lights/mod.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// The G-buffer in light space, once for all points of the light; and no point hidden yet.
+// Writes the G-buffer in light space, once for all points of the light, and clears the counts of hidden points.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -16,7 +16,7 @@ layout(set = 0, binding = 4, r32f) writeonly uniform image2D hidden_points;
 
 layout(push_constant) uniform Push {
     mat4 light_from_ndc;
-    ivec2 extent; // of the G-buffer
+    ivec2 extent; // the G-buffer's width and height
     float background;
     int masked;
 } push;

@@ -1,6 +1,6 @@
 // Entered from ray_march/level.comp, ray_march/column.glsl and occlusion_textures/levels.glsl; at first skip what is behind VALUE.
 //
-// The levels of a map: what windows of its texels hold, for a window at every texel or at few.
+// The levels of a map: each node of a level holds a value for a window of the map's texels.
 //
 //     kind      a window of level k    one begins at every
 //     N_BUFFER  2^k x 2^k texels       texel                   (Decoret 2005)
@@ -36,61 +36,60 @@ int power_of_three(int k)
            ((k & 8) == 0 ? 1 : 6561);
 }
 
-// The largest k of which 3^k is no more than x.
+// The largest k for which 3^k is no more than x.
 int log_three(int x)
 {
     return int(x >= 3) + int(x >= 9) + int(x >= 27) + int(x >= 81) + int(x >= 243) + int(x >= 729) +
            int(x >= 2187);
 }
 
-// The least k of which 2^k is no less than x.
+// The least k for which 2^k is no less than x.
 int log_above(int x)
 {
     return findMSB(2 * x - 1);
 }
 
-// Texels a side of a window.
+// A window's side in texels.
 int window_of(Levels l, int level)
 {
     return l.kind == THIRDS ? power_of_three(level) : 1 << level;
 }
 
-// Windows a side.
+// The number of windows along a side of a level.
 int side_of(Levels l, int level)
 {
     return l.kind == MIP ? ((l.map - 1) >> level) + 1 : l.map + 1 - window_of(l, level);
 }
 
-// The last level: no window is larger than the map, but for MIP's only one there, which holds all of it.
+// The last level. No window is larger than the map, except that MIP's last one may stick out of it.
 int top_of(Levels l)
 {
     return l.kind == THIRDS ? log_three(l.map) : l.kind == MIP ? log_above(l.map) : findMSB(l.map);
 }
 
-// The node of a level whose window begins at a texel, or holds it, as near to it as there is one.
+// The node of a level whose window begins at a texel or, for MIP, holds it; moved inside where there is no such node.
 ivec2 node_at(Levels l, int level, ivec2 texel)
 {
     return clamp(l.kind == MIP ? texel >> level : texel, ivec2(0), ivec2(side_of(l, level) - 1));
 }
 
-// Where a node is kept: texel and layer.
+// The texel (xy) and the layer (z) at which a node is kept.
 ivec3 place_of(Levels l, int level, ivec2 node)
 {
     if (l.kind != MIP || level == 0) {
         return ivec3(node, level);
     }
-    // Below each other from level 2 on, with the room that the next power of two would need: it is no
-    // more than the map has, as that is less than twice as large as the map.
+    // MIP's levels from 2 on lie below each other, each with the room that the next power of two would need. They fit,
+    // because that power is less than twice the map's side.
     int next = 1 << log_above(l.map);
     return ivec3(node + (level == 1 ? ivec2(0) : ivec2(side_of(l, 1), next / 2 - (next >> level - 1))), 1);
 }
 
 #ifdef VALUE
-// Levels as values: how a level is made from the one before it, and what a window holds. The including shader says
-// what a value is by `#define VALUE` before it includes this, how two become one and where a node's value is by
-// functions: `combine` and `value_at`. With `#define MEAN` the values are added up and divided by their number, what
-// lies outside the map being 0; without, combining a value with itself must not change it, as the least and the
-// largest do not.
+// Values of nodes: how a level is made from the one before it, and what any window holds. Before it includes this, the
+// including shader names the value's type by `#define VALUE`, and declares two functions: `combine` makes one value of
+// two, `value_at` reads a node's value. With `#define MEAN` values are added up and divided by their number, and texels
+// outside the map are 0; without it, combining a value with itself must not change it, as for a minimum or a maximum.
 
 #ifdef MEAN
 #define SHARE(v, parts) ((v) / (parts))
@@ -101,14 +100,14 @@ ivec3 place_of(Levels l, int level, ivec2 node)
 VALUE combine(VALUE a, VALUE b);
 VALUE value_at(Levels l, int level, ivec2 node);
 
-// Four nodes of a level, so far apart.
+// Combines four nodes of a level that lie `apart` nodes from each other.
 VALUE combined_four(Levels l, int level, ivec2 node, int apart)
 {
     return combine(combine(value_at(l, level, node), value_at(l, level, node + ivec2(apart, 0))),
                    combine(value_at(l, level, node + ivec2(0, apart)), value_at(l, level, node + apart)));
 }
 
-// What a node of a level from 1 on holds, by the level before it.
+// The value of a node of level 1 or above, from the level before it.
 VALUE combined(Levels l, int level, ivec2 node)
 {
     int finer = level - 1;
@@ -127,7 +126,7 @@ VALUE combined(Levels l, int level, ivec2 node)
         }
         return SHARE(v, 4.0);
     }
-    // Windows lie in the map whole, and so do their parts.
+    // Windows and their parts lie within the map.
     int apart = window_of(l, finer);
     VALUE four = combined_four(l, finer, node, apart);
     if (l.kind == N_BUFFER) {
@@ -142,8 +141,8 @@ VALUE combined(Levels l, int level, ivec2 node)
 }
 
 #ifndef MEAN
-// What a window holds that has a square window within it: one value, of up to twice as many texels a side
-// (three times, for THIRDS); as `window_value` for MIP, and where no window is as large.
+// The value of a window that contains a square window: of up to twice as many texels a side (three times for THIRDS).
+// For MIP, and where no window is as large, it is `window_value`.
 VALUE window_value(Levels l, ivec2 first, int side);
 
 VALUE wider_window_value(Levels l, ivec2 first, int side)
@@ -155,15 +154,14 @@ VALUE wider_window_value(Levels l, ivec2 first, int side)
     return value_at(l, level, node_at(l, level, first));
 }
 
-// What a square window holds: the least and the largest over exactly its texels, but for MIP, where they
-// may be of up to 16 times as many around them. A window that would stick out of the map is moved inside
-// whole; one larger than the map is the map.
+// The value of a square window, over exactly its texels; for MIP over up to 16 times as many around them. A window that
+// would stick out of the map is moved inside whole; one larger than the map is the map.
 VALUE window_value(Levels l, ivec2 first, int side)
 {
     side = min(side, l.map);
     first = clamp(first, ivec2(0), ivec2(l.map - side));
     int level = l.kind == THIRDS ? log_three(side) : l.kind == MIP ? log_above(side) : findMSB(side);
-    // The windows that cover it overlap.
+    // Neighbouring windows that cover it overlap.
     int apart = l.kind == MIP ? 1 : window_of(l, level);
     ivec2 from = l.kind == MIP ? first >> level : first;
     ivec2 to = l.kind == MIP ? (first + side - 1) >> level : first + side - apart;

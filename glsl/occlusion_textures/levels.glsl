@@ -49,8 +49,8 @@ bool is_empty(vec2 lo, vec2 hi)
     return false;
 }
 
-// The share of a part of the map, `lo` to `hi` in texels, that a slice blocks, those above it, and both: windows as wide
-// as its shorter side, side by side along the longer one.
+// The share of a part of the map, `lo` to `hi` in texels, that a slice blocks, those above it, and both: windows as
+// wide as its shorter side, side by side along the longer one.
 vec3 mean_of(int slice, vec2 lo, vec2 hi)
 {
     int tile = IS_CORRELATED ? slice : slice >> 2;

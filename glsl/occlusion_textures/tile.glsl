@@ -118,11 +118,10 @@ bool is_empty(vec2 lo, vec2 hi)
 #endif
 }
 
-// The share of a part of the map, `lo` to `hi` in texels, that a slice blocks, those above it, and both; the first alone
-// where it is nothing or everything. Of the texels at the rim the rectangle has a part, so the columns a,
-// a + 1, b, b + 1 and as many rows cut it into nine pieces, of which each counts in proportion. Sums are taken
-// apart before they become real numbers, so that small rectangles far from the map's first texel are exact as
-// well.
+// The share of a part of the map, `lo` to `hi` in texels, that a slice blocks, those above it, and both; the first
+// alone where it is nothing or everything. Of the texels at the rim the rectangle has a part, so the columns a, a + 1,
+// b, b + 1 and as many rows cut it into nine pieces, of which each counts in proportion. Sums are taken apart before
+// they become real numbers, so that small rectangles far from the map's first texel are exact as well.
 vec3 mean_of(int slice, vec2 lo, vec2 hi)
 {
     ivec2 a = ivec2(floor(lo));

@@ -105,7 +105,7 @@ uint met_by(Tile tile)
 
 uint met_here = 0u;
 
-bool is_felt_in(Tile tile)
+bool may_be_shadowed(Tile tile)
 {
     met_here = met_by(tile);
     return met_here != 0u;

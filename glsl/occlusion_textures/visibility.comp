@@ -113,7 +113,7 @@ void main()
     if (at >= count) {
         return;
     }
-    uint meets = is_felt_tile(tiles[at]) ? met[nth_tile(tiles[at], push.extent)] : 0u;
+    uint meets = tile_may_be_shadowed(tiles[at]) ? met[nth_tile(tiles[at], push.extent)] : 0u;
     ivec2 p = first_pixel(tiles[at]) + ivec2(gl_LocalInvocationID.xy);
 #else
     uint meets = all_slices();

@@ -1,12 +1,12 @@
 // Entered from pcss.comp.
 //
-// Places on the light, or around a place on a map.
+// The pattern of taps: points of a disc, mapped to the light's rectangle or to a rectangle around a place in a map.
 
 #ifndef PCSS_DISC_GLSL
 #define PCSS_DISC_GLSL
 
-// A disc's polar coordinates (radius, turn from 0 to 1) to the square [-1, 1]^2, equal areas to equal
-// areas (Shirley and Chiu 1997): radii become squares, and a turn of the disc one along their sides.
+// Maps a disc's polar coordinates (radius, turn from 0 to 1) to the square [-1, 1]^2, equal areas to equal areas
+// (Shirley and Chiu 1997): circles become squares, and an angle becomes a length along their sides.
 vec2 disc_to_square(vec2 polar)
 {
     float quarter = polar.y * 4.0 + 0.5;

@@ -1,11 +1,11 @@
-// Entry of the pass baseline.pcss (src/techniques/pcss/mod.rs); at first skip disc.glsl.
+// Entry of the pass pcss.visibility (src/techniques/pcss/mod.rs); at first skip disc.glsl.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// Percentage-closer soft shadows (Fernando 2005): the blockers around a pixel's place in the map say how
-// far away they are, and with that how wide the penumbra is that the comparisons are averaged over. With `#define
-// LISTED` the pixels of the listed tiles alone.
+// Percentage-closer soft shadows (Fernando 2005): the blockers around a pixel's place in the map give the blockers'
+// distance, and that gives the width of the penumbra over which comparisons are averaged. `#define LISTED` runs it for
+// the pixels of listed tiles alone.
 
 #include "common/one_map.glsl"
 #include "pcss/disc.glsl"
@@ -40,10 +40,10 @@ void main()
     if (at >= count) {
         return;
     }
-    bool felt = is_felt_tile(tiles[at]);
+    bool shadowable = tile_may_be_shadowed(tiles[at]);
     ivec2 p = first_pixel(tiles[at]) + ivec2(gl_LocalInvocationID.xy);
 #else
-    bool felt = true;
+    bool shadowable = true;
     ivec2 p = ivec2(gl_GlobalInvocationID.xy);
 #endif
     if (p.x >= push.extent.x || p.y >= push.extent.y) {
@@ -54,13 +54,13 @@ void main()
     if (r.receives) {
         MapPlane m = pixel_plane(r);
         float turn = pixel_turn(uint(p.x), uint(p.y));
-        // What a pixel's own surface hides of the light is known, and not left to the taps.
+        // The part of the light below the pixel's own plane is a closed form, so that no tap needs to sample it.
         v = r.blocks ? fraction_above(r.normal.xy * push.half_light, m.c) : 1.0;
         // The light seen through the near plane, and then through the blockers' mean distance: similar
         // triangles, half_light (1/d - w) in u and v.
         vec2 texels = push.half_light * push.texels_per_uv;
         float blockers = 0.0;
-        if (felt && v > 0.0 && push.inv_near > m.w) {
+        if (shadowable && v > 0.0 && push.inv_near > m.w) {
             blockers = blocker_distance(m, texels * (push.inv_near - m.w), turn);
         }
         if (blockers > 0.0) {

@@ -7,8 +7,8 @@
 #define TILES_A_GROUP 1u
 #include "common/lists.glsl"
 
-// Which tiles of pixels find no blocker: nothing in the part of the map that they search, which is the light
-// seen through the near plane, lies before any of their receivers. One invocation a tile.
+// Lists the tiles whose pixels may find a blocker. The others are lit: no texel of the part of the map that they
+// search, the light seen through the near plane, lies before any of their receivers. One invocation handles one tile.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -30,7 +30,7 @@ float nearest_w()
     return push.inv_near;
 }
 
-bool is_felt_in(Tile tile)
+bool may_be_shadowed(Tile tile)
 {
     vec2 reach = push.half_light * push.texels_per_uv * (push.inv_near - tile.w.x);
     ivec4 around = nodes_around(push.map, tile.t_min - reach, tile.t_max + reach);

@@ -1,11 +1,11 @@
-// Entry of the pass soft_shadow_map.blocks (src/techniques/soft_shadow_map/passes.rs).
+// Entry of the pass soft_shadow_map.blocks (src/techniques/soft_shadow_map/nodes.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "soft_shadow_map/node.glsl"
 
-// The occluder map as w, in blocks of 8x8 texels that lie together, with each block's moments.
-// One invocation a block; z is the side: 0 the front layer, 1 the back layer.
+// Writes the occluder map as w, in blocks of 8x8 texels that lie together, with each block's moments.
+// One invocation handles one block; z is the side: 0 the front layer, 1 the back layer.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -22,12 +22,12 @@ layout(push_constant) uniform Push {
     int faces;      // 0: both layers as they are; 1, 2: see below
 } push;
 
-// Front texels take the back layer's distance where it has one.
+// A front texel gets the back layer's distance where that has one.
 const int BOTTOM = 1;
-// Back texels that only add noise to a front which has none are left out.
+// A back texel is left out where its front is so flat that the back would only add noise.
 const int MEAN = 2;
 
-// Cleared to 1 and kept where less: 1 is a texel without a back face.
+// The back layer is cleared to 1 and keeps the least value, so 1 is a texel without a back face.
 const float NO_BACK = 1.0;
 
 float w_at(ivec2 p, uint side)
@@ -48,7 +48,7 @@ float w_at(ivec2 p, uint side)
 // one, such as the side of a box under its top, would only add (mean error of the tall box, L = 0.4: 0.5 %,
 // 4.3 % without). From 15 to 50 no scene tells the difference; at 6 the bunny's error grows by a seventh.
 const float FLATTER = 30.0;
-// What a raster's depth of a flat face may step by.
+// The largest step that a raster's rounding gives the depth of a flat face.
 const float ROUNDING = 1.0e-4;
 
 // How steeply w changes at a texel: along each axis by the lesser step to its two neighbours, so that an
@@ -108,18 +108,18 @@ void main()
     }
     float mean = sum / count;
     // A sum of 64 is off by several roundings, and near a receiver each counts as often as w is larger than its
-    // distance in w to it. What is left of the texels takes them away but for the last.
+    // distance in w to it. Subtracting the sum of what rounding left leaves one rounding.
     float rest = 0.0;
     for (int i = 0; i < BLOCK_TEXELS; ++i) {
         rest += w[i] > 0.0 ? w[i] - mean : 0.0;
     }
     mean += rest / count;
-    // Sums over the texels above and to the left, for sums over any rectangle.
+    // Prefix sums over the texels above and to the left, which give the sums over any rectangle.
     vec4 columns[BLOCK];
     for (int x = 0; x < BLOCK; ++x) {
         columns[x] = vec4(0.0);
     }
-    // Where maps are above 2048 texels a side, not all blocks have room; see GUARANTEED_RANGE.
+    // Maps above 2048 texels a side have more blocks than these sums have room for; see GUARANTEED_RANGE.
     bool room = (index + 1) * BLOCK_TEXELS <= sums.length();
     for (int y = 0; y < BLOCK; ++y) {
         vec4 row = vec4(0.0);

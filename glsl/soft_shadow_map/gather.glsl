@@ -2,8 +2,8 @@
 //
 // The hierarchical gather at four receivers at once, one lane of each vec4 a receiver.
 //
-// The including shader declares the buffers `texels`, `sums` and `nodes`, and what it knows of the
-// receivers' planes:
+// The including shader declares the buffers `texels`, `sums` and `nodes`, and the test against the receivers' own
+// planes:
 //     struct Receivers { vec4 t_x; vec4 t_y; vec4 w; ... };
 //     bvec4 is_above(vec2 lo, float w_o, Receivers r)
 //     int plane_side(Node node, vec2 lo, float side, Receivers r)
@@ -14,7 +14,7 @@
 #include "common/lists.glsl"
 #include "soft_shadow_map/node.glsl"
 
-// The map's nodes as they are gathered from.
+// The occluder map as the gather reads it.
 struct Map {
     vec2 scale;   // (du/Lx, dv/Ly), 1/m
     float w_max;  // no occluder is nearer than 1/w_max
@@ -32,7 +32,7 @@ float most(vec4 a)
     return max(max(a.x, a.y), max(a.z, a.w));
 }
 
-// Where four receivers lie.
+// The bounds of four receivers.
 Tile tile_of(Receivers r)
 {
     bvec4 nothing = equal(r.w, vec4(NOTHING));
@@ -46,13 +46,13 @@ Tile tile_of(Receivers r)
 // The occlusion of one occluder texel.
 vec4 texel_occlusion(vec2 lo, float w_o, Receivers r, vec2 scale)
 {
-    // Receivers in front of the texel, and those that are not there, get a magnification of 0.
+    // Receivers in front of the texel, and missing ones, get a magnification of 0.
     vec4 k = mix(vec4(0.0), 1.0 / (w_o - r.w), greaterThan(vec4(w_o), r.w));
     vec4 m_x = scale.x * k;
     vec4 m_y = scale.y * k;
     vec4 a_x = (lo.x - r.t_x) * m_x + 0.5;
     vec4 a_y = (lo.y - r.t_y) * m_y + 0.5;
-    // The other ends as the next texel has them: rounded with a_x + m_x, equal texels would all be wrong by the
+    // The other edges are computed as the next texel's first ones: as a_x + m_x, equal texels would all be wrong by the
     // same part of 2^-24, and their sum by that part of a row's texels.
     vec4 b_x = (lo.x + 1.0 - r.t_x) * m_x + 0.5;
     vec4 b_y = (lo.y + 1.0 - r.t_y) * m_y + 0.5;
@@ -61,7 +61,7 @@ vec4 texel_occlusion(vec2 lo, float w_o, Receivers r, vec2 scale)
     return mix(vec4(0.0), x * y, is_above(lo, w_o, r));
 }
 
-// Moments of the texels [lo, hi) of a block.
+// The moments of the texels [lo, hi) of a block.
 vec4 sums_within(int block, ivec2 lo, ivec2 hi)
 {
     int last = block * BLOCK_TEXELS - 1 - BLOCK;
@@ -78,8 +78,8 @@ vec4 sums_within(int block, ivec2 lo, ivec2 hi)
     return s;
 }
 
-// Takes the first texel out of a mask that has one. Whether it has is tested outside: tested within, with
-// `?:`, in code that stands eight times in a row, SwiftShader's compiler needs over 24 GB.
+// Removes the first texel from a mask that has one, and returns its index. The caller tests whether there is one:
+// tested here, with `?:`, in code that stands eight times in a row, SwiftShader's compiler needs over 24 GB.
 int take_texel(inout uvec2 todo)
 {
     bool first = todo.x != 0u;
@@ -90,7 +90,7 @@ int take_texel(inout uvec2 todo)
     return n;
 }
 
-// The occlusion of the first texel of a mask, which is taken out of it; 0 where there is none.
+// The occlusion by the first texel of a mask, which is removed from it; 0 where the mask is empty.
 vec4 next_texel(inout uvec2 todo, int block, vec2 lo, Receivers r, vec2 scale)
 {
     if ((todo.x | todo.y) == 0u) {
@@ -100,8 +100,8 @@ vec4 next_texel(inout uvec2 todo, int block, vec2 lo, Receivers r, vec2 scale)
     return texel_occlusion(lo + vec2(n % BLOCK, n / BLOCK), texels[block * BLOCK_TEXELS + n], r, scale);
 }
 
-// The occlusion of the first texel of a mask by its back face, or by its front face where the back face does not lie
-// before the receiver.
+// The occlusion by the first texel of a mask, which is removed from it: by its back face, or by its front face where
+// the back face does not lie before the receiver.
 vec4 next_pair(inout uvec2 todo, int block, int backs, vec2 lo, Receivers r, vec2 scale)
 {
     if ((todo.x | todo.y) == 0u) {
@@ -131,35 +131,35 @@ int before(Node node, vec2 lo, float extent, Tile tile, Receivers r)
     return plane > 0 && node.w_min <= tile.w.y ? 0 : plane;
 }
 
-// The occlusion by one side of the map, or by both in pairs.
+// The occlusion by one side of the map, or by both sides in pairs.
 vec4 gather(Map map, int side, Receivers r)
 {
     Tile tile = tile_of(r);
     vec4 sum = vec4(0.0);
-    // Sums by superblock, by row and at last: thousands of equal numbers added to one round the same way each time
-    // (docs/rounding.md).
+    // Sums are kept for a superblock, for a row of them and for the whole map: thousands of equal numbers added to one
+    // float round the same way each time (docs/rounding.md).
     vec4 sum_of_row = vec4(0.0);
     vec4 sum_of_superblock = vec4(0.0);
     if (tile.w.x >= map.w_max) {
         return sum;
     }
     float cell = map.scale.x * map.scale.y;
-    // The widest window of occluder texels from which any could hide light.
+    // The widest window of occluder texels in which one could hide light.
     vec2 widest = 0.5 * (map.w_max - tile.w.x) / map.scale;
     float end = float(map.row - 1);
     ivec2 from = ivec2(clamp(floor((tile.t_min - widest) / float(SUPERBLOCK)), 0.0, end));
     ivec2 to = ivec2(clamp(floor((tile.t_max + widest) / float(SUPERBLOCK)), 0.0, end));
     ivec2 at = from;    // the superblock
-    uint children = 0u; // its blocks that are still to be looked at
+    uint children = 0u; // the bits of its blocks that are still to be visited
     while (at.y <= to.y) {
-        // Walk to the next block that is to be opened. Apart from opening it, so that invocations that
-        // run in step all have one to open.
+        // Walks to the next block that must be opened. This loop stands apart from opening it, so that invocations
+        // that run in step all have one to open.
         Node node;
         vec2 lo;
         int block = 0;
         int plane = 0;
         bool open = false;
-        bool pairs = false; // some of its back faces count and some do not
+        bool pairs = false; // whether some of its back faces count and some do not
         while (!open && at.y <= to.y) {
             bool whole = children == 0u;
             int child = whole ? 0 : findLSB(int(children));
@@ -195,7 +195,7 @@ vec4 gather(Map map, int side, Receivers r)
             open = kind == MIXED && !whole;
             block = (from_side * map.row * FAN + blocks_at.y) * map.row * FAN + blocks_at.x;
             if (children == 0u) {
-                // Its last block, where it is still to be opened, counts with the next one.
+                // The sum of its last block, where that must still be opened, is added with the next superblock's.
                 sum_of_row += sum_of_superblock;
                 sum_of_superblock = vec4(0.0);
                 at.x += 1;
@@ -210,7 +210,7 @@ vec4 gather(Map map, int side, Receivers r)
             break;
         }
 
-        // Its texels from `outer` may hide light; those from `core` wholly, by all receivers.
+        // Texels from `outer` on may hide light; those from `core` on lie wholly inside the light for all receivers.
         vec2 reach = 0.5 * (node.w_max - tile.w.x) / map.scale;
         vec2 inner = 0.5 * (node.w_min - tile.w.y) / map.scale;
         ivec2 outer_lo = ivec2(clamp(floor(tile.t_min - reach - lo), 0.0, float(BLOCK)));
@@ -226,11 +226,11 @@ vec4 gather(Map map, int side, Receivers r)
                 todo &= ~rectangle_mask(core_lo, core_hi);
             }
         }
-        // A block's own sum first: adding few large numbers keeps the low digits.
+        // A block has a sum of its own: adding few large numbers keeps the low digits.
         vec4 part = vec4(0.0);
-        int backs = map.row * map.row * FAN * FAN * BLOCK_TEXELS; // from a front face to its back face
-        // Eight at a time: Mesa's CPU driver cuts an invocation off, silently, after 65535 turns of all its
-        // loops together.
+        int backs = map.row * map.row * FAN * FAN * BLOCK_TEXELS; // the offset from a front face to its back face
+        // Each turn handles eight texels: Mesa's CPU driver cuts an invocation off, silently, after 65535 turns of all
+        // its loops together.
         while (pairs && (todo.x | todo.y) != 0u) {
             part += next_pair(todo, block, backs, lo, r, map.scale);
             part += next_pair(todo, block, backs, lo, r, map.scale);

@@ -1,11 +1,11 @@
-// Entry of the passes soft_shadow_map.gather_back and soft_shadow_map.gather_front (src/techniques/soft_shadow_map/passes.rs).
+// Entry of the passes soft_shadow_map.gather_back and soft_shadow_map.gather_front (src/techniques/soft_shadow_map/receiver_map.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// The soft shadow map by gathering: what all occluder-map texels hide of the light from the texels of
-// the receiver map. One invocation 2x2 texels. Same sum as blending every micro-patch (Atty 2006,
-// section 3.4), in an order that is fixed and with the far texels summed by node.
+// The soft shadow map by gathering: the occlusion of the receiver map's texels by all texels of the occluder map. One
+// invocation handles 2x2 texels. The sum is that of blending every micro-patch (Atty 2006, section 3.4), in a fixed
+// order and with far texels summed by node.
 
 layout(local_size_x = 64) in;
 
@@ -18,11 +18,11 @@ layout(set = 0, binding = 4, r32f) writeonly uniform image2D soft_shadow_map;
 layout(push_constant) uniform Push {
     vec2 scale;              // (du/Lx, dv/Ly), 1/m
     vec2 t_step;             // occluder texels a receiver texel
-    vec2 t_first;            // t of the centre of receiver texel (0, 0)
+    vec2 t_first;            // t at the centre of receiver texel (0, 0)
     float w_max;             // no occluder is nearer than 1/w_max
     float spread;            // the series' limit, see classify
     float receiver_inv_near; // 1 over the receiver map's near plane, 1/m
-    int receiver_map;        // its side in texels
+    int receiver_map;        // the receiver map's side in texels
     int row;                 // superblocks a row
     int side;                // 0 front, 1 back, 2 back or front, as in gather.glsl
 } push;
@@ -35,7 +35,7 @@ struct Receivers {
 
 #include "soft_shadow_map/node.glsl"
 
-// Receivers are not occluders here: every texel in front counts.
+// Receivers are no occluders here, so every texel in front counts.
 bvec4 is_above(vec2 lo, float w_o, Receivers r)
 {
     return bvec4(true);

@@ -3,9 +3,9 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// The gather at the G-buffer's own pixels: no receiver map, no resampling, and no split into occluders
-// and receivers, because a texel counts only where it lies above the pixel's own plane. One invocation
-// 2x2 pixels, one lane of each vec4 a pixel; with `#define LISTED` those of the listed tiles alone.
+// The gather at the G-buffer's own pixels: no receiver map, no resampling, and no split into occluders and receivers,
+// because a texel counts only where it lies above the pixel's own plane. One invocation handles 2x2 pixels, one lane of
+// each vec4 a pixel. `#define LISTED` runs it for the pixels of listed tiles alone.
 
 layout(local_size_x = 64) in;
 
@@ -34,7 +34,7 @@ struct Receivers {
     vec4 n_y;
     vec4 n_0;
     vec4 c;
-    vec4 bias; // what that may be off by
+    vec4 bias; // the largest error of that height
 };
 
 bvec4 is_above(vec2 lo, float w_o, Receivers r)
@@ -74,10 +74,10 @@ void main()
         return;
     }
     uint tile = tiles[at];
-    bool felt = is_felt_tile(tile);
+    bool shadowable = tile_may_be_shadowed(tile);
     ivec2 quad = first_pixel(tile) + ivec2(within & uint(TILE / 2 - 1)) * 2;
 #else
-    bool felt = true;
+    bool shadowable = true;
     ivec2 quad = ivec2(gl_WorkGroupID.xy * 8u + within) * 2;
 #endif
     if (quad.x >= push.extent.x || quad.y >= push.extent.y) {
@@ -104,14 +104,14 @@ void main()
         r.bias[i] = own_slope(p.blocks) * 0.5 * length(1.0 / push.texels_per_uv) +
                     plane_rounding(n, r.n_0[i], c, t, w, push.snap, push.depth_error);
         below[i] = there && p.blocks ? 1.0 - fraction_above(p.normal.xy * half_light, c) : 0.0;
-        // From a tile without occluders nothing is hidden but by its own surfaces.
-        r.w[i] = there && felt ? w : NOTHING;
+        // In a tile that no occluder can shadow, only a pixel's own surface hides light.
+        r.w[i] = there && shadowable ? w : NOTHING;
     }
     Map map = Map(push.scale, push.w_max, push.spread, push.row);
     vec4 hidden = below;
     bool mean = (push.flags & 4) != 0;
     for (int side = 0; side <= ((push.flags >> 1) & 1); ++side) {
-        // Where nothing of the light is left to hide, another side need not be gathered.
+        // A receiver from which all of the light is hidden needs no second side.
         r.w = mix(r.w, vec4(NOTHING), greaterThanEqual(hidden, vec4(1.0)));
         vec4 sum = below + gather(map, side == 1 && mean ? BACK_OR_FRONT : side, r);
         hidden = side == 1 && mean ? merged_sides(hidden, sum) : max(hidden, sum);

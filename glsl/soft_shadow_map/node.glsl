@@ -8,10 +8,10 @@
 const int BLOCK = 8;                   // a block's side in texels
 const int BLOCK_TEXELS = BLOCK * BLOCK;
 const int FAN = 4;                     // a superblock's side in blocks
-const int SUPERBLOCK = FAN * BLOCK;    // and in texels
+const int SUPERBLOCK = FAN * BLOCK;    // a superblock's side in texels
 const int FAMILY = 1 + FAN * FAN;      // a superblock and its blocks, which lie together
 
-// w of a receiver that is not there: further than any occluder can be in front of.
+// The w of a missing receiver: so near that no occluder can be in front of it.
 const float NOTHING = 3.0e38;
 
 struct Node {
@@ -24,7 +24,7 @@ struct Node {
     uvec2 mask;   // a bit for each occupied texel of a block, or for each such block of a superblock
 };
 
-// Two uvec4 a node in buffers.
+// Reads a node from two uvec4.
 Node unpack_node(uvec4 a, uvec4 b)
 {
     vec4 f = uintBitsToFloat(a);
@@ -54,9 +54,9 @@ uvec2 rectangle_mask(ivec2 lo, ivec2 hi)
     return columns & below_to & ~below_from;
 }
 
-// Whether a node could hide any of the light from receivers with t in [t_min, t_max] and w of w_r or more;
-// `lo` is its first texel, `side` its side in texels.
-bool is_felt(Node node, vec2 lo, float side, vec2 t_min, vec2 t_max, float w_r, vec2 scale)
+// Whether a node may hide any of the light from receivers with t in [t_min, t_max] and w of w_r or more; `lo` is its
+// first texel, `side` its side in texels.
+bool may_shadow(Node node, vec2 lo, float side, vec2 t_min, vec2 t_max, float w_r, vec2 scale)
 {
     if (node.count == 0.0 || node.w_max <= w_r) {
         return false;
@@ -67,8 +67,8 @@ bool is_felt(Node node, vec2 lo, float side, vec2 t_min, vec2 t_max, float w_r, 
     return gap.x < window.x && gap.y < window.y;
 }
 
-// The first superblock and, behind it, the last that receivers with t in [t_min, t_max] and w of w_r or more could
-// be affected by an occluder in; none is nearer than 1/w_max, and a row has `row` superblocks.
+// The first superblock (xy) and the last one (zw) in which an occluder may shadow receivers with t in [t_min, t_max]
+// and w of w_r or more. No occluder is nearer than 1/w_max, and a row has `row` superblocks.
 ivec4 superblocks_around(vec2 t_min, vec2 t_max, float w_r, int row, float w_max, vec2 scale)
 {
     vec2 widest = 0.5 * (w_max - w_r) / scale;
@@ -79,14 +79,14 @@ ivec4 superblocks_around(vec2 t_min, vec2 t_max, float w_r, int row, float w_max
 
 const int OUTSIDE = 0; // hides nothing of the light from any of the receivers
 const int INSIDE = 1;  // the series serves all of the receivers
-const int MIXED = 2;   // look closer
+const int MIXED = 2;   // undecided: its children or its texels must be read
 
-// How a node lies to receivers with t in [t_min, t_max] and w_r in [w_r.x, w_r.y]; `lo` is its first
-// texel, `side` its side in texels, `spread` the largest |w - mean| k that the series may have.
+// Where a node lies for receivers with t in [t_min, t_max] and w_r in [w_r.x, w_r.y]; `lo` is its first texel, `side`
+// its side in texels, `spread` the largest |w - mean| k that the series may have.
 int classify(Node node, vec2 lo, float side, vec2 t_min, vec2 t_max, vec2 w_r, vec2 scale,
              float spread)
 {
-    if (!is_felt(node, lo, side, t_min, t_max, w_r.x, scale)) {
+    if (!may_shadow(node, lo, side, t_min, t_max, w_r.x, scale)) {
         return OUTSIDE;
     }
     vec2 hi = lo + side;

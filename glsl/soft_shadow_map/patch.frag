@@ -1,11 +1,11 @@
-// Entry of the passes soft_shadow_map.blend_back and soft_shadow_map.blend_front (src/techniques/soft_shadow_map/passes.rs).
+// Entry of the passes soft_shadow_map.blend_back and soft_shadow_map.blend_front (src/techniques/soft_shadow_map/receiver_map.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "common/light_space.glsl"
 
-// The fraction of the light that a micro-patch hides from one receiver texel (Atty 2006, section 3.4);
-// blending adds the patches up.
+// The fraction of the light that a micro-patch hides from one receiver texel (Atty 2006, section 3.4); blending adds
+// the patches up.
 //
 // Thousands of equal patches added to one float round the same way each time, and their errors add up
 // too: 2e-5 of the light at N = 256, growing with N^2. So each contribution is rounded here, up or

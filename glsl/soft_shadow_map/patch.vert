@@ -1,8 +1,8 @@
-// Entry of the passes soft_shadow_map.blend_back and soft_shadow_map.blend_front (src/techniques/soft_shadow_map/passes.rs).
+// Entry of the passes soft_shadow_map.blend_back and soft_shadow_map.blend_front (src/techniques/soft_shadow_map/receiver_map.rs).
 #version 450
 
-// A micro-patch to its penumbra rectangle on the receiver map (Atty 2006, section 3.3), by pulling the
-// patch from a buffer: six vertices a patch, no instancing.
+// Expands a micro-patch to its penumbra rectangle on the receiver map (Atty 2006, section 3.3). The patch is read from
+// a buffer: six vertices a patch, no instancing.
 
 layout(set = 0, binding = 0, std430) readonly buffer Patches { uvec2 patches[]; };
 
@@ -12,8 +12,8 @@ layout(push_constant) uniform Push {
     vec2 t_first;            // t of the centre of receiver texel (0, 0)
     float w_far;             // no receiver is further than 1/w_far
     float receiver_inv_near; // 1 over the receiver map's near plane, 1/m
-    int receiver_map;        // its side in texels
-    float steps;             // steps a unit that contributions are rounded to; 0 rounds none
+    int receiver_map;        // the receiver map's side in texels
+    float steps;             // contributions are rounded to multiples of 1/steps; 0 rounds none
 } push;
 
 layout(location = 0) flat out vec2 texel;

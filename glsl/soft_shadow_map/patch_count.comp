@@ -1,8 +1,8 @@
-// Entry of the passes soft_shadow_map.patch_count_back and soft_shadow_map.patch_count_front (src/techniques/soft_shadow_map/passes.rs).
+// Entry of the passes soft_shadow_map.patch_count_back and soft_shadow_map.patch_count_front (src/techniques/soft_shadow_map/receiver_map.rs).
 #version 450
 
-// Occupied texels of each group of 64 blocks, the first step of giving every micro-patch its place.
-// One invocation a group.
+// Counts the occupied texels of each group of 64 blocks, the first step of giving every micro-patch its place.
+// One invocation handles one group.
 
 layout(local_size_x = 64) in;
 
@@ -10,7 +10,7 @@ layout(set = 0, binding = 0, std430) readonly buffer Blocks { uvec4 blocks[]; };
 layout(set = 0, binding = 1, std430) buffer Groups { uint groups[]; };
 
 layout(push_constant) uniform Push {
-    int blocks; // of one side
+    int blocks; // blocks of one side
     int side;
 } push;
 

@@ -1,10 +1,10 @@
-// Entry of the passes soft_shadow_map.patch_emit_back and soft_shadow_map.patch_emit_front (src/techniques/soft_shadow_map/passes.rs).
+// Entry of the passes soft_shadow_map.patch_emit_back and soft_shadow_map.patch_emit_front (src/techniques/soft_shadow_map/receiver_map.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "soft_shadow_map/node.glsl"
 
-// Every occupied texel to a micro-patch, in the order of the blocks (Atty 2006, section 4.3: the
-// render-to-vertex-buffer that its authors wished for). One invocation a block.
+// Writes a micro-patch for every occupied texel, in the order of the blocks (Atty 2006, section 4.3: the
+// render-to-vertex-buffer that its authors wished for). One invocation handles one block.
 
 layout(local_size_x = 64) in;
 

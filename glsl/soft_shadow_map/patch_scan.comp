@@ -1,8 +1,8 @@
-// Entry of the passes soft_shadow_map.patch_scan_back and soft_shadow_map.patch_scan_front (src/techniques/soft_shadow_map/passes.rs).
+// Entry of the passes soft_shadow_map.patch_scan_back and soft_shadow_map.patch_scan_front (src/techniques/soft_shadow_map/receiver_map.rs).
 #version 450
 
-// Group counts to the place of each group's first micro-patch, and the arguments of the draw.
-// One invocation: at most 4096 groups, and an order that is the same in every frame.
+// Turns the groups' counts into the place of each group's first micro-patch, and writes the arguments of the draw.
+// A single invocation does it: there are at most 4096 groups, and the order must be the same in every frame.
 
 layout(local_size_x = 1) in;
 
@@ -15,7 +15,7 @@ layout(push_constant) uniform Push {
     int groups;
 } push;
 
-const uint VERTICES = 6u; // a micro-patch: two triangles
+const uint VERTICES = 6u; // two triangles a micro-patch
 
 void main()
 {

@@ -1,6 +1,6 @@
 // Entered from tiles.comp and gather_pixels.comp.
 //
-// What the passes over the pixels have in common: their numbers.
+// The push constants that the passes over the pixels share.
 
 #ifndef SOFT_SHADOW_MAP_PIXELS_GLSL
 #define SOFT_SHADOW_MAP_PIXELS_GLSL
@@ -9,8 +9,8 @@ layout(push_constant) uniform Push {
     mat4 light_from_ndc;
     vec2 scale;         // (du/Lx, dv/Ly), 1/m
     vec2 texels_per_uv; // occluder texels a unit of u and v
-    vec2 first;         // t of u = v = 0
-    ivec2 extent;       // of the G-buffer
+    vec2 first;         // texel coordinates of u = v = 0
+    ivec2 extent;       // the G-buffer's width and height
     float background;
     float w_max;        // no occluder is nearer than 1/w_max
     float spread;       // the series' limit, see classify
@@ -25,7 +25,7 @@ GBuffer gbuffer()
     return GBuffer(push.light_from_ndc, push.extent, push.background, (push.flags & 1) != 0);
 }
 
-// t of what a pixel shows, at w.
+// The place t, in texels of the occluder map, of a point of light space with w = 1/position.z.
 vec2 place_of(vec3 position, float w)
 {
     return position.xy * w * push.texels_per_uv + push.first;

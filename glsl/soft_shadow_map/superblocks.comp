@@ -1,10 +1,10 @@
-// Entry of the pass soft_shadow_map.superblocks (src/techniques/soft_shadow_map/passes.rs).
+// Entry of the pass soft_shadow_map.superblocks (src/techniques/soft_shadow_map/nodes.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "soft_shadow_map/node.glsl"
 
-// Sixteen blocks to one superblock; moments move to the common mean by the parallel-axis rule.
-// One invocation a superblock; z is the side.
+// Combines sixteen blocks to one superblock; moments move to the common mean by the parallel-axis rule.
+// One invocation handles one superblock; z is the side.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -51,7 +51,7 @@ void main()
         return;
     }
     float mean = sum / count;
-    // To the last rounding, as in blocks.comp.
+    // Like blocks.comp, this subtracts the sum of what rounding left.
     float rest = 0.0;
     for (int i = 0; i < FAN * FAN; ++i) {
         int at = first + (i / FAN) * push.row * FAN + i % FAN;

@@ -4,8 +4,8 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "soft_shadow_map/node.glsl"
 
-// Which tiles of pixels no occluder affects: no node within the light's window, as they see it, lies before any of
-// their receivers. One invocation a tile.
+// Lists the tiles that an occluder may shadow. In the others no node within the light's window lies before any of the
+// tile's receivers. One invocation handles one tile.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -19,13 +19,13 @@ layout(set = 0, binding = 5, r32f) writeonly uniform image2D visibility;
 #include "common/lists.glsl"
 #include "soft_shadow_map/pixels.glsl"
 
-// Nodes that are looked at before a tile counts as affected: a walk that takes longer is not worth its
-// while, and Mesa's CPU driver would cut it off.
+// Nodes that a tile may visit before it counts as one that may be shadowed: a longer walk saves no time, and Mesa's CPU
+// driver would cut it off.
 const int MOST_NODES = 4096;
 
-// The walk of the gather, but by all of a tile's receivers at once: false only where the gather of each
-// of them adds nothing.
-bool is_felt_by(Tile tile, int row, int sides, float w_max, vec2 scale)
+// Walks the nodes as the gather does, but once for all of a tile's receivers. It returns false only where the gather of
+// each of them adds nothing.
+bool may_be_shadowed_by(Tile tile, int row, int sides, float w_max, vec2 scale)
 {
     ivec4 around = superblocks_around(tile.t_min, tile.t_max, tile.w.x, row, w_max, scale);
     int left = MOST_NODES - sides * (around.z - around.x + 1) * (around.w - around.y + 1);
@@ -38,9 +38,9 @@ bool is_felt_by(Tile tile, int row, int sides, float w_max, vec2 scale)
                 int index = ((side * row + y) * row + x) * FAMILY;
                 ivec2 first = ivec2(x, y) * FAN;
                 Node whole = unpack_node(nodes[2 * index], nodes[2 * index + 1]);
-                bool felt = is_felt(whole, vec2(first * BLOCK), float(SUPERBLOCK), tile.t_min, tile.t_max,
+                bool shadowable = may_shadow(whole, vec2(first * BLOCK), float(SUPERBLOCK), tile.t_min, tile.t_max,
                                     tile.w.x, scale);
-                uint children = felt ? whole.mask.x : 0u;
+                uint children = shadowable ? whole.mask.x : 0u;
                 while (children != 0u) {
                     int child = findLSB(int(children));
                     children &= children - 1u;
@@ -48,7 +48,7 @@ bool is_felt_by(Tile tile, int row, int sides, float w_max, vec2 scale)
                     int at = index + 1 + child;
                     Node block = unpack_node(nodes[2 * at], uvec4(0u));
                     vec2 lo = vec2((first + ivec2(child % FAN, child / FAN)) * BLOCK);
-                    if (left < 0 || is_felt(block, lo, float(BLOCK), tile.t_min, tile.t_max, tile.w.x,
+                    if (left < 0 || may_shadow(block, lo, float(BLOCK), tile.t_min, tile.t_max, tile.w.x,
                                             scale)) {
                         return true;
                     }
@@ -64,10 +64,10 @@ float nearest_w()
     return push.w_max;
 }
 
-bool is_felt_in(Tile tile)
+bool may_be_shadowed(Tile tile)
 {
     int sides = 1 + ((push.flags >> 1) & 1);
-    return is_felt_by(tile, push.row, sides, push.w_max, push.scale);
+    return may_be_shadowed_by(tile, push.row, sides, push.w_max, push.scale);
 }
 
 #include "visibility/classify.glsl"

@@ -1,12 +1,12 @@
 // Entered from pcss/tiles.comp, soft_shadow_map/tiles.comp and occlusion_textures/tiles.comp.
 //
-// Sorts tiles of pixels: those that are lit are done here, the others are listed. One invocation a tile.
+// Sorts tiles of pixels: it writes 1 to the pixels of lit tiles and lists the others. One invocation handles one tile.
 //
 // The including shader declares `gbuffer_depth`, `gbuffer_mask`, `visibility`, `push` with `extent`, and
 //     GBuffer gbuffer();
 //     vec2 place_of(vec3 position, float w);
 //     float nearest_w();           no occluder is nearer than 1/nearest_w
-//     bool is_felt_in(Tile tile);  whether any occluder may affect any of its receivers
+// bool may_be_shadowed(Tile tile);  whether any occluder may shadow any of its receivers
 
 #ifndef VISIBILITY_CLASSIFY_GLSL
 #define VISIBILITY_CLASSIFY_GLSL
@@ -21,23 +21,23 @@ void classify_tile(ivec2 tile)
     }
     GBuffer g = gbuffer();
     Tile bounds = empty_tile();
-    bool blocks = false; // whether some of its pixels may hide light from themselves
+    bool blocks = false; // whether some of its pixels' own surfaces may hide light from them
     for (int i = 0; i < TILE * TILE; ++i) {
         Receiver r = receiver_without_normal(g, first + ivec2(i % TILE, i / TILE));
         // Behind the light's plane there is nothing to hide.
         if (r.receives && r.position.z > 0.0) {
             blocks = blocks || r.blocks;
             float w = 1.0 / r.position.z;
-            // Nothing lies before what is nearer the light than every occluder.
+            // A receiver that is nearer to the light than every occluder is shadowed by none.
             if (w < nearest_w()) {
                 bounds = with_receiver(bounds, place_of(r.position, w), w);
             }
         }
     }
-    bool felt = !is_empty_tile(bounds) && is_felt_in(rounded_tile(bounds));
-    if (felt || blocks) {
+    bool shadowable = !is_empty_tile(bounds) && may_be_shadowed(rounded_tile(bounds));
+    if (shadowable || blocks) {
         uint at = atomicAdd(count, 1u);
-        tiles[at] = tile_word(tile, felt);
+        tiles[at] = tile_word(tile, shadowable);
         if (at % TILES_A_GROUP == 0u) {
             uvec2 reach = groups_with(at);
             atomicMax(groups[0], reach.x);

@@ -1,7 +1,7 @@
 // Entry of the pass visibility.lit (src/stages/visibility/mod.rs).
 #version 450
 
-// No occluder affects anything: every pixel sees the whole light.
+// Writes 1 to every pixel, for a frame in which no occluder can shadow anything.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

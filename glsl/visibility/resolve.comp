@@ -3,9 +3,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// The soft shadow map projected onto the G-buffer's pixels (Atty 2006, section 3.1), bilinear over the
-// texels whose receiver lies on the pixel's own plane; the larger of both sides (section 3.5), or
-// their mean.
+// Projects the soft shadow map onto the G-buffer's pixels (Atty 2006, section 3.1): bilinear over the texels whose
+// receiver lies on the pixel's own plane. Of both sides' maps it takes the larger occlusion (section 3.5) or the mean.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -21,7 +20,7 @@ layout(push_constant) uniform Push {
     mat4 light_from_ndc;
     vec2 texels_per_uv;      // receiver texels a unit of u and v
     vec2 first;              // receiver-texel coordinates of u = v = 0
-    ivec2 extent;            // of the G-buffer
+    ivec2 extent;            // the G-buffer's width and height
     float background;
     float receiver_inv_near; // 1/m
     int receiver_map;        // the map's side in texels
@@ -73,8 +72,8 @@ float filtered(vec3 position, vec3 normal)
             weight += bilinear;
         }
     }
-    // Where no texel holds this surface, another receiver hides it from the light's centre; the map
-    // knows nothing better than its own texels.
+    // Where no texel holds this surface, another receiver hides it from the light's centre. The map has no better value
+    // than its own texels.
     return weight > 1.0e-3 ? sum / weight : plain;
 }
 

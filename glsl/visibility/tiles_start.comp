@@ -1,7 +1,7 @@
-// Entry of the pass visibility.tiles_start (src/stages/tiles.rs).
+// Entry of the pass visibility.tiles_start (src/stages/tiles/mod.rs).
 #version 450
 
-// An empty list of tiles.
+// Empties the list of tiles and the arguments of the dispatch over it.
 
 layout(local_size_x = 1) in;
 

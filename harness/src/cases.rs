@@ -70,8 +70,8 @@ const SSM_FRONT: &[&str] = &[
     "visibility.tiles",
     "soft_shadow_map.gather_pixels",
 ];
-const HARD: &[&str] = &["depth_layers.front", "baseline.hard"];
-const OWN_HARD: &[&str] = &["depth_layers.hard", "baseline.hard"];
+const HARD: &[&str] = &["depth_layers.front", "hard.visibility"];
+const OWN_HARD: &[&str] = &["depth_layers.hard", "hard.visibility"];
 const RAYS: &[&str] = &[
     "depth_layers.front",
     "depth_layers.back",
@@ -125,13 +125,13 @@ const SLICES: &[&str] = &[
 const LINES: &[&str] = &[
     "linear_light.middle_occluders",
     "linear_light.middle_receivers",
-    "linear_light.middle_take",
+    "linear_light.middle_copy",
     "linear_light.mask",
     "linear_light.place",
     "linear_light.occluders",
     "linear_light.receivers",
     "linear_light.start",
-    "linear_light.take",
+    "linear_light.copy",
     "linear_light.left_edges",
     "linear_light.left_skins",
     "linear_light.keep_first",

@@ -75,7 +75,7 @@ pub const RULES: [Rule; COUNT] = [
         needed: "the widest penumbra spans more than a pixel, or ½ s e is above the error asked for: s its width \
                  in pixels, e the most edges a pixel's width of shadow may have",
         bound: "½ s e",
-        passes: "all of the technique's; `baseline.hard` stands for them where it is left out",
+        passes: "all of the technique's; `hard.visibility` stands for them where it is left out",
     },
     Rule {
         effect: Effect::InnerPenumbra,

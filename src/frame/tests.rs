@@ -236,7 +236,7 @@ fn what_is_lent_must_be_what_was_described() {
     let with = |maps| Frame { occluder_maps: Some(maps), ..f };
     assert_eq!(
         ran(&make(&maps, &with(both)))[..2],
-        ["depth_layers.take_front", "depth_layers.take_back"]
+        ["depth_layers.copy_front", "depth_layers.copy_back"]
     );
     assert!(refuse(&maps, f).contains("occluder maps"));
     assert!(refuse(&description(&[]), with(both)).contains("occluder maps"));
@@ -349,9 +349,9 @@ fn every_point_of_many_lights_has_a_view_of_its_own() {
     assert_eq!(rows.len(), 2 + 2 * 9);
     assert_eq!(
         rows[..4],
-        ["baseline.receivers", "baseline.point_depth", "baseline.add_point", rows[1]]
+        ["many_lights.receivers", "many_lights.point_depth", "many_lights.add_point", rows[1]]
     );
-    assert_eq!(rows.last(), Some(&"baseline.average"));
+    assert_eq!(rows.last(), Some(&"many_lights.average"));
     let matrices: Vec<_> =
         (0..9).flat_map(|view| plan.draws(MeshList::Occluders, view)).map(|d| d.1).collect();
     assert_eq!(matrices.len(), 9, "one occluder, nine views");

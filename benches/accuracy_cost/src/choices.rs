@@ -27,7 +27,7 @@ const MAPS: [&str; 13] = [
     "occlusion_textures.sum_",
     "occlusion_textures.front_slices",
     "occlusion_textures.back_slices",
-    "baseline.point_depth",
+    "many_lights.point_depth",
 ];
 
 /// Writes what a run of `--choices` has measured as the crate's table.

@@ -44,7 +44,7 @@ use smallvec::smallvec;
 pub const FORMAT: vk::Format = vk::Format::D32_SFLOAT;
 
 /// The format of layers that are taken from the host's images: compute shaders write no depth.
-const TAKEN_FORMAT: vk::Format = vk::Format::R32_SFLOAT;
+const COPIED_FORMAT: vk::Format = vk::Format::R32_SFLOAT;
 
 /// The matrix that a mesh draw pushes, column by column.
 #[repr(C)]
@@ -54,10 +54,10 @@ pub struct DepthPush {
     pub clip_from_mesh: [f32; 16],
 }
 
-/// `take.comp`
+/// What `copy_map.comp` is given.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-pub struct TakePush {
+pub struct CopyPush {
     /// 1 where u or v run against the map's x or y.
     pub flip: [i32; 2],
     /// Side of map and layer in texels.
@@ -138,9 +138,9 @@ pub(crate) fn declare(graph: &mut Graph, wanted: Wanted, layers: &LightLayers) -
             (front, wanted.back.then(|| drawn(graph, Layer::Back, names, map, needs.back)))
         }
         Occluders::Maps { front, back, camera } => {
-            let front = taken(graph, *front, map, camera, Layer::Front, need);
+            let front = copied(graph, *front, map, camera, Layer::Front, need);
             let back = back.filter(|_| wanted.back);
-            (front, back.map(|b| taken(graph, b, map, camera, Layer::Back, needs.back)))
+            (front, back.map(|b| copied(graph, b, map, camera, Layer::Back, needs.back)))
         }
     };
     let inner = (wanted.inner && matches!(occluders, Occluders::Meshes)).then(|| {
@@ -235,7 +235,7 @@ pub(crate) fn draw(
     });
 }
 
-fn taken(
+fn copied(
     graph: &mut Graph,
     map: ResourceId,
     side: u32,
@@ -245,8 +245,8 @@ fn taken(
 ) -> ResourceId {
     let back = layer == Layer::Back;
     let (image, name) =
-        if back { (BACK, "depth_layers.take_back") } else { (FRONT, "depth_layers.take_front") };
-    let image = graph.image(image, TAKEN_FORMAT, [side, side], Owner::Transient);
+        if back { (BACK, "depth_layers.copy_back") } else { (FRONT, "depth_layers.copy_front") };
+    let image = graph.image(image, COPIED_FORMAT, [side, side], Owner::Transient);
     let near = camera.view.near;
     graph.push(Pass {
         name,
@@ -254,7 +254,7 @@ fn taken(
             Use::bound(0, map, Access::SampledCompute),
             Use::bound(1, image, Access::ImageWrite),
         ],
-        push: Push::new(&TakePush {
+        push: Push::new(&CopyPush {
             flip: camera.flip.map(i32::from),
             side: side as i32,
             scale: (camera.scale * near) as f32,
@@ -265,7 +265,7 @@ fn taken(
             most: if back { 1.0 - f32::EPSILON } else { 1.0 },
         }),
         work: Work::Dispatch {
-            shader: shaders::TAKE,
+            shader: shaders::COPY_MAP,
             groups: [side.div_ceil(8), side.div_ceil(8), 1],
         },
         need: *need,

@@ -126,8 +126,8 @@ pub(crate) fn tangents_of(
 
 /// Least and largest u and v under which an eye behind the light sees what of a box is beyond `near`, which is
 /// counted from the eye as in [`MapView::near`]; none where nothing is.
-pub(crate) fn window_of(eye: Eye, of: &LightBox, near: f64) -> Option<([f64; 2], [f64; 2])> {
-    let boxes = std::slice::from_ref(of);
+pub(crate) fn window_of(eye: Eye, occluder: &LightBox, near: f64) -> Option<([f64; 2], [f64; 2])> {
+    let boxes = std::slice::from_ref(occluder);
     match eye {
         Eye::Behind(behind) => extents(boxes, near - behind, |p| {
             [p.x, p.y].map(|x| (x / (p.z + behind)).clamp(-MAX_TANGENT, MAX_TANGENT))
@@ -136,21 +136,21 @@ pub(crate) fn window_of(eye: Eye, of: &LightBox, near: f64) -> Option<([f64; 2],
     }
 }
 
-/// The least and the largest of what `of` says of the part of the boxes beyond `near`.
+/// The least and the largest of `uv_of` over the part of the boxes beyond `near`.
 fn extents(
     boxes: &[LightBox],
     near: f64,
-    of: impl Fn(DVec3) -> [f64; 2],
+    uv_of: impl Fn(DVec3) -> [f64; 2],
 ) -> Option<([f64; 2], [f64; 2])> {
     let mut window = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     let add = |(min, max): &mut ([f64; 2], [f64; 2]), p: DVec3| {
-        for (i, x) in of(p).into_iter().enumerate() {
+        for (i, x) in uv_of(p).into_iter().enumerate() {
             min[i] = min[i].min(x);
             max[i] = max[i].max(x);
         }
     };
     let holds = |(min, max): &([f64; 2], [f64; 2]), p: DVec3| {
-        let at = of(p);
+        let at = uv_of(p);
         (0..2).all(|i| min[i] <= at[i] && at[i] <= max[i])
     };
     for LightBox { corners, min: least, max: most, .. } in boxes {

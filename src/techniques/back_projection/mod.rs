@@ -102,13 +102,13 @@ fn top(map: u32) -> u32 {
 fn declare(graph: &mut Graph, front: ResourceId, inputs: &PassInputs) {
     let map = inputs.occluders.side;
     let nodes = u64::from(level_start(map, top(map) + 1));
-    let levels = graph.buffer("baseline.levels", nodes * size_of::<[f32; 2]>() as u64);
+    let levels = graph.buffer("back_projection.levels", nodes * size_of::<[f32; 2]>() as u64);
     let grid = |level| {
         let groups = level_side(map, level).div_ceil(8);
         [groups, groups, 1]
     };
     graph.push(Pass::compute(
-        "baseline.finest_level",
+        "back_projection.finest_level",
         shaders::FINEST_LEVEL,
         grid(1),
         Push::new(&FinestLevel { map: map as i32, inv_near: (1.0 / inputs.occluders.near) as f32 }),
@@ -120,7 +120,7 @@ fn declare(graph: &mut Graph, front: ResourceId, inputs: &PassInputs) {
     ));
     for level in 2..=top(map) {
         graph.push(Pass::compute(
-            "baseline.next_level",
+            "back_projection.next_level",
             shaders::NEXT_LEVEL,
             grid(level),
             Push::new(&NextLevel { map: map as i32, level: level as i32 }),
@@ -129,6 +129,6 @@ fn declare(graph: &mut Graph, front: ResourceId, inputs: &PassInputs) {
         ));
     }
     let more = [Use::bound(4, levels, Access::BufferReadCompute)];
-    let name = "baseline.back_projection";
+    let name = "back_projection.visibility";
     one_map(graph, name, shaders::BACK_PROJECTION, front, top(map), &more, inputs);
 }

@@ -71,7 +71,7 @@ pub(crate) fn declare(
     let count = u32::from(filter == Filter::One);
     one_map(
         graph,
-        "baseline.hard",
+        "hard.visibility",
         shaders::HARD,
         front,
         count,

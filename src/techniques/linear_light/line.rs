@@ -11,7 +11,7 @@ pub(super) struct LineResources {
     pub left: SkinSide,
     pub right: SkinSide,
     /// What of the segment that is being made its rows must know.
-    pub here: ResourceId,
+    pub segment: ResourceId,
     /// How large the grids of its rows are.
     pub groups: ResourceId,
     /// The arguments of the draws of its skins.
@@ -24,7 +24,7 @@ pub(super) struct LineResources {
 
 /// What the rows of one line are made of.
 pub(super) struct LineContext<'a> {
-    pub made: &'a LineResources,
+    pub resources: &'a LineResources,
     pub settings: &'a Settings,
     pub inputs: &'a PassInputs<'a>,
     pub line: &'a Line,
@@ -35,7 +35,7 @@ pub(super) struct LineContext<'a> {
 /// What samples see.
 pub(super) struct Layers {
     /// Where they are.
-    pub of: ResourceId,
+    pub samples: ResourceId,
     /// The nearest occluders and receivers as one of them sees them: drawn into, and taken from.
     pub occluders: ResourceId,
     pub receivers: ResourceId,

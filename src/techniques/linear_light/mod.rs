@@ -37,8 +37,8 @@
 //!
 //! **Lights with an area** are a few lines: side by side (`across=stack`), for rectangles along their longer side, for
 //! polygons what each row has of them; or their edges, as published for polygons (section 4). A rectangle of height b
-//! is one line where its penumbrae across are so narrow that n = 1 line keeps P / 2n (D + P) within the `error`, P being
-//! b (w_o − w_r) and D the occluder's height in tangents; else as many as it takes, at most `lines`.
+//! is one line where its penumbrae across are so narrow that n = 1 line keeps P / 2n (D + P) within the `error`, P
+//! being b (w_o − w_r) and D the occluder's height in tangents; else as many as it takes, at most `lines`.
 //!
 //! **Kept maps.** While the host gives one `Frame::revision`, the maps stay, and a frame is one row: 0.6 to 0.9 of the
 //! time of hard shadows from as many points.
@@ -50,10 +50,11 @@
 //! that lean by 0, 20 and 40° the linear transition errs by 0.2, 1.1 and 2.1, the rational one by 0.2. A triangle light
 //! of a metre as 4 and 16 lines: 1.1 and 0.1; as its edges 7.5, with 2 samples or with 8, as the paper warns.
 //!
-//! **Limits.** The host cannot draw meshes itself: where samples are is known on the device alone. Occluders nearer to the line than a tenth of a segment end further aside than any map looks (84°): a card
-//! that the line goes through leaves 15 % with 2 samples and 1.2 with 8, one right under it 78 and 11. A receiver that
-//! does not block hides others from the channels. Leaves want many samples. Where the light is lost to all samples, a
-//! penumbra ends in a step.
+//! **Limits.** The host cannot draw meshes itself: where samples are is known on the device alone. Occluders nearer to
+//! the line than a tenth of a segment end further aside than any map looks (84°): a card that the line goes through
+//! leaves 15 % with 2 samples and 1.2 with 8, one right under it 78 and 11. A receiver that does not block hides
+//! others from the channels. Leaves want many samples. Where the light is lost to all samples, a penumbra ends in a
+//! step.
 
 mod line;
 mod passes;
@@ -64,7 +65,7 @@ pub mod twin;
 mod view;
 
 pub use passes::Visibility;
-pub use samples::{Mask, Place, Sample, Spread, Take};
+pub use samples::{Mask, Place, Sample, Spread, CopyDepth};
 pub use segments::{Edges, Keep, Skins, Start};
 pub use settings::{Across, Settings, Transition};
 pub use view::{lines, turned};

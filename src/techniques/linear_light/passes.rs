@@ -49,7 +49,7 @@ pub(super) fn declare(graph: &mut Graph, settings: &Settings, inputs: &PassInput
     let layers = Layers {
         occluders: depth(graph, "linear_light.occluders"),
         receivers: depth(graph, "linear_light.receivers"),
-        of: graph.buffer("linear_light.samples", 4 + 4 * u64::from(MOST_SAMPLES)),
+        samples: graph.buffer("linear_light.samples", 4 + 4 * u64::from(MOST_SAMPLES)),
         seen: graph.image_array("linear_light.seen", format, [side; 2], 2),
         masks: graph.buffer(
             "linear_light.masks",
@@ -77,11 +77,11 @@ pub(super) fn declare(graph: &mut Graph, settings: &Settings, inputs: &PassInput
     let maps = graph.image_array("linear_light.maps", format, [side; 2], kept);
     let size = [SAMPLES_AT + settings.samples, settings.lines];
     let places = graph.image("linear_light.places", format, size, Owner::Transient);
-    let made = LineResources {
+    let resources = LineResources {
         layers,
         left,
         right,
-        here: graph.buffer("linear_light.segment", 16),
+        segment: graph.buffer("linear_light.segment", 16),
         groups: graph.buffer("linear_light.groups", 48),
         draws: graph.buffer("linear_light.draws", 32),
         maps,
@@ -94,12 +94,12 @@ pub(super) fn declare(graph: &mut Graph, settings: &Settings, inputs: &PassInput
         lines => lines,
     };
     for (row, line) in lines.iter().enumerate() {
-        let ctx = LineContext { made: &made, settings, inputs, line, row: row as u32 };
+        let ctx = LineContext { resources: &resources, settings, inputs, line, row: row as u32 };
         samples::place(graph, &ctx);
         for nth in 0..settings.samples {
             samples::look(graph, &ctx, nth);
             segments::start(graph, &ctx, nth);
-            graph.push(samples::take(&ctx, nth % 2));
+            graph.push(samples::copy(&ctx, nth % 2));
             if nth > 0 {
                 segments::declare(graph, &ctx, nth);
             }

@@ -45,15 +45,15 @@ pub struct Place {
 
 /// Adds the rows that place a line's samples: evenly, or where its middle tells that light is lost.
 pub(super) fn place(graph: &mut Graph, ctx: &LineContext) {
-    let LineContext { made, settings, inputs, line, .. } = *ctx;
-    let layers = &made.layers;
+    let LineContext { resources, settings, inputs, line, .. } = *ctx;
+    let layers = &resources.layers;
     if settings.is_even() {
         graph.push(Pass::compute(
             "linear_light.spread",
             shaders::LINE_SPREAD,
             [1, 1, 1],
             Push::new(&Spread { count: settings.samples as i32 }),
-            smallvec![Use::bound(0, layers.of, Access::BufferWriteCompute)],
+            smallvec![Use::bound(0, layers.samples, Access::BufferWriteCompute)],
             inputs.need,
         ));
         return;
@@ -68,9 +68,9 @@ pub(super) fn place(graph: &mut Graph, ctx: &LineContext) {
     ));
     let taken = take(ctx, 0);
     graph.push(Pass {
-        name: "linear_light.middle_take",
+        name: "linear_light.middle_copy",
         uses: taken.uses.iter().copied().filter(|u| u.access != Access::Indirect).collect(),
-        work: Work::Dispatch { shader: shaders::LINE_TAKE, groups: grid([settings.map; 2]) },
+        work: Work::Dispatch { shader: shaders::LINE_COPY, groups: grid([settings.map; 2]) },
         ..taken
     });
     graph.push(Pass::compute(
@@ -99,7 +99,7 @@ pub(super) fn place(graph: &mut Graph, ctx: &LineContext) {
         }),
         smallvec![
             Use::bound(0, layers.masks, Access::BufferReadCompute),
-            Use::bound(1, layers.of, Access::BufferWriteCompute),
+            Use::bound(1, layers.samples, Access::BufferWriteCompute),
         ],
         inputs.need,
     ));
@@ -107,7 +107,7 @@ pub(super) fn place(graph: &mut Graph, ctx: &LineContext) {
 
 /// Adds the rows that draw what a sample sees.
 pub(super) fn look(graph: &mut Graph, ctx: &LineContext, nth: u32) {
-    let layers = &ctx.made.layers;
+    let layers = &ctx.resources.layers;
     graph.push(drawn("linear_light.occluders", layers.occluders, Layer::Front, Some(nth), ctx));
     graph.push(drawn("linear_light.receivers", layers.receivers, Layer::Receivers, Some(nth), ctx));
 }
@@ -136,7 +136,7 @@ fn drawn(
 ) -> Pass {
     let Raster { cull, clear, compare } = depth_layers::raster_of(layer);
     let mut uses = smallvec![Use::fixed(image, Access::DepthTarget)];
-    uses.extend(sample.map(|_| Use::bound(0, ctx.made.layers.of, Access::BufferReadVertex)));
+    uses.extend(sample.map(|_| Use::bound(0, ctx.resources.layers.samples, Access::BufferReadVertex)));
     Pass {
         name,
         uses,
@@ -157,10 +157,10 @@ fn drawn(
     }
 }
 
-/// What `take.comp` is given.
+/// What `copy_depth.comp` is given.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub struct Take {
+pub struct CopyDepth {
     /// 1 over the map's near plane, 1/m.
     pub inv_near: f32,
     /// Its side in texels.
@@ -170,22 +170,22 @@ pub struct Take {
 }
 
 /// The row that takes what was drawn into a layer.
-pub(super) fn take(ctx: &LineContext, layer: u32) -> Pass {
-    let layers = &ctx.made.layers;
+pub(super) fn copy(ctx: &LineContext, layer: u32) -> Pass {
+    let layers = &ctx.resources.layers;
     Pass {
-        name: "linear_light.take",
+        name: "linear_light.copy",
         uses: smallvec![
-            Use::fixed(ctx.made.groups, Access::Indirect),
+            Use::fixed(ctx.resources.groups, Access::Indirect),
             Use::bound(0, layers.occluders, Access::SampledCompute),
             Use::bound(1, layers.receivers, Access::SampledCompute),
             Use::bound(2, layers.seen, Access::ImageWrite),
         ],
-        push: Push::new(&Take {
+        push: Push::new(&CopyDepth {
             inv_near: (1.0 / ctx.line.near) as f32,
             map: ctx.settings.map as i32,
             layer: layer as i32,
         }),
-        work: Work::Indirect { shader: shaders::LINE_TAKE, arguments: ctx.made.groups, offset: 0 },
+        work: Work::Indirect { shader: shaders::LINE_COPY, arguments: ctx.resources.groups, offset: 0 },
         need: *ctx.inputs.need,
     }
 }

@@ -9,7 +9,8 @@ use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use smallvec::smallvec;
 
-/// Where in [`super::passes::LineResources::groups`] the grids of a segment's rows are, and of the row that keeps the sample before.
+/// Where in [`super::passes::LineResources::groups`] the grids of a segment's rows are, and of the row that keeps the
+/// sample before.
 const SEGMENT: u64 = 16;
 
 const SAMPLE_BEFORE: u64 = 32;
@@ -18,9 +19,9 @@ const SAMPLE_BEFORE: u64 = 32;
 pub(super) fn declare(graph: &mut Graph, ctx: &LineContext, nth: u32) {
     // The first one's neighbour sees what ends towards it. Only then is what the segment before drew into the first
     // one's other channel done with.
-    skins(graph, ctx, &ctx.made.left);
+    skins(graph, ctx, &ctx.resources.left);
     keep(graph, ctx, nth);
-    skins(graph, ctx, &ctx.made.right);
+    skins(graph, ctx, &ctx.resources.right);
 }
 
 /// What `start.comp` is given.
@@ -47,7 +48,7 @@ pub struct Start {
 
 /// Adds the row that says which of the rows of a sample and of the segment before it have anything to do.
 pub(super) fn start(graph: &mut Graph, ctx: &LineContext, nth: u32) {
-    let LineContext { made, settings, inputs, line, row } = *ctx;
+    let LineContext { resources, settings, inputs, line, row } = *ctx;
     let [c, s] = line.along;
     let [x, y] = line.middle;
     graph.push(Pass::compute(
@@ -65,11 +66,11 @@ pub(super) fn start(graph: &mut Graph, ctx: &LineContext, nth: u32) {
             groups: grid([settings.map; 2])[0] as i32,
         }),
         smallvec![
-            Use::bound(0, made.layers.of, Access::BufferReadCompute),
-            Use::bound(1, made.here, Access::BufferWriteCompute),
-            Use::bound(2, made.draws, Access::BufferWriteCompute),
-            Use::bound(3, made.groups, Access::BufferWriteCompute),
-            Use::bound(4, made.places, Access::ImageWrite),
+            Use::bound(0, resources.layers.samples, Access::BufferReadCompute),
+            Use::bound(1, resources.segment, Access::BufferWriteCompute),
+            Use::bound(2, resources.draws, Access::BufferWriteCompute),
+            Use::bound(3, resources.groups, Access::BufferWriteCompute),
+            Use::bound(4, resources.places, Access::ImageWrite),
         ],
         inputs.need,
     ));
@@ -107,18 +108,18 @@ pub struct Skins {
 
 /// Adds the rows that find where occluders end as one sample sees them, and draw that into the other's channel.
 fn skins(graph: &mut Graph, ctx: &LineContext, skins: &SkinSide) {
-    let LineContext { made, settings, inputs, line, .. } = *ctx;
+    let LineContext { resources, settings, inputs, line, .. } = *ctx;
     let map = settings.map as i32;
     graph.push(Pass {
         name: skins.edges,
-        work: Work::Indirect { shader: shaders::EDGES, arguments: made.groups, offset: SEGMENT },
+        work: Work::Indirect { shader: shaders::EDGES, arguments: resources.groups, offset: SEGMENT },
         push: Push::new(&Edges { u_window: line.u_window(), map, side: skins.side }),
         uses: smallvec![
-            Use::fixed(made.groups, Access::Indirect),
-            Use::bound(0, made.layers.seen, Access::SampledCompute),
-            Use::bound(1, made.here, Access::BufferReadCompute),
+            Use::fixed(resources.groups, Access::Indirect),
+            Use::bound(0, resources.layers.seen, Access::SampledCompute),
+            Use::bound(1, resources.segment, Access::BufferReadCompute),
             Use::bound(2, skins.skins, Access::BufferWriteCompute),
-            Use::bound(3, made.draws, Access::BufferUpdate),
+            Use::bound(3, resources.draws, Access::BufferUpdate),
         ],
         need: *inputs.need,
     });
@@ -126,10 +127,10 @@ fn skins(graph: &mut Graph, ctx: &LineContext, skins: &SkinSide) {
         name: skins.draw,
         uses: smallvec![
             Use::fixed(skins.channel, Access::DepthTarget),
-            Use::fixed(made.draws, Access::Indirect),
+            Use::fixed(resources.draws, Access::Indirect),
             Use::bound(0, skins.skins, Access::BufferReadVertex),
-            Use::bound(1, made.here, Access::BufferReadVertex),
-            Use::bound(2, made.layers.seen, Access::SampledFragment),
+            Use::bound(1, resources.segment, Access::BufferReadVertex),
+            Use::bound(2, resources.layers.seen, Access::SampledFragment),
         ],
         push: Push::new(&Skins {
             u_window: line.u_window(),
@@ -144,7 +145,7 @@ fn skins(graph: &mut Graph, ctx: &LineContext, skins: &SkinSide) {
             fragment: Some(shaders::SKINS_FRAG),
             cull: vk::CullModeFlags::NONE,
             target: Target::Depth { clear: 1.0, compare: vk::CompareOp::LESS },
-            draw: Draw::Indirect { arguments: made.draws, offset: skins.offset },
+            draw: Draw::Indirect { arguments: resources.draws, offset: skins.offset },
         },
         need: *inputs.need,
     });
@@ -162,28 +163,28 @@ pub struct Keep {
 
 /// Adds the row that keeps the map of the sample before a sample.
 pub(super) fn keep(graph: &mut Graph, ctx: &LineContext, nth: u32) {
-    let LineContext { made, settings, inputs, row, .. } = *ctx;
+    let LineContext { resources, settings, inputs, row, .. } = *ctx;
     let layer = row * settings.samples + nth - 1;
     // Nothing was drawn for a segment before the first sample.
     let (name, before) = match nth {
-        1 => ("linear_light.keep_first", made.left.channel),
-        _ => ("linear_light.keep", made.right.channel),
+        1 => ("linear_light.keep_first", resources.left.channel),
+        _ => ("linear_light.keep", resources.right.channel),
     };
     graph.push(Pass {
         name,
         work: Work::Indirect {
             shader: shaders::KEEP,
-            arguments: made.groups,
+            arguments: resources.groups,
             offset: SAMPLE_BEFORE,
         },
         push: Push::new(&Keep { map: settings.map as i32, layer: layer as i32 }),
         uses: smallvec![
-            Use::fixed(made.groups, Access::Indirect),
-            Use::bound(0, made.layers.seen, Access::SampledCompute),
+            Use::fixed(resources.groups, Access::Indirect),
+            Use::bound(0, resources.layers.seen, Access::SampledCompute),
             Use::bound(1, before, Access::SampledCompute),
-            Use::bound(2, made.left.channel, Access::SampledCompute),
-            Use::bound(3, made.here, Access::BufferReadCompute),
-            Use::bound(4, made.maps, Access::ImageWrite),
+            Use::bound(2, resources.left.channel, Access::SampledCompute),
+            Use::bound(3, resources.segment, Access::BufferReadCompute),
+            Use::bound(4, resources.maps, Access::ImageWrite),
         ],
         need: *inputs.need,
     });

@@ -68,8 +68,8 @@ pub fn lines(settings: &Settings, seen: &Seen) -> Result<Vec<Line>, Error> {
 ///
 /// n lines make n steps of a penumbra that is P = b (w_o - w_r) high in tangents, b being the light's height: off by
 /// 1/4n in the mean over it. Of a shadow of an occluder of height D the penumbrae along two edges are 2P of D + P, so
-/// that the error is P / 2n (D + P), if the occluder is as solid as its box. Measured behind a card of 1 m under a light
-/// of 0.4 m, 4 lines: 1.7 % for 2.1.
+/// that the error is P / 2n (D + P), if the occluder is as solid as its box. Measured behind a card of 1 m under a
+/// light of 0.4 m, 4 lines: 1.7 % for 2.1.
 fn stack_height(settings: &Settings, seen: &Seen) -> u32 {
     if settings.error == 0.0 {
         return settings.lines;
@@ -85,7 +85,8 @@ fn stack_height(settings: &Settings, seen: &Seen) -> u32 {
     wanted.clamp(1.0, f64::from(settings.lines)) as u32
 }
 
-/// What rows of one height, through their middles, have of a polygon from its lowest to its highest corner; each weighs as much as its length.
+/// What rows of one height, through their middles, have of a polygon from its lowest to its highest corner; each
+/// weighs as much as its length.
 fn chords(light: &RectangleLight, corners: &[[f64; 2]], rows: u32) -> Vec<Segment> {
     let b = light.half_extents()[1];
     if b == 0.0 {
@@ -124,7 +125,7 @@ fn stacked(seen: &Seen, settings: &Settings, segments: &[Segment]) -> Option<Vec
     let mix = |t: f64, a: f64, b: f64| a + t * (b - a);
     let reach = [-a, a].map(|x| reach(&seen.light.moved([x, 0.0]), first.near, seen));
     let total: f64 = segments.iter().map(|s| s.weight).sum();
-    let of = |s: &Segment| {
+    let line_of = |s: &Segment| {
         let at = s.ends.map(|e| 0.5 * (e.x / a + 1.0));
         let across = if b > 0.0 { 0.5 * (s.ends[0].y / b + 1.0) } else { 0.5 };
         let half = 0.5 * (s.ends[1].x - s.ends[0].x);
@@ -140,13 +141,13 @@ fn stacked(seen: &Seen, settings: &Settings, segments: &[Segment]) -> Option<Vec
             near: first.near,
         }
     };
-    Some(segments.iter().map(of).collect())
+    Some(segments.iter().map(line_of).collect())
 }
 
 /// Lines that run any way in the light's plane.
 fn turned_each(seen: &Seen, settings: &Settings, segments: &[Segment]) -> Option<Vec<Line>> {
     let total: f64 = segments.iter().map(|s| s.weight).sum();
-    let of = |s: &Segment| {
+    let line_of = |s: &Segment| {
         let along = (s.ends[1] - s.ends[0]).normalize_or(DVec2::X);
         let middle = s.ends[0].midpoint(s.ends[1]);
         let half = 0.5 * s.ends[0].distance(s.ends[1]);
@@ -165,7 +166,7 @@ fn turned_each(seen: &Seen, settings: &Settings, segments: &[Segment]) -> Option
             near: first.near,
         })
     };
-    segments.iter().map(of).collect()
+    segments.iter().map(line_of).collect()
 }
 
 /// Least and largest u of the receivers as a sample sees them.

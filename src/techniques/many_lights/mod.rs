@@ -180,13 +180,13 @@ fn declare(graph: &mut Graph, points: &[LightPoint], inputs: &PassInputs) {
     let image = |graph: &mut Graph, name, format| {
         graph.image(name, format, gbuffer.extent, Owner::Transient)
     };
-    let positions = image(graph, "baseline.positions", vk::Format::R32G32B32A32_SFLOAT);
-    let normals = image(graph, "baseline.normals", vk::Format::R32G32B32A32_SFLOAT);
-    let hidden = image(graph, "baseline.hidden_points", vk::Format::R32_SFLOAT);
+    let positions = image(graph, "many_lights.positions", vk::Format::R32G32B32A32_SFLOAT);
+    let normals = image(graph, "many_lights.normals", vk::Format::R32G32B32A32_SFLOAT);
+    let hidden = image(graph, "many_lights.hidden_points", vk::Format::R32_SFLOAT);
     let sides = [inputs.occluders.side; 2];
-    let depth = graph.image("baseline.point_map", depth_layers::FORMAT, sides, Owner::Transient);
+    let depth = graph.image("many_lights.point_map", depth_layers::FORMAT, sides, Owner::Transient);
     graph.push(Pass::compute(
-        "baseline.receivers",
+        "many_lights.receivers",
         shaders::RECEIVERS,
         grid(gbuffer.extent),
         Push::new(&Receivers {
@@ -208,9 +208,9 @@ fn declare(graph: &mut Graph, points: &[LightPoint], inputs: &PassInputs) {
     let none = [LightPoint { at: [0.0; 2], view: *inputs.occluders }];
     let points = if points.is_empty() { &none } else { points };
     for (nth, point) in points.iter().enumerate() {
-        depth_layers::draw(graph, "baseline.point_depth", depth, Layer::Front, nth as u32, need);
+        depth_layers::draw(graph, "many_lights.point_depth", depth, Layer::Front, nth as u32, need);
         graph.push(Pass::compute(
-            "baseline.add_point",
+            "many_lights.add_point",
             shaders::ADD_POINT,
             grid(gbuffer.extent),
             Push::new(&AddPoint {
@@ -232,7 +232,7 @@ fn declare(graph: &mut Graph, points: &[LightPoint], inputs: &PassInputs) {
         ));
     }
     graph.push(Pass::compute(
-        "baseline.average",
+        "many_lights.average",
         shaders::AVERAGE,
         grid(gbuffer.extent),
         Push::new(&Average { extent, points: points.len() as f32 }),

@@ -99,7 +99,7 @@
 //! slices of 1448² or 32 of 1024², by N-buffers 16 of 511². A host's fixed window is not looked at, as with
 //! `ray-march`.
 
-mod filtered;
+mod prefilter;
 mod pixels;
 mod settings;
 mod slices;
@@ -107,12 +107,12 @@ pub mod twin;
 
 pub use settings::{Combine, Placement, Prefilter, Settings};
 
-pub use filtered::{FirstLevel, NextLevel, SumColumns, SumRows};
+pub use prefilter::{FirstLevel, NextLevel, SumColumns, SumRows};
 pub use pixels::{Squares, Visibility};
 pub use slices::{Histogram, Mask, Place};
 
-use self::filtered::{declare_levels, declare_sums};
-use self::pixels::{Filtered, declare_pixels};
+use self::prefilter::{declare_levels, declare_sums};
+use self::pixels::{PrefilteredSlices, declare_pixels};
 use self::slices::{declare_mask, declare_placement, histogram_layers};
 use super::room::{HostDraws, Maps, PassInputs, Room, Shows, Takes};
 use crate::Error;
@@ -171,11 +171,11 @@ fn declare(
     let placement = declare_placement(graph, layers, settings, inputs);
     let mask = declare_mask(graph, placement, settings, inputs);
     let sums = settings.prefilter == Prefilter::Sat;
-    let filtered = if sums {
+    let means = if sums {
         declare_sums(graph, mask, settings, inputs)
     } else {
         declare_levels(graph, mask, settings, inputs)
     };
-    let made = Filtered { placement, mask, filtered };
-    declare_pixels(graph, &made, settings, inputs);
+    let slices = PrefilteredSlices { placement, mask, means };
+    declare_pixels(graph, &slices, settings, inputs);
 }

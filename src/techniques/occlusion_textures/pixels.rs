@@ -14,19 +14,19 @@ use smallvec::smallvec;
 const NAME: &str = "occlusion_textures.visibility";
 
 /// What the pixels are told by.
-pub(super) struct Filtered {
+pub(super) struct PrefilteredSlices {
     /// Where slices begin and end.
     pub placement: ResourceId,
     /// A bit a slice.
     pub mask: ResourceId,
     /// Its sums or means.
-    pub filtered: ResourceId,
+    pub means: ResourceId,
 }
 
 /// Adds the rows that make `visibility` of what is filtered.
 pub(super) fn declare_pixels(
     graph: &mut Graph,
-    of: &Filtered,
+    slices: &PrefilteredSlices,
     settings: &Settings,
     inputs: &PassInputs,
 ) {
@@ -37,12 +37,12 @@ pub(super) fn declare_pixels(
     let mut uses = smallvec![
         Use::bound(0, gbuffer.depth, Access::SampledCompute),
         Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
-        Use::bound(2, of.placement, Access::SampledCompute),
-        Use::bound(3, of.filtered, Access::SampledCompute),
+        Use::bound(2, slices.placement, Access::SampledCompute),
+        Use::bound(3, slices.means, Access::SampledCompute),
         Use::bound(4, visibility, write),
     ];
     if !sums {
-        uses.push(Use::bound(5, of.mask, Access::SampledCompute));
+        uses.push(Use::bound(5, slices.mask, Access::SampledCompute));
     }
     if !settings.classify {
         let shader = match (sums, settings.is_correlated()) {
@@ -56,7 +56,7 @@ pub(super) fn declare_pixels(
         return;
     }
     // Of levels no mean tells whether there is nothing or little: squares of the mask do.
-    let blocking = if sums { of.filtered } else { squares(graph, of.mask, inputs) };
+    let blocking = if sums { slices.means } else { squares(graph, slices.mask, inputs) };
     let (sort, shader) = match (sums, settings.is_correlated()) {
         (true, false) => (shaders::SLICE_TILES_SAT, shaders::LISTED_SAT),
         (true, true) => (shaders::SLICE_TILES_SAT_CORRELATED, shaders::LISTED_SAT_CORRELATED),
@@ -67,7 +67,7 @@ pub(super) fn declare_pixels(
     let met = graph.buffer("occlusion_textures.met", 4 * Tiles::in_image(gbuffer.extent));
     let asked = [
         Use::bound(2, blocking, Access::SampledCompute),
-        Use::bound(6, of.placement, Access::SampledCompute),
+        Use::bound(6, slices.placement, Access::SampledCompute),
         Use::bound(7, met, Access::BufferWriteCompute),
     ];
     tiles.sort(graph, sort, push, (&asked, visibility), gbuffer, inputs.need);

@@ -127,13 +127,13 @@ fn declare_histogram(
 /// The names of what is drawn with some faces: rows, images.
 struct Drawn {
     layer: Layer,
-    rows: [&'static str; 2],
+    passes: [&'static str; 2],
     images: [&'static str; 8],
 }
 
 const ALL_FACES: Drawn = Drawn {
     layer: Layer::Slices,
-    rows: ["occlusion_textures.slices", "occlusion_textures.lower_slices"],
+    passes: ["occlusion_textures.slices", "occlusion_textures.lower_slices"],
     images: [
         "occlusion_textures.faces_0",
         "occlusion_textures.faces_1",
@@ -148,7 +148,7 @@ const ALL_FACES: Drawn = Drawn {
 
 const FRONTS: Drawn = Drawn {
     layer: Layer::FrontSlices,
-    rows: ["occlusion_textures.front_slices", "occlusion_textures.lower_front_slices"],
+    passes: ["occlusion_textures.front_slices", "occlusion_textures.lower_front_slices"],
     images: [
         "occlusion_textures.fronts_0",
         "occlusion_textures.fronts_1",
@@ -163,7 +163,7 @@ const FRONTS: Drawn = Drawn {
 
 const BACKS: Drawn = Drawn {
     layer: Layer::BackSlices,
-    rows: ["occlusion_textures.back_slices", "occlusion_textures.lower_back_slices"],
+    passes: ["occlusion_textures.back_slices", "occlusion_textures.lower_back_slices"],
     images: [
         "occlusion_textures.backs_0",
         "occlusion_textures.backs_1",
@@ -190,8 +190,8 @@ fn draw(
     let draws = settings.slices.div_ceil(SLICES_A_DRAW) as usize;
     let raster = depth_layers::raster_of(drawn.layer);
     let mut images = Slabs::new();
-    for row in 0..draws {
-        let targets: Slabs = drawn.images[COLOR_ATTACHMENTS * row..][..COLOR_ATTACHMENTS]
+    for nth in 0..draws {
+        let targets: Slabs = drawn.images[COLOR_ATTACHMENTS * nth..][..COLOR_ATTACHMENTS]
             .iter()
             .map(|name| {
                 let format = vk::Format::R8G8B8A8_UNORM;
@@ -201,12 +201,12 @@ fn draw(
         let mut uses = smallvec![Use::bound(0, placement, Access::SampledFragment)];
         uses.extend(targets.iter().map(|&t| Use::fixed(t, Access::ColorTarget)));
         graph.push(Pass {
-            name: drawn.rows[row],
+            name: drawn.passes[nth],
             uses,
             push: Push::NONE,
             work: Work::Raster {
                 vertex: shaders::DEPTH_VERT,
-                fragment: Some([shaders::SLICE, shaders::SLICE_LOWER][row]),
+                fragment: Some([shaders::SLICE, shaders::SLICE_LOWER][nth]),
                 cull: raster.cull,
                 target: Target::Add,
                 draw: Draw::Layer { layer: drawn.layer, view: 0 },

@@ -41,7 +41,7 @@ use crate::stages::tiles::Tiles;
 use crate::stages::visibility::grid;
 use smallvec::smallvec;
 
-const NAME: &str = "baseline.pcss";
+const NAME: &str = "pcss.visibility";
 
 /// The knobs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -106,9 +106,9 @@ fn declare(graph: &mut Graph, front: ResourceId, settings: &Settings, inputs: &P
     let PassInputs { gbuffer, occluders, visibility, need, .. } = *inputs;
     let map = occluders.side;
     let row = nodes_a_row(map);
-    let nearest = graph.buffer("baseline.nearest", 4 * u64::from(row * row));
+    let nearest = graph.buffer("pcss.nearest", 4 * u64::from(row * row));
     graph.push(Pass::compute(
-        "baseline.nearest",
+        "pcss.nearest",
         shaders::NEAREST,
         grid([row; 2]),
         Push::new(&FinestLevel { map: map as i32, inv_near: (1.0 / occluders.near) as f32 }),

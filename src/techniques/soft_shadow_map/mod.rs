@@ -146,8 +146,8 @@ impl Room for Settings {
 /// Adds the passes that turn depth layers into the visible fraction.
 fn declare(graph: &mut Graph, layers: &DepthLayers, settings: &Settings, inputs: &PassInputs) {
     let (visibility, view) = (inputs.visibility, inputs.receivers);
-    // Without a back layer the front is all there is to both sides. A map of the receivers has rows for each side, which
-    // stay as they are.
+    // Without a back layer the front is all there is to both sides. A map of the receivers has rows for each side,
+    // which stay as they are.
     let one = Settings { sides: Sides::One, ..*settings };
     let at_pixels = settings.receivers == Receivers::Pixels;
     let settings = if at_pixels && layers.back.is_none() { &one } else { settings };

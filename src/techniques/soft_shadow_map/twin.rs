@@ -116,8 +116,8 @@ pub struct Tile<T> {
     pub w: [T; 2],
 }
 
-/// The twin of `is_felt` in `node.glsl`: whether a node could hide any of the light from a tile.
-pub fn is_felt<T: Float>(node: &Node<T>, tile: &Tile<T>, scale: [T; 2]) -> bool {
+/// The twin of `may_shadow` in `node.glsl`: whether a node could hide any of the light from a tile.
+pub fn may_shadow<T: Float>(node: &Node<T>, tile: &Tile<T>, scale: [T; 2]) -> bool {
     let w_max = node.w[2];
     let along = |i: usize| {
         let hi = node.lo[i] + node.side;
@@ -147,7 +147,7 @@ pub fn superblocks_around<T: Float>(
 /// The twin of `classify` in `node.glsl`.
 pub fn classify<T: Float>(node: &Node<T>, tile: &Tile<T>, scale: [T; 2], spread: T) -> Kind {
     let [mean, w_min, w_max] = node.w;
-    if !is_felt(node, tile, scale) {
+    if !may_shadow(node, tile, scale) {
         return Kind::Outside;
     }
     let h = half::<T>();
@@ -195,13 +195,13 @@ mod tests {
 
     /// A node that a tile does not feel hides nothing from any of its receivers, in floats as they are.
     #[test]
-    fn what_is_not_felt_hides_nothing() {
+    fn what_may_not_shadow_hides_nothing() {
         let mut seed = 1_u32;
         let mut random = move |low: f32, high: f32| {
             seed = seed.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
             low + (high - low) * (seed >> 8) as f32 / 16_777_216.0
         };
-        let (mut apart, mut felt) = (0, 0);
+        let (mut apart, mut shadowing) = (0, 0);
         for _ in 0..20_000 {
             let corner = [random(0.0, 248.0).floor(), random(0.0, 248.0).floor()];
             let w = [0.0, random(0.3, 1.0), random(1.0, 2.0)];
@@ -211,8 +211,8 @@ mod tests {
             let w_near = random(0.1, 2.1);
             let tile = Tile { t_min, t_max, w: [w_near, w_near + random(0.0, 0.2)] };
             let scale = [random(0.002, 0.05), random(0.002, 0.05)];
-            if is_felt(&node, &tile, scale) {
-                felt += 1;
+            if may_shadow(&node, &tile, scale) {
+                shadowing += 1;
                 continue;
             }
             apart += 1;
@@ -226,7 +226,7 @@ mod tests {
                 assert_eq!(hidden, 0.0, "{node:?} {tile:?} {t:?} {w_r} {lo:?} {w_o}");
             }
         }
-        assert!(apart > 2000 && felt > 1000, "{apart} apart, {felt} felt");
+        assert!(apart > 2000 && shadowing > 1000, "{apart} apart, {shadowing} shadowing");
     }
 
     #[test]

@@ -123,7 +123,7 @@ impl<'a> Prepared<'a> {
         stage.run(&plan).map_err(told)?;
         let image = stage.visibility().map_err(told)?;
         // Where penumbrae are narrower than a pixel, a hard shadow is all that the node makes.
-        let by = if runs(&plan, "baseline.hard") { &techniques::HARD } else { held };
+        let by = if runs(&plan, "hard.visibility") { &techniques::HARD } else { held };
         let noise = case.noise_of(held);
         Ok(judge(case, held, by, noise, self.ranges_of(by)?, &image))
     }

@@ -1,9 +1,9 @@
-// Entry of the passes depth_layers.take_back and depth_layers.take_front (src/stages/depth_layers/mod.rs).
+// Entry of the passes depth_layers.copy_back and depth_layers.copy_front (src/stages/depth_layers/mod.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// An occluder map that the host drew, as a layer: near * w, u to the right and v down.
+// Copies an occluder map that the host drew into a depth layer: near * w, u to the right and v down.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -12,12 +12,12 @@ layout(set = 0, binding = 1, r32f) uniform writeonly image2D layer;
 
 layout(push_constant) uniform Push {
     ivec2 flip;    // 1: u or v run against the map's x or y
-    int side;      // of map and layer, in texels
+    int side;      // the side of map and layer, texels
     float scale;   // near * w = scale * stored + offset
     float offset;
-    float empty;   // stored where the map was cleared
+    float empty;   // the map's value where it was cleared
     float nothing; // a layer's value there
-    float most;    // the largest value of a surface
+    float most;    // the largest value that a surface may have in the layer
 } push;
 
 void main()

@@ -1,8 +1,9 @@
-// Entry of the passes linear_light.middle_take and linear_light.take (src/techniques/linear_light/samples.rs).
+// Entry of the passes linear_light.middle_copy and linear_light.copy (src/techniques/linear_light/samples.rs).
 #version 450
 #extension GL_EXT_samplerless_texture_functions : require
 
-// What a sample sees, into its layer: w of the nearest occluder and of the nearest receiver, 0 where there is none.
+// Copies the depths that a sample sees into its layer of `seen`: the w of the nearest occluder and of the nearest
+// receiver, 0 where there is none.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -11,9 +12,9 @@ layout(set = 0, binding = 1) uniform texture2D receivers;
 layout(set = 0, binding = 2, rgba32f) writeonly uniform image2DArray seen;
 
 layout(push_constant) uniform Push {
-    float inv_near; // 1 over the map's near plane, 1/m: stored is near times w
-    int map;        // its side in texels
-    int layer;
+    float inv_near; // 1 over the map's near plane, 1/m: the depth stored is near times w
+    int map;        // the map's side in texels
+    int layer;      // the layer of `seen` to write
 } push;
 
 void main()

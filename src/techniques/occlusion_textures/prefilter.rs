@@ -40,10 +40,10 @@ pub(super) fn declare_sums(
     let extent = [IMAGE_WIDTH.min(values), values.div_ceil(IMAGE_WIDTH)];
     let sums = graph.image("occlusion_textures.filtered", format, extent, Owner::Transient);
     let groups = [side.div_ceil(64), tiles, 1];
-    let mut row = |name, shader: Module, push, uses| {
+    let mut sum = |name, shader: Module, push, uses| {
         graph.push(Pass::compute(name, shader, groups, push, uses, inputs.need));
     };
-    row(
+    sum(
         "occlusion_textures.sum_rows",
         shaders::SUM_ROWS,
         Push::new(&SumRows { map: side as i32, correlated: i32::from(settings.is_correlated()) }),
@@ -52,7 +52,7 @@ pub(super) fn declare_sums(
             Use::bound(1, sums, Access::ImageWrite)
         ],
     );
-    row(
+    sum(
         "occlusion_textures.sum_columns",
         shaders::SUM_COLUMNS,
         Push::new(&SumColumns { map: side as i32 }),
