@@ -8,9 +8,9 @@ mod options;
 mod output;
 mod report;
 
+use antumbra::Error;
 use antumbra::auto::Auto;
 use antumbra::scene::{Camera, Scene, from_gltf};
-use antumbra::Error;
 use antumbra_harness::shade;
 use antumbra_harness::{FrameTimes, HeadlessDevice, HeadlessOptions, Stage, View, technique};
 use image::ExtendedColorType;
