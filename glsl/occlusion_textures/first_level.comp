@@ -1,4 +1,4 @@
-// Entry of the pass occlusion_textures.first_level (src/techniques/occlusion_textures/passes.rs).
+// Entry of the pass occlusion_textures.first_level (src/techniques/occlusion_textures/filtered.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require

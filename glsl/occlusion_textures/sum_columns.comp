@@ -1,4 +1,4 @@
-// Entry of the pass occlusion_textures.sum_columns (src/techniques/occlusion_textures/passes.rs).
+// Entry of the pass occlusion_textures.sum_columns (src/techniques/occlusion_textures/filtered.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "occlusion_textures/tile.glsl"

@@ -1,4 +1,4 @@
-// Entry of the passes soft_shadow_map.gather_back and soft_shadow_map.gather_front (src/techniques/soft_shadow_map/passes.rs).
+// Entry of the passes soft_shadow_map.gather_back and soft_shadow_map.gather_front (src/techniques/soft_shadow_map/receiver_map.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require

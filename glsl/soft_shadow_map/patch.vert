@@ -1,4 +1,4 @@
-// Entry of the passes soft_shadow_map.blend_back and soft_shadow_map.blend_front (src/techniques/soft_shadow_map/passes.rs).
+// Entry of the passes soft_shadow_map.blend_back and soft_shadow_map.blend_front (src/techniques/soft_shadow_map/receiver_map.rs).
 #version 450
 
 // A micro-patch to its penumbra rectangle on the receiver map (Atty 2006, section 3.3), by pulling the

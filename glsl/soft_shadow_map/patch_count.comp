@@ -1,4 +1,4 @@
-// Entry of the passes soft_shadow_map.patch_count_back and soft_shadow_map.patch_count_front (src/techniques/soft_shadow_map/passes.rs).
+// Entry of the passes soft_shadow_map.patch_count_back and soft_shadow_map.patch_count_front (src/techniques/soft_shadow_map/receiver_map.rs).
 #version 450
 
 // Occupied texels of each group of 64 blocks, the first step of giving every micro-patch its place.

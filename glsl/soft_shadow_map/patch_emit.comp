@@ -1,4 +1,4 @@
-// Entry of the passes soft_shadow_map.patch_emit_back and soft_shadow_map.patch_emit_front (src/techniques/soft_shadow_map/passes.rs).
+// Entry of the passes soft_shadow_map.patch_emit_back and soft_shadow_map.patch_emit_front (src/techniques/soft_shadow_map/receiver_map.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "soft_shadow_map/node.glsl"

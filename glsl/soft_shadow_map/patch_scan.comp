@@ -1,4 +1,4 @@
-// Entry of the passes soft_shadow_map.patch_scan_back and soft_shadow_map.patch_scan_front (src/techniques/soft_shadow_map/passes.rs).
+// Entry of the passes soft_shadow_map.patch_scan_back and soft_shadow_map.patch_scan_front (src/techniques/soft_shadow_map/receiver_map.rs).
 #version 450
 
 // Group counts to the place of each group's first micro-patch, and the arguments of the draw.

@@ -1,4 +1,4 @@
-// Entry of the pass soft_shadow_map.superblocks (src/techniques/soft_shadow_map/passes.rs).
+// Entry of the pass soft_shadow_map.superblocks (src/techniques/soft_shadow_map/nodes.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "soft_shadow_map/node.glsl"

@@ -9,7 +9,7 @@ fn frames() {
     refuses(vec![
         f("a slot that is not there", |f| f.slot = 2, &["slot 2", "2 frames in flight"]),
         f("a light that is not there", |f| f.light_index = 1, &["light 1", "has 1"]),
-        f("settings that are not there", |f| f.technique_index = 3, &["settings 3", "has 1"]),
+        f("settings that are not there", |f| f.technique_index = 3, &["technique 3", "has 1"]),
         f(
             "a camera of NaN",
             |f| f.world_from_ndc.x_axis.x = f64::NAN,
