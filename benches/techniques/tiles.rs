@@ -17,7 +17,7 @@ pub const BENCH: Bench = Bench {
             let pass = "gather_pixels";
             compared("soft_shadow_map", "soft-shadow-map", pass, device, scale)
         }),
-        ("pcss", |device, scale| compared("pcss", "pcss", "baseline.pcss", device, scale)),
+        ("pcss", |device, scale| compared("pcss", "pcss", "pcss.visibility", device, scale)),
         ("occlusion_textures", |device, scale| {
             let pass = "occlusion_textures.visibility";
             compared("occlusion_textures", "occlusion-textures", pass, device, scale)
@@ -95,7 +95,7 @@ fn compared(
                 let lit = on.iter().filter(|v| **v == 1.0).count() as f64 / on.len() as f64;
                 let times = in_turns(&mut pair, scale.rounds);
                 let [without, listed] = [0, 1].map(|i| ending_ms(&times[i], &[pass]));
-                let finding = ["tiles_start", "tiles", "baseline.nearest", "textures.squares"];
+                let finding = ["tiles_start", "tiles", "pcss.nearest", "textures.squares"];
                 let tiles = ending_ms(&times[1], &finding);
                 let (lit, ratio) = (100.0 * lit, (tiles + listed) / without);
                 let ms = format!("{without:.1}|{tiles:.1}|{listed:.1}");

@@ -1,6 +1,6 @@
 //! Any bytes as a glTF file; ../README.md says how to run it.
 //!
-//! tests/untrusted.rs calls [`whole::open`] too, on files of its own, so that what one of the two looks for
+//! tests/files/untrusted.rs calls [`whole::open`] too, on files of its own, so that what one of the two looks for
 //! the other does.
 #![cfg_attr(fuzzing, no_main)]
 

@@ -1,4 +1,4 @@
-//! Scenes made to need something, or not to; `tests/planner.rs` and `benches/planner` share them.
+//! Scenes made to need something, or not to; `tests/techniques/planner.rs` and `benches/planner` share them.
 
 // The scenes are constants of this file: one that cannot be made is a fault of it.
 #![allow(clippy::unwrap_used)]

@@ -220,7 +220,7 @@ mod tests {
     use smallvec::smallvec;
 
     /// The passes that run in place of a technique's own where the frame does not need it.
-    const STAND_INS: [&str; 2] = ["visibility.lit", "baseline.hard"];
+    const STAND_INS: [&str; 2] = ["visibility.lit", "hard.visibility"];
 
     /// While light and meshes stay, only the passes over pixels run again.
     #[test]
@@ -265,7 +265,7 @@ mod tests {
         }
         // Each point's map is drawn where the one before was.
         let many = again("many-lights samples=2");
-        assert!(many.contains(&"baseline.point_depth"), "{many:?}");
+        assert!(many.contains(&"many_lights.point_depth"), "{many:?}");
         let rays = again("ray-march");
         assert!(!rays.contains(&"ray_march.columns") && rays.len() == 5, "{rays:?}");
     }

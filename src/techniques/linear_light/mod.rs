@@ -65,7 +65,7 @@ pub mod twin;
 mod view;
 
 pub use passes::Visibility;
-pub use samples::{Mask, Place, Sample, Spread, CopyDepth};
+pub use samples::{CopyDepth, Mask, Place, Sample, Spread};
 pub use segments::{Edges, Keep, Skins, Start};
 pub use settings::{Across, Settings, Transition};
 pub use view::{lines, turned};

@@ -66,12 +66,12 @@ pub(super) fn place(graph: &mut Graph, ctx: &LineContext) {
         None,
         ctx,
     ));
-    let taken = take(ctx, 0);
+    let copied = copy(ctx, 0);
     graph.push(Pass {
         name: "linear_light.middle_copy",
-        uses: taken.uses.iter().copied().filter(|u| u.access != Access::Indirect).collect(),
+        uses: copied.uses.iter().copied().filter(|u| u.access != Access::Indirect).collect(),
         work: Work::Dispatch { shader: shaders::LINE_COPY, groups: grid([settings.map; 2]) },
-        ..taken
+        ..copied
     });
     graph.push(Pass::compute(
         "linear_light.mask",
@@ -136,7 +136,9 @@ fn drawn(
 ) -> Pass {
     let Raster { cull, clear, compare } = depth_layers::raster_of(layer);
     let mut uses = smallvec![Use::fixed(image, Access::DepthTarget)];
-    uses.extend(sample.map(|_| Use::bound(0, ctx.resources.layers.samples, Access::BufferReadVertex)));
+    uses.extend(
+        sample.map(|_| Use::bound(0, ctx.resources.layers.samples, Access::BufferReadVertex)),
+    );
     Pass {
         name,
         uses,
@@ -185,7 +187,11 @@ pub(super) fn copy(ctx: &LineContext, layer: u32) -> Pass {
             map: ctx.settings.map as i32,
             layer: layer as i32,
         }),
-        work: Work::Indirect { shader: shaders::LINE_COPY, arguments: ctx.resources.groups, offset: 0 },
+        work: Work::Indirect {
+            shader: shaders::LINE_COPY,
+            arguments: ctx.resources.groups,
+            offset: 0,
+        },
         need: *ctx.inputs.need,
     }
 }

@@ -99,20 +99,20 @@
 //! slices of 1448² or 32 of 1024², by N-buffers 16 of 511². A host's fixed window is not looked at, as with
 //! `ray-march`.
 
-mod prefilter;
 mod pixels;
+mod prefilter;
 mod settings;
 mod slices;
 pub mod twin;
 
 pub use settings::{Combine, Placement, Prefilter, Settings};
 
-pub use prefilter::{FirstLevel, NextLevel, SumColumns, SumRows};
 pub use pixels::{Squares, Visibility};
+pub use prefilter::{FirstLevel, NextLevel, SumColumns, SumRows};
 pub use slices::{Histogram, Mask, Place};
 
-use self::prefilter::{declare_levels, declare_sums};
 use self::pixels::{PrefilteredSlices, declare_pixels};
+use self::prefilter::{declare_levels, declare_sums};
 use self::slices::{declare_mask, declare_placement, histogram_layers};
 use super::room::{HostDraws, Maps, PassInputs, Room, Shows, Takes};
 use crate::Error;

@@ -1,0 +1,277 @@
+//! Every row of every graph against its SPIR-V: bindings, push constants, workgroups.
+
+use antumbra::graph::{Draw, Graph, INVOCATIONS, PUSH_BYTES, Pass, Work};
+use antumbra::shaders::Module;
+use antumbra::stages::depth_layers::DepthPush;
+use antumbra::{Description, LightTexture, frame};
+use antumbra_tests::example::root;
+use antumbra_tests::headers;
+use antumbra_tests::measure::settings;
+use antumbra_tests::permutations;
+use antumbra_tests::reflect::{Interface, reflect};
+use ash::vk;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// One description for every set of rows there is.
+fn descriptions() -> Vec<(String, Description)> {
+    let mut all = Vec::new();
+    for words in [
+        "receivers=pixels sides=one",
+        "receivers=pixels sides=bottom",
+        "receivers=pixels sides=two",
+        "receivers=pixels sides=mean",
+        "receivers=pixels classify=off",
+        "receivers=map accumulate=gather sides=two map=100 receiver_map=77",
+        "receivers=map accumulate=blend sides=two map=17 receiver_map=16",
+        "receivers=map accumulate=blend-fp16 sides=one",
+        "technique=hard",
+        "technique=pcss taps=8",
+        "technique=pcss map=1000 classify=off",
+        "technique=back-projection map=100",
+        "technique=many-lights samples=3 map=65",
+        "technique=ray-march",
+        "technique=ray-march map=100 rays=7 layers=3 levels=thirds filter=off",
+        "technique=ray-march map=17 layers=2 levels=mip search=linear projection=orthographic",
+        "technique=occlusion-textures",
+        "technique=occlusion-textures map=65 slices=32 prefilter=n-buffer placement=uniform",
+        "technique=occlusion-textures map=1024 slices=17 combine=product prefilter=mip fill=on",
+        "technique=occlusion-textures map=100 slices=4 combine=sum",
+        "technique=occlusion-textures classify=off",
+        "technique=occlusion-textures map=100 combine=max classify=off",
+        "technique=occlusion-textures map=33 slices=8 prefilter=mip classify=off",
+        "technique=occlusion-textures map=50 slices=8 prefilter=mip combine=sum classify=off",
+        "technique=linear-light",
+        "technique=linear-light map=65 samples=2 lines=1 transition=linear",
+        "technique=linear-light map=100 samples=5 lines=2 error=0",
+    ] {
+        let textures: &[Option<bool>] =
+            if words.contains("ray-march") { &[None, Some(false), Some(true)] } else { &[None] };
+        for ((mask_format, occluder_maps), texture) in
+            [(None, None), (Some(vk::Format::R8_UNORM), None), (None, Some(vk::Format::D32_SFLOAT))]
+                .into_iter()
+                .flat_map(|formats| textures.iter().map(move |t| (formats, *t)))
+        {
+            let format = vk::Format::R8G8B8A8_UNORM;
+            let draws_all = ["many-lights", "occlusion-textures", "linear-light"];
+            if occluder_maps.is_some() && draws_all.iter().any(|t| words.contains(t)) {
+                continue;
+            }
+            let description = Description {
+                technique: settings(words),
+                mask_format,
+                occluder_maps,
+                light_texture: texture.map(|color| LightTexture { format, color }),
+                lent_visibility: occluder_maps.is_some(),
+                ..Description::new([641, 479])
+            };
+            all.push((
+                format!(
+                    "{words}, mask {mask_format:?}, maps {occluder_maps:?}, texture {texture:?}"
+                ),
+                description,
+            ));
+        }
+    }
+    all
+}
+
+fn graphs() -> Vec<(String, Graph)> {
+    descriptions().into_iter().map(|(words, d)| (words, frame::full_graph(&d))).collect()
+}
+
+fn modules(pass: &Pass) -> Vec<Module> {
+    match pass.work {
+        Work::Dispatch { shader, .. } | Work::Indirect { shader, .. } => vec![shader],
+        Work::Raster { vertex, fragment, .. } => std::iter::once(vertex).chain(fragment).collect(),
+    }
+}
+
+fn interface(module: Module) -> Interface {
+    reflect(module.spirv).unwrap_or_else(|e| panic!("{}: {e}", module.path))
+}
+
+/// What a row and its shaders disagree on.
+fn disagreements(graph: &Graph, pass: &Pass) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut seen = BTreeSet::new();
+    let pushed = match pass.work {
+        Work::Raster { draw: Draw::Layer { .. }, .. } => {
+            pass.push.bytes().len().max(size_of::<DepthPush>())
+        }
+        _ => pass.push.bytes().len(),
+    };
+    for module in modules(pass) {
+        let shader = interface(module);
+        for b in &shader.bindings {
+            seen.insert(b.binding);
+            let used = pass.uses.iter().find(|u| u.binding.map(u32::from) == Some(b.binding));
+            let Some(used) = used else {
+                found.push(format!(
+                    "{}: binding {} ({}) is not in the row",
+                    module.path, b.binding, b.name
+                ));
+                continue;
+            };
+            if b.set != 0 || used.access.descriptor() != Some(b.kind) {
+                found.push(format!(
+                    "{}: binding {} is {:?} of set {}, the row has {:?}",
+                    module.path, b.binding, b.kind, b.set, used.access
+                ));
+            }
+            if b.writes != used.access.writes() {
+                found.push(format!(
+                    "{}: binding {} ({}) {} written, the row has {:?}",
+                    module.path,
+                    b.binding,
+                    b.name,
+                    if b.writes { "is" } else { "is not" },
+                    used.access
+                ));
+            }
+            if b.kind == vk::DescriptorType::STORAGE_IMAGE {
+                let shape = graph.resource(used.resource).shape;
+                let antumbra::graph::Shape::Image { format, .. } = shape else {
+                    found.push(format!("{}: binding {} is no image", module.path, b.binding));
+                    continue;
+                };
+                if format != b.format {
+                    found.push(format!("{}: {:?}, not {format:?}", module.path, b.format));
+                }
+            }
+        }
+        let bytes = shader.push_bytes() as usize;
+        // A fragment shader may declare a part of what the vertex shader does, and structs are
+        // padded to their alignment.
+        if bytes > pushed || pushed > PUSH_BYTES || (pushed > bytes + 4 && modules(pass).len() == 1)
+        {
+            found
+                .push(format!("{}: {bytes} bytes of push constants, pushed {pushed}", module.path));
+        }
+        if pass.work.compute_shader().is_some() {
+            let invocations: u32 = shader.workgroup.iter().product();
+            if !(1..=INVOCATIONS).contains(&invocations) {
+                found.push(format!("{}: workgroup {:?}", module.path, shader.workgroup));
+            }
+        }
+    }
+    // What every device has for a stage: maxPerStageDescriptorStorageBuffers and so on.
+    for (kind, most) in [
+        (vk::DescriptorType::STORAGE_BUFFER, 4),
+        (vk::DescriptorType::STORAGE_IMAGE, 4),
+        (vk::DescriptorType::SAMPLED_IMAGE, 16),
+    ] {
+        let bound = pass.uses.iter().filter(|u| u.access.descriptor() == Some(kind)).count();
+        let targets =
+            pass.uses.iter().filter(|u| u.access == antumbra::graph::Access::ColorTarget).count();
+        if targets > antumbra::graph::COLOR_ATTACHMENTS {
+            found.push(format!("{}: {targets} color attachments", pass.name));
+        }
+        if bound > most {
+            found.push(format!("{}: {bound} of {kind:?}, where {most} are guaranteed", pass.name));
+        }
+    }
+    for binding in pass.uses.iter().filter_map(|u| u.binding) {
+        if !seen.contains(&binding.into()) {
+            found.push(format!("{}: binding {binding} is in no shader", pass.name));
+        }
+    }
+    found
+}
+
+#[test]
+fn every_row_is_what_its_shaders_say() {
+    let mut problems = Vec::new();
+    let mut rows = BTreeSet::new();
+    for (words, graph) in graphs() {
+        for pass in graph.passes() {
+            rows.insert(pass.name);
+            problems
+                .extend(disagreements(&graph, pass).into_iter().map(|d| format!("{words}: {d}")));
+        }
+    }
+    println!("{} rows: {rows:?}", rows.len());
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+}
+
+/// The comparison notices a wrong binding, a wrong access and too few push constants.
+#[test]
+fn a_wrong_row_is_noticed() {
+    let (_, graph) = graphs().remove(0);
+    let pass = |name: &str| graph.passes().iter().find(|p| p.name == name).unwrap().clone();
+    let good = pass("soft_shadow_map.blocks");
+    assert!(disagreements(&graph, &good).is_empty());
+    let mut wrong = good.clone();
+    wrong.uses[2].binding = Some(7);
+    assert_eq!(disagreements(&graph, &wrong).len(), 2, "one in the shader, one in the row");
+    let mut wrong = good.clone();
+    wrong.uses[2].access = antumbra::graph::Access::BufferReadCompute;
+    assert_eq!(disagreements(&graph, &wrong).len(), 1);
+    let mut wrong = good;
+    wrong.push = antumbra::graph::Push::NONE;
+    assert_eq!(disagreements(&graph, &wrong).len(), 1);
+}
+
+/// Every embedded module is some row's, and every committed one is embedded.
+#[test]
+fn every_module_has_a_row() {
+    let used: BTreeSet<&str> = graphs()
+        .iter()
+        .flat_map(|(_, g)| g.passes().iter().flat_map(modules).map(|m| m.path).collect::<Vec<_>>())
+        .collect();
+    let embedded: BTreeSet<&str> = antumbra::shaders::ALL.iter().map(|m| m.path).collect();
+    assert_eq!(used, embedded);
+    let committed: BTreeSet<String> = antumbra_tests::compile::committed().into_keys().collect();
+    let headless = |name: &String| name.starts_with("headless/");
+    let listed: BTreeSet<String> = committed.into_iter().filter(|name| !headless(name)).collect();
+    assert_eq!(listed, embedded.iter().map(ToString::to_string).collect());
+}
+
+/// Every whole shader's first line names the passes that run it, and a Rust file that names one of its modules.
+#[test]
+fn every_shader_names_its_passes() {
+    let mut passes: BTreeMap<&str, BTreeSet<String>> = BTreeMap::new();
+    for (_, graph) in graphs() {
+        for pass in graph.passes() {
+            for module in modules(pass) {
+                passes.entry(module.path).or_default().insert(pass.name.to_owned());
+            }
+        }
+    }
+    let mut files: BTreeMap<String, (BTreeSet<String>, Vec<String>)> = BTreeMap::new();
+    for module in permutations::modules() {
+        if let Some(passes) = passes.get(module.name.as_str()) {
+            let (of_file, names) = files.entry(module.file).or_default();
+            of_file.extend(passes.iter().cloned());
+            names.push(module.name);
+        }
+    }
+    assert!(files.len() > 50, "{} shaders", files.len());
+    let constants = std::fs::read_to_string(root().join("src/shaders.rs")).unwrap();
+    let constant = |module: &str| {
+        let line = constants.lines().find(|line| line.ends_with(&format!(" = \"{module}\";")));
+        line.unwrap().split_whitespace().next().unwrap().to_owned()
+    };
+    let mut found = Vec::new();
+    for (file, (passes, names)) in files {
+        let names: Vec<String> = names.iter().map(|module| constant(module)).collect();
+        match headers::entry(&file) {
+            Err(problem) => found.push(format!("{problem}, is {passes:?}")),
+            Ok(entry) => {
+                let more = passes.difference(&entry.passes).count() > 0;
+                if !entry.passes.is_subset(&passes) || more != entry.and_others {
+                    let named = &entry.passes;
+                    found.push(format!("glsl/{file} names the passes {named:?}, is {passes:?}"));
+                }
+                let text = std::fs::read_to_string(root().join(&entry.declared_in));
+                let text = text.unwrap_or_default();
+                let words: BTreeSet<&str> =
+                    text.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
+                if !names.iter().any(|name| words.contains(name.as_str())) {
+                    let declared_in = &entry.declared_in;
+                    found.push(format!("glsl/{file}: {declared_in} has none of {names:?}"));
+                }
+            }
+        }
+    }
+    assert!(found.is_empty(), "{}", found.join("\n"));
+}

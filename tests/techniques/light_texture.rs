@@ -1,0 +1,153 @@
+//! Lights that do not emit the same everywhere: rays weigh what they emit, in color where asked for.
+
+use antumbra::scene::{Scene, generate};
+use antumbra::truth::visible_fraction_of_quad;
+use antumbra::{Description, Error, Frame, LightTexture, RectangleLight, Scope};
+use antumbra_harness::{HeadlessDevice, OwnedImage, Stage};
+use antumbra_tests::device;
+use antumbra_tests::measure::{Setup, percent, settings};
+use ash::vk;
+use glam::DVec3;
+
+const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+
+/// A texture of the light, row by row.
+fn texture(device: &HeadlessDevice, extent: [u32; 2], texels: &[[f32; 4]]) -> OwnedImage {
+    let usage = vk::ImageUsageFlags::SAMPLED;
+    let image = OwnedImage::new(device, "light", FORMAT, extent, usage).unwrap();
+    image.write(texels, Scope::COMPUTE_SAMPLED.layout).unwrap();
+    image
+}
+
+/// A stage whose node takes a texture.
+fn stage(device: &HeadlessDevice, setup: &Setup, words: &str, color: bool) -> Stage {
+    let mut stage = setup.stage(device, words);
+    let texture = Some(LightTexture { format: FORMAT, color });
+    stage.configure_with(settings(words), |d| d.light_texture = texture).unwrap();
+    stage
+}
+
+fn run(stage: &mut Stage, light: &RectangleLight, image: &OwnedImage) {
+    let lent = image.lend(Scope::COMPUTE_SAMPLED, Scope::COMPUTE_SAMPLED);
+    let plan = stage.plan_with(light, |frame| frame.light_texture = Some(lent)).unwrap();
+    stage.run(&plan).unwrap();
+}
+
+/// The part of a light that a quadrant of its texture is.
+fn quadrant(light: &RectangleLight, right: bool, bottom: bool) -> RectangleLight {
+    let world = light.world_from_light();
+    let [a, b] = light.half_extents();
+    let half_u = world.x_axis.truncate() * (0.5 * a);
+    // Light space has y against the second half-axis.
+    let half_v = world.y_axis.truncate() * (-0.5 * b);
+    let sign = |on: bool| if on { 1.0 } else { -1.0 };
+    let centre: DVec3 = light.center() + half_u * sign(right) - half_v * sign(bottom);
+    RectangleLight::new(centre, half_u, half_v).unwrap()
+}
+
+/// The exact fractions of a part of the light behind the card.
+fn exact(setup: &Setup, stage: &Stage, part: &RectangleLight) -> Vec<f32> {
+    let h = 0.5;
+    let corners = [(-h, -h), (h, -h), (h, h), (-h, h)].map(|(x, z)| DVec3::new(x, 2.0, z));
+    let fraction =
+        |r: &antumbra::truth::Receiver| visible_fraction_of_quad(part, corners, r.position) as f32;
+    let receivers = Setup::receivers(stage);
+    assert_eq!(receivers.len(), (setup.extent[0] * setup.extent[1]) as usize);
+    receivers.iter().map(fraction).collect()
+}
+
+fn card(light: RectangleLight) -> Scene {
+    generate::card(light)
+}
+
+/// A texture that is white everywhere changes nothing.
+#[test]
+fn white_is_no_texture() {
+    let device = device();
+    let scene = card(generate::square_light(0.4).unwrap());
+    let setup = Setup::ground(&scene, 2.2, 96);
+    let words = "technique=ray-march rays=64 filter=off";
+    let plain = setup.visibility(&mut setup.stage(&device, words));
+    let white = texture(&device, [3, 5], &[[1.0; 4]; 15]);
+    let mut grey = stage(&device, &setup, words, false);
+    run(&mut grey, &setup.light(), &white);
+    let mut color = stage(&device, &setup, words, true);
+    run(&mut color, &setup.light(), &white);
+    let grey = grey.visibility().unwrap();
+    let color = color.visibility_of_color().unwrap();
+    for ((v, g), c) in plain.iter().zip(&grey).zip(&color) {
+        assert!((v - g).abs() < 1e-6, "{v}, {g}");
+        assert!(c.iter().take(3).all(|x| (x - g).abs() < 1e-6) && c[3] == 1.0, "{g}, {c:?}");
+    }
+}
+
+/// Each color comes from its own quadrant of the light, and is as visible as a light of that size there.
+/// Rays go to a quarter of the light each, 64 of 256: their noise is 0.3 · 64^(−0.77) = 1.2 % before the
+/// filter.
+#[test]
+fn a_color_is_as_visible_as_its_part_of_the_light() {
+    let device = device();
+    let light = generate::rectangle_light(0.8, 0.5, 0.2).unwrap();
+    let scene = card(light);
+    let setup = Setup::ground(&scene, 2.6, 128);
+    let [red, green, blue, black] =
+        [[1.0, 0.0, 0.0, 1.0], [0.0, 2.0, 0.0, 1.0], [0.0, 0.0, 0.5, 1.0], [0.0; 4]];
+    let image = texture(&device, [2, 2], &[red, green, blue, black]);
+    let mut stage = stage(&device, &setup, "technique=ray-march rays=256", true);
+    run(&mut stage, &setup.light(), &image);
+    let seen = stage.visibility_of_color().unwrap();
+    for (channel, name, right, bottom) in
+        [(0, "red", false, false), (1, "green", true, false), (2, "blue", false, true)]
+    {
+        let channel_of: Vec<f32> = seen.iter().map(|v| v[channel]).collect();
+        let own = exact(&setup, &stage, &quadrant(&light, right, bottom));
+        let other = exact(&setup, &stage, &quadrant(&light, !right, bottom));
+        let (error, wrong) = (percent(&own, &channel_of), percent(&other, &channel_of));
+        println!("{name}: {error:.2} %, against its neighbour's part {wrong:.2} %");
+        assert!(error < 1.0, "{name}: {error:.2} %");
+        assert!(wrong > 5.0 * error, "{name}: {wrong:.2} %");
+    }
+}
+
+/// Luminance: what is twice as bright counts twice, and black nothing.
+#[test]
+fn grey_weighs_by_luminance() {
+    let device = device();
+    let light = generate::rectangle_light(0.8, 0.5, 0.0).unwrap();
+    let scene = card(light);
+    let setup = Setup::ground(&scene, 2.6, 96);
+    let image = texture(&device, [2, 1], &[[2.0; 4], [1.0; 4]]);
+    let mut stage = stage(&device, &setup, "technique=ray-march rays=256", false);
+    run(&mut stage, &setup.light(), &image);
+    let seen = stage.visibility().unwrap();
+    let half = |right| {
+        let [top, bottom] =
+            [false, true].map(|b| exact(&setup, &stage, &quadrant(&light, right, b)));
+        top.iter().zip(bottom).map(|(a, b)| 0.5 * (a + b)).collect::<Vec<f32>>()
+    };
+    let (left, right) = (half(false), half(true));
+    let truth: Vec<f32> = left.iter().zip(&right).map(|(l, r)| (2.0 * l + r) / 3.0).collect();
+    let error = percent(&truth, &seen);
+    println!("two halves, one twice as bright: {error:.2} %");
+    assert!(error < 0.6, "{error:.2} %");
+}
+
+#[test]
+fn what_cannot_be_weighed_is_refused() {
+    let device = device();
+    let scene = card(generate::square_light(0.4).unwrap());
+    let setup = Setup::ground(&scene, 2.2, 32);
+    let described = |words: &str, format| Description {
+        technique: settings(words),
+        light_texture: Some(LightTexture { format, color: true }),
+        ..Description::new([32, 32])
+    };
+    let refused = |d: Description| d.check().unwrap_err().to_string();
+    assert!(refused(described("map=64", FORMAT)).contains("choose ray-march"));
+    let depth = described("technique=ray-march", vk::Format::D32_SFLOAT);
+    assert!(refused(depth).contains("holds no color"));
+    let mut stage = stage(&device, &setup, "technique=ray-march", true);
+    let missing = |frame: &mut Frame| frame.light_texture = None;
+    let problem: Error = stage.plan_with(&setup.light(), missing).unwrap_err();
+    assert!(problem.to_string().contains("a light texture must be lent"), "{problem}");
+}

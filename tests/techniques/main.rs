@@ -1,0 +1,20 @@
+//! How far is each technique from the truth, and what are its own laws?
+
+// A test says what went wrong by panicking.
+#![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
+
+mod accuracy;
+mod baseline;
+mod forward;
+mod light_texture;
+mod line_light;
+mod linear_light;
+mod linear_samples;
+mod occlusion_textures;
+mod occlusion_textures_slices;
+mod planner;
+mod polygon_light;
+mod ray_march;
+mod ray_march_limits;
+mod sun;
+mod tiles;

@@ -1,0 +1,87 @@
+//! What ray marching makes of lights larger than any map's window, and of eyes inside occluders.
+
+use antumbra::scene::{Camera, Role, Scene, generate};
+use antumbra_harness::{HeadlessDevice, View};
+use antumbra_tests::device;
+use antumbra_tests::measure::{Setup, percent};
+use glam::{DMat4, DVec3};
+
+fn image(device: &HeadlessDevice, setup: &Setup, words: &str) -> Vec<f32> {
+    let image = setup.visibility(&mut setup.stage(device, &format!("technique=ray-march {words}")));
+    assert!(image.iter().all(|v| (0.0..=1.0).contains(v)), "{words}: not a fraction");
+    image
+}
+
+/// Rays that go anywhere would leave this much of the mean |error| to these numbers of rays; those of the
+/// node and of the truth, which have a part of the light each, leave less.
+fn noise(truth: &[f32], rays: f64, truth_rays: f64) -> f64 {
+    let one = |v: &f32| f64::from(v * (1.0 - v)).sqrt();
+    let share = truth.iter().map(one).sum::<f64>() / truth.len() as f64;
+    (2.0 / std::f64::consts::PI * (1.0 / rays + 1.0 / truth_rays)).sqrt() * share
+}
+
+/// From as large as the occluders to 100,000 times, where the projection point of eq. 3.1 would lie so far
+/// away that floats could not tell distances apart. Where the light is so large that nothing hides much of it
+/// the error is told over all pixels.
+#[test]
+fn a_light_larger_than_the_frustum_can_hold_is_seen_as_it_is() {
+    let device = device();
+    for side in [1.0, 3.0, 20.0, 1e3, 1e5] {
+        let scene = generate::tall_box(generate::square_light(side).unwrap());
+        let setup = Setup::ground(&scene, 2.0, 96);
+        for projection in ["behind", "orthographic", "centre"] {
+            let words = format!("technique=ray-march rays=256 projection={projection}");
+            let mut stage = setup.stage(&device, &words);
+            let seen = setup.visibility(&mut stage);
+            assert!(seen.iter().all(|v| (0.0..=1.0).contains(v)), "{side} m: not a fraction");
+            let (truth, _) = setup.traced(&stage, 512);
+            let all = truth.iter().zip(&seen).map(|(t, v)| f64::from((t - v).abs())).sum::<f64>();
+            let mean = 100.0 * all / truth.len() as f64;
+            let hidden =
+                truth.iter().map(|v| 1.0 - f64::from(*v)).sum::<f64>() / truth.len() as f64;
+            println!(
+                "{side} m, {projection}, {:.3} % hidden: mean {mean:.3} % of all pixels, {:.2} %",
+                100.0 * hidden,
+                percent(&truth, &seen)
+            );
+            let bound = 100.0 * noise(&truth, 256.0, 512.0) + ROOM;
+            assert!(mean < bound, "{side} m, {projection}: {mean} % where noise is {bound}");
+        }
+    }
+}
+
+/// What texels cut off an edge, in percentage points of all pixels.
+const ROOM: f64 = 0.05;
+
+/// A closed box around the eye, the light outside: everything that the eye sees is in umbra.
+fn boxed_in() -> Scene {
+    let mut scene = generate::stage(generate::square_light(0.4).unwrap());
+    let at = DMat4::from_translation(DVec3::new(0.0, 1.5, 0.0));
+    scene.add("box", generate::cuboid(DVec3::splat(2.0)), at, Role::Both);
+    scene
+}
+
+#[test]
+fn an_eye_inside_an_occluder_sees_its_umbra() {
+    let device = device();
+    let scene = boxed_in();
+    let extent = [64, 48];
+    let eye = DVec3::new(0.3, 1.2, 0.8);
+    for (where_to, turn) in [("down", -0.3), ("up", 0.6)] {
+        let world_from_view = DMat4::from_translation(eye) * DMat4::from_rotation_x(turn);
+        let camera = Camera { world_from_view, yfov: 1.9, near: 0.05 };
+        let setup = Setup {
+            scene: &scene,
+            view: View::perspective(&camera, extent),
+            extent,
+            window: None,
+            occluders_seen: true,
+        };
+        for layers in ["2", "3", "4"] {
+            let seen = image(&device, &setup, &format!("layers={layers} filter=off"));
+            let lit = seen.iter().filter(|v| **v > 0.0).count();
+            println!("{where_to}, layers={layers}: {lit} of {} pixels see the light", seen.len());
+            assert!(lit == 0, "{where_to}, layers={layers}: {lit}");
+        }
+    }
+}
