@@ -64,6 +64,13 @@ pub enum Error {
         /// The allocator's answer.
         problem: String,
     },
+    /// A plan that the node does not take any more: plan the frame again, and record that.
+    #[error("this plan {0}; plan the frame again")]
+    StalePlan(&'static str),
+    /// A plan with meshes that the host draws, recorded without a callback that draws them: record it by
+    /// [`ShadowNode::record_with`](crate::ShadowNode::record_with).
+    #[error("some of this plan's meshes are the host's to draw; use record_with")]
+    NeedsHostDraws,
     /// A frame, plan or call that does not fit the node it was given to.
     #[error("{0}")]
     Frame(String),

@@ -9,6 +9,34 @@ use glam::DMat4;
 use std::fmt;
 use std::str::FromStr;
 
+/// Which of the frames in flight a frame is, 0 and up, below
+/// [`Description::frames_in_flight`](crate::Description::frames_in_flight).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Slot(pub u32);
+
+/// Which of the description's lights a frame is for, 0 and up, below
+/// [`Description::lights`](crate::Description::lights).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct LightIndex(pub u32);
+
+/// Which of the description's techniques a frame uses: 0 is
+/// [`Description::technique`](crate::Description::technique), n the nth of
+/// [`Description::other_techniques`](crate::Description::other_techniques).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct TechniqueIndex(pub u32);
+
+macro_rules! numbers {
+    ($($index:ident)+) => {
+        $(impl fmt::Display for $index {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                write!(f, "{}", self.0)
+            }
+        })+
+    };
+}
+
+numbers! { Slot LightIndex TechniqueIndex }
+
 /// An axis-aligned box in mesh space: least and largest corner, metres before the transform.
 pub type MeshBounds = [[f32; 3]; 2];
 

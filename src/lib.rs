@@ -89,14 +89,14 @@ pub use ash;
 pub use error::Error;
 pub use frame::{Description, Doubt, Frame, FramePlan, FramePlans, LightTexture};
 pub use glam;
-pub use gpu::{Allocator, Host, HostDraw, Requirements, RetireQueue, Retired};
+pub use gpu::{Allocator, Host, HostDraw, Requirements, ResourceBytes, RetireQueue, Retired};
 pub use graph::{Layer, Scope};
 pub use lent::{
-    BorderBarriers, Geometry, HostImage, MeshBounds, MeshBuffers, MeshInstance, OccluderMaps, Role,
-    Visibility,
+    BorderBarriers, Geometry, HostImage, LightIndex, MeshBounds, MeshBuffers, MeshInstance,
+    OccluderMaps, Role, Slot, TechniqueIndex, Visibility,
 };
 pub use light::RectangleLight;
-pub use node::{LayerPass, ShadowNode, VisibilityImage};
+pub use node::{LayerPass, PassTime, ShadowNode, VisibilityImage};
 pub use plain::{Matrix, Vector};
 pub use technique::Technique;
 

@@ -2,7 +2,7 @@
 
 mod shown;
 
-pub use shown::{Inspected, LayerPass, PlanObject, VisibilityImage};
+pub use shown::{Inspected, LayerPass, PassTime, PlanObject, VisibilityImage};
 
 use crate::Error;
 use crate::auto::{self, Auto, Choice};
@@ -10,8 +10,11 @@ use crate::frame::{
     self, Cache, CacheKey, Description, Frame, FramePlan, FramePlans, Limits, Memory, Stamp,
     Workspace,
 };
-use crate::gpu::{Allocator, Host, HostDraw, NodeObjects, Object, Requirements, Retired};
+use crate::gpu::{
+    Allocator, Host, HostDraw, NodeObjects, Object, Requirements, ResourceBytes, Retired,
+};
 use crate::graph::{Draw, Graph, Layer, Owner, Pass, Shape, Target, Work};
+use crate::lent::{LightIndex, Slot, TechniqueIndex};
 use crate::stages::depth_layers;
 use ash::vk;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -26,7 +29,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 pub struct ShadowNode {
     host: Host,
     description: Description,
-    /// The description with each of its settings alone.
+    /// The description with each of its techniques alone.
     chosen: Vec<Description>,
     limits: Limits,
     objects: NodeObjects,
@@ -115,7 +118,7 @@ impl ShadowNode {
         let key = CacheKey { light: frame.light_index, technique: frame.technique_index };
         let cached = self.cache().for_plan(key);
         let chosen;
-        let description = match self.chosen.get(frame.technique_index as usize) {
+        let description = match self.chosen.get(frame.technique_index.0 as usize) {
             Some(description) => description,
             // Says what is wrong.
             None => {
@@ -134,13 +137,12 @@ impl ShadowNode {
     /// What must hold of the command buffer and the plan's slot was promised at [`Host::borrow`].
     ///
     /// # Errors
-    /// [`Error::Frame`] where the plan was made by another node, or before a resize, or has meshes
-    /// that the host draws, or where there is no command buffer; nothing is recorded then.
+    /// [`Error::StalePlan`] where the plan was made by another node, before a resize, or counts on what has been
+    /// replaced since; [`Error::NeedsHostDraws`] where it has meshes that the host draws; [`Error::Frame`] where there
+    /// is no command buffer. Nothing is recorded then.
     pub fn record(&self, cmd: vk::CommandBuffer, plan: &FramePlan) -> Result<(), Error> {
         if plan.has_host_draws() {
-            return Err(Error::Frame(
-                "some of this plan's meshes are the host's to draw; use record_with".into(),
-            ));
+            return Err(Error::NeedsHostDraws);
         }
         self.record_with(cmd, plan, &mut |_| {})
     }
@@ -149,8 +151,7 @@ impl ShadowNode {
     /// shows it, between the node's own draws. [`Self::layer_pass`] says what its pipelines must fit.
     ///
     /// # Errors
-    /// [`Error::Frame`] where the plan was made by another node, or before a resize; nothing is
-    /// recorded then.
+    /// As [`Self::record`], but for [`Error::NeedsHostDraws`].
     pub fn record_with(
         &self,
         cmd: vk::CommandBuffer,
@@ -158,20 +159,15 @@ impl ShadowNode {
         draw: &mut dyn FnMut(&HostDraw),
     ) -> Result<(), Error> {
         if plan.stamp != self.stamp {
-            return Err(Error::Frame(
-                "this plan was made by another node, or before a resize; plan the frame again"
-                    .into(),
-            ));
+            return Err(Error::StalePlan("was made by another node, or before a resize"));
         }
         if cmd == vk::CommandBuffer::null() {
             return Err(Error::Frame("the command buffer to record into is a null handle".into()));
         }
         let mut cache = self.cache();
         if !cache.agrees(plan.cache_key(), &plan.reuse) {
-            return Err(Error::Frame(
-                "this plan counts on maps or pixels that a frame recorded since has replaced; plan the frame again"
-                    .into(),
-            ));
+            let why = "counts on maps or pixels that a frame recorded since has replaced";
+            return Err(Error::StalePlan(why));
         }
         cache.recorded(plan.cache_key(), &plan.reuse);
         drop(cache);
@@ -179,15 +175,9 @@ impl ShadowNode {
         Ok(())
     }
 
-    /// What a host's own pipeline must fit to draw into a layer; none where the first settings have no
-    /// such layer.
-    pub fn layer_pass(&self, layer: Layer) -> Option<LayerPass> {
-        self.layer_pass_of(0, layer)
-    }
-
-    /// The same for one of the settings, as [`Frame::technique_index`] counts them.
-    pub fn layer_pass_of(&self, technique_index: u32, layer: Layer) -> Option<LayerPass> {
-        let description = self.description.choosing(technique_index).ok()?;
+    /// What a host's own pipeline must fit to draw into a layer; none where the technique has no such layer.
+    pub fn layer_pass(&self, technique: TechniqueIndex, layer: Layer) -> Option<LayerPass> {
+        let description = self.description.choosing(technique).ok()?;
         let graph = frame::all_passes(&description, self.limits);
         let draws = |p: &Pass| match p.work {
             Work::Raster { draw: Draw::Layer { layer: l, .. }, target, .. } => {
@@ -196,23 +186,23 @@ impl ShadowNode {
             _ => false,
         };
         let kind = graph.kinds().position(draws)?;
-        let (render_pass, extent) = self.objects.render_pass(technique_index, kind)?;
+        let (render_pass, extent) = self.objects.render_pass(technique, kind)?;
         Some(LayerPass { render_pass, extent, raster: depth_layers::raster_of(layer) })
     }
 
-    /// The node's own image that holds the result, another one after each resize; null handles where
-    /// the host lends it.
-    pub fn visibility(&self) -> VisibilityImage {
+    /// The node's own image that holds the result, another one after each resize; none where the host lends it.
+    pub fn visibility(&self) -> Option<VisibilityImage> {
         let (image, view) = self.objects.result();
         let Description { extent, lights: layers, .. } = self.description;
-        VisibilityImage { image, view, extent, layers }
+        let owned = image != vk::Image::null();
+        owned.then_some(VisibilityImage { image, view, extent, layers })
     }
 
     /// A 2D view of a light's layer of that image; none for a light that does not exist, or where the
     /// host lends the image.
-    pub fn visibility_layer(&self, light_index: u32) -> Option<vk::ImageView> {
-        let view = self.objects.result_layer(light_index);
-        (light_index < self.description.lights && view != vk::ImageView::null()).then_some(view)
+    pub fn visibility_layer(&self, light: LightIndex) -> Option<vk::ImageView> {
+        let view = self.objects.result_layer(light);
+        (light.0 < self.description.lights && view != vk::ImageView::null()).then_some(view)
     }
 
     /// Makes what depends on the G-buffer's size anew and gives back what to retire. Pipelines stay,
@@ -279,22 +269,16 @@ impl ShadowNode {
             let mut all = self.description.all_techniques();
             let same = all.position(|t| *t == choice.technique);
             // Beyond as many settings as a node may have, the first serve.
-            frame.technique_index = same.unwrap_or(0) as u32;
+            frame.technique_index = TechniqueIndex(same.unwrap_or(0) as u32);
         }
         Ok((choices, retired))
     }
 
-    /// Name and milliseconds of each pass that `slot` recorded last for light 0, rows of one name summed; none until the
-    /// host knows that its commands are done, where no pass ran, where the queue family has no timestamps, or when the
-    /// device is lost. Never waits.
-    pub fn timings(&self, slot: u32) -> Option<Vec<(&'static str, f64)>> {
-        self.timings_of(slot, 0)
-    }
-
-    /// The same for any of the lights.
-    pub fn timings_of(&self, slot: u32, light_index: u32) -> Option<Vec<(&'static str, f64)>> {
-        let sums = self.objects.timings(&self.host, slot, light_index)?;
-        Some(sums.into_iter().map(|(kind, ms)| (self.kinds[kind], ms)).collect())
+    /// What each pass took that `slot` recorded last for a light; none until the host knows that its commands are done,
+    /// where no pass ran, where the queue family has no timestamps, or when the device is lost. Never waits.
+    pub fn timings(&self, slot: Slot, light: LightIndex) -> Option<Vec<PassTime>> {
+        let sums = self.objects.timings(&self.host, slot, light)?;
+        Some(sums.into_iter().map(|(kind, ms)| PassTime { name: self.kinds[kind], ms }).collect())
     }
 
     /// The node's own images that a plan writes, and the layout they are in behind it; they can be
@@ -316,7 +300,7 @@ impl ShadowNode {
                     return None;
                 };
                 let layout = last_layout(id)?;
-                let (image, _) = self.objects.image(plan.technique_index, id);
+                let (image, _) = self.objects.image(plan.technique_index(), id);
                 Some(Inspected {
                     name: resource.name,
                     image,
@@ -334,7 +318,7 @@ impl ShadowNode {
         let graph = &plan.plan.graph;
         let mut ids = (0..graph.resources().len()).map(|index| graph.id(index));
         let id = ids.find(|&id| graph.resource(id).name == name)?;
-        match (self.objects.get(plan.technique_index, id), graph.resource(id).shape) {
+        match (self.objects.get(plan.technique_index(), id), graph.resource(id).shape) {
             (Object::Image { image, view }, _) => Some(PlanObject::Image { image, view }),
             (Object::Buffer(buffer), Shape::Buffer { bytes }) => {
                 Some(PlanObject::Buffer { buffer, bytes })
@@ -343,16 +327,14 @@ impl ShadowNode {
         }
     }
 
-    /// Name and bytes of everything the node holds in device memory: the visibility image, then what each
-    /// of the settings has, one behind the other.
-    pub fn memory(&self) -> Vec<(&'static str, u64)> {
+    /// Everything that the node holds in device memory: the visibility image, then the resources of each technique.
+    pub fn memory(&self) -> Vec<ResourceBytes> {
         self.objects.memory()
     }
 
-    /// Name and bytes of what one of the settings has for the lights that choose it; nothing for settings
-    /// that do not exist.
-    pub fn memory_of(&self, technique_index: u32) -> Vec<(&'static str, u64)> {
-        self.objects.memory_of(technique_index)
+    /// What one of the techniques holds for the lights that choose it; nothing for one that does not exist.
+    pub fn memory_of(&self, technique: TechniqueIndex) -> Vec<ResourceBytes> {
+        self.objects.memory_of(technique)
     }
 
     /// How many Vulkan objects the node holds.
@@ -366,15 +348,17 @@ impl ShadowNode {
     }
 }
 
-/// Every row that any frame could run, for each of the description's settings.
+/// Every pass that any frame may run, for each of the description's techniques.
 fn graphs(description: &Description, limits: Limits) -> Result<Vec<Graph>, Error> {
-    let of = |index| Ok(frame::all_passes(&*description.choosing(index as u32)?, limits));
+    let of = |index| {
+        Ok(frame::all_passes(&*description.choosing(TechniqueIndex(index as u32))?, limits))
+    };
     (0..description.all_techniques().count()).map(of).collect()
 }
 
-/// A description with each of its settings alone.
+/// The description with each of its techniques alone.
 fn chosen(description: &Description) -> Result<Vec<Description>, Error> {
-    let of = |index| Ok(description.choosing(index as u32)?.into_owned());
+    let of = |index| Ok(description.choosing(TechniqueIndex(index as u32))?.into_owned());
     (0..description.all_techniques().count()).map(of).collect()
 }
 

@@ -3,11 +3,14 @@
 use crate::ready::{frame_ms, median_of, settings};
 use crate::table::Table;
 use crate::{Bench, Scale};
+use antumbra::LightIndex;
 use antumbra::RectangleLight;
 use antumbra::frame::{Limits, plan_all};
 use antumbra::graph::{MeshList, Scope};
 use antumbra::scene::{Instance, Role, generate};
-use antumbra::{Description, Frame, FramePlans, Geometry, HostImage, MeshBuffers, MeshInstance};
+use antumbra::{
+    Description, Frame, FramePlans, Geometry, HostImage, MeshBuffers, MeshInstance, Slot,
+};
 use antumbra_bench::stats::median;
 use antumbra_harness::cases;
 use antumbra_harness::{FrameTimes, HeadlessDevice, HeadlessOptions, Invocations, Stage, View};
@@ -56,7 +59,7 @@ fn pruned(_: &HeadlessDevice, scale: &Scale) -> Table {
             }
         }
         let counts = [0, 1].map(|i| stages[i].count(&plans[i]).unwrap());
-        let [passes, of] = plans.each_ref().map(|p| p.plan.steps.len());
+        let [passes, of] = plans.each_ref().map(|p| p.plan().steps.len());
         let [ms, of_ms] = times.map(|t| median_of(&t, frame_ms));
         let count = |of: fn(&Invocations) -> u64| {
             counts.map(|c| c.map_or_else(|| "-".into(), |c| of(&c).to_string())).join("|")
@@ -77,7 +80,7 @@ fn planning(_: &HeadlessDevice, scale: &Scale) -> Table {
             let all = instances(meshes);
             let description = Description { lights: 16, ..Description::new([1920, 1080]) };
             let of = |i: u32| Frame {
-                light_index: i,
+                light_index: LightIndex(i),
                 reach,
                 revision: stays.then_some(1),
                 ..frame(lamp(i), &all)
@@ -142,5 +145,5 @@ fn frame(light: RectangleLight, meshes: &[MeshInstance]) -> Frame<'_> {
         before: Scope::FRAGMENT_SAMPLED,
         after: Scope::FRAGMENT_SAMPLED,
     };
-    Frame::new(light, DMat4::from_scale(DVec3::new(50.0, 50.0, 4.0)), meshes, depth)
+    Frame::new(Slot(0), light, DMat4::from_scale(DVec3::new(50.0, 50.0, 4.0)), meshes, depth)
 }

@@ -5,7 +5,7 @@ use crate::Outcome;
 use crate::device::Gpu;
 use crate::gbuffer::{self, Push};
 use crate::geometry::Model;
-use antumbra::{HostDraw, Layer, LayerPass, ShadowNode};
+use antumbra::{HostDraw, Layer, LayerPass, ShadowNode, TechniqueIndex};
 use ash::vk;
 
 /// A pipeline for each layer that the node's settings have.
@@ -20,7 +20,7 @@ impl JellyPipelines {
         let vertex = gpu.shader(include_bytes!("shaders/gbuffer.vert.spv"))?;
         let layers = [Layer::Front, Layer::Back, Layer::Receivers]
             .into_iter()
-            .filter_map(|layer| Some((layer, node.layer_pass(layer)?)))
+            .filter_map(|layer| Some((layer, node.layer_pass(TechniqueIndex(0), layer)?)))
             .map(|(layer, pass)| Ok((layer, make_pipeline(gpu, layout, vertex, &pass)?)))
             .collect::<Outcome<_>>();
         // SAFETY: a pipeline does not need its module once it is made.

@@ -28,7 +28,7 @@ mod resources;
 mod shadows;
 mod world;
 
-use antumbra::{BorderBarriers, Retired};
+use antumbra::{BorderBarriers, LightIndex, ResourceBytes, Retired, Slot};
 use ash::vk;
 use clap::Parser;
 use compose::ComposePass;
@@ -194,7 +194,7 @@ fn run(options: &Options) -> Outcome<()> {
             barrier(&gpu, cmd, image, COLOR_DRAWN, COMPOSE_READS);
         }
         barrier(&gpu, cmd, picture, COPY_READS.forgotten(), COMPOSE_WRITES);
-        let visibility = shadows.node.visibility();
+        let visibility = shadows.node.visibility().ok_or("the node has a result of its own")?;
         let push = compose::Push::new(&clip_from_world.inverse(), &light, world::RADIANCE);
         compose_pass.record(&gpu, cmd, slot, (gbuffer, &visibility), picture, &push);
         barrier(&gpu, cmd, picture, COMPOSE_WRITES, COPY_READS);
@@ -210,7 +210,7 @@ fn run(options: &Options) -> Outcome<()> {
             extent,
             plan: plan_time,
             record: record_time,
-            passes: plan.plan.steps.len(),
+            passes: plan.plan().steps.len(),
         };
         frames.submit(&gpu, slot, &out[..copies], notes)?;
     }
@@ -226,7 +226,7 @@ fn run(options: &Options) -> Outcome<()> {
         }
     }
     println!("the node: {} Vulkan objects, and in memory:", shadows.node.object_count());
-    for (name, bytes) in shadows.node.memory() {
+    for ResourceBytes { name, bytes } in shadows.node.memory() {
         println!("  {name:<32} {:>9.1} kB", bytes as f64 / 1e3);
     }
     shadows.destroy(&mut gpu);
@@ -288,9 +288,9 @@ fn tell(
 ) -> Outcome<()> {
     let node = &shadows.node;
     // None where the device has no timestamps.
-    let gpu_ms = node.timings(slot as u32).map_or_else(
+    let gpu_ms = node.timings(Slot(slot as u32), LightIndex(0)).map_or_else(
         || "-".into(),
-        |rows| format!("{:.1}", rows.iter().map(|(_, ms)| ms).sum::<f64>()),
+        |rows| format!("{:.1}", rows.iter().map(|pass| pass.ms).sum::<f64>()),
     );
     println!(
         "{:>5}  {:<8}  {:>7.1}  {:>9.1}  {:>6}  {gpu_ms:>6}  {:>7.2}",
@@ -299,7 +299,7 @@ fn tell(
         done.plan.as_secs_f64() * 1e6,
         done.record.as_secs_f64() * 1e6,
         done.passes,
-        node.memory().iter().map(|(_, bytes)| bytes).sum::<u64>() as f64 / 1e6,
+        node.memory().iter().map(|r| r.bytes).sum::<u64>() as f64 / 1e6,
     );
     let last = done.number + 1 == options.frames;
     if done.number.is_multiple_of(3) || last {

@@ -6,7 +6,7 @@
 use super::*;
 use antumbra::frame::HostAccess;
 use antumbra::{
-    Description, Error, Frame, Host, HostImage, Requirements, Scope, ShadowNode, Visibility,
+    Description, Error, Frame, Host, HostImage, Requirements, Scope, ShadowNode, Slot, Visibility,
 };
 use std::cell::Cell;
 
@@ -58,7 +58,7 @@ impl Bench {
 
     fn frame(&self, depth: HostImage) -> Frame<'static> {
         let light = self.world.light(0.0, false).unwrap();
-        Frame::new(light, self.world.clip_from_world(SIZE).inverse(), &[], depth)
+        Frame::new(Slot(0), light, self.world.clip_from_world(SIZE).inverse(), &[], depth)
     }
 
     /// Destroys everything; nothing may be left over, and the layer may have said nothing.
@@ -114,7 +114,7 @@ fn use_after_a_resize() {
     let mut node = bench.node();
     let frame = bench.frame(bench.depth());
     let plan = node.plan(&frame).unwrap();
-    let before = node.visibility();
+    let before = node.visibility().unwrap();
     let retired = node.resize(&mut bench.gpu.allocator, [32, 32]).unwrap();
     // The old G-buffer does not fit, and the old plan is not recorded (the command buffer that it is
     // given does not even exist).
@@ -122,11 +122,11 @@ fn use_after_a_resize() {
     says(&node.record(vk::CommandBuffer::null(), &plan).unwrap_err(), &["before a resize"]);
     // Nor is it when the old size comes back: the image behind it is another.
     let again = node.resize(&mut bench.gpu.allocator, SIZE).unwrap();
-    assert_ne!(node.visibility().image, before.image);
+    assert_ne!(node.visibility().unwrap().image, before.image);
     says(&node.record(vk::CommandBuffer::null(), &plan).unwrap_err(), &["plan the frame again"]);
     let plan = node.plan(&frame).unwrap();
     let image = |a: &HostAccess| (a.name == "visibility").then_some(a.image);
-    assert_eq!(plan.accesses().iter().find_map(image), Some(node.visibility().image));
+    assert_eq!(plan.accesses().iter().find_map(image), Some(node.visibility().unwrap().image));
     retired.destroy(&mut bench.gpu.allocator);
     again.destroy(&mut bench.gpu.allocator);
     bench.finish(Some(node));
@@ -139,7 +139,10 @@ fn what_is_lent_is_not_what_was_described() {
     let frame = bench.frame(bench.depth());
     let lent = Visibility::Lent(bench.depth());
     says(&node.plan(&Frame { visibility: lent, ..frame }).unwrap_err(), &["lent_visibility"]);
-    says(&node.plan(&Frame { slot: 5, ..frame }).unwrap_err(), &["slot 5", "2 frames in flight"]);
+    says(
+        &node.plan(&Frame { slot: Slot(5), ..frame }).unwrap_err(),
+        &["slot 5", "2 frames in flight"],
+    );
     bench.finish(Some(node));
 }
 

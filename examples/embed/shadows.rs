@@ -11,7 +11,7 @@ use crate::world::Seen;
 use antumbra::graph::Scope;
 use antumbra::{
     BorderBarriers, Description, Error, Frame, FramePlan, Geometry, Host, HostImage, MeshBuffers,
-    MeshInstance, ShadowNode, Visibility,
+    MeshInstance, ShadowNode, Slot, Visibility,
 };
 use ash::vk;
 
@@ -59,9 +59,14 @@ impl Shadows {
             mask: Some(lend(&seen.gbuffer.mask, COLOR_DRAWN)),
             outline: seen.outline,
             visibility: Visibility::Own { before: COMPOSE_READS, after: COMPOSE_READS },
-            slot: seen.slot as u32,
             border_barriers: self.border_barriers,
-            ..Frame::new(*seen.light, seen.clip_from_world.inverse(), &meshes, depth)
+            ..Frame::new(
+                Slot(seen.slot as u32),
+                *seen.light,
+                seen.clip_from_world.inverse(),
+                &meshes,
+                depth,
+            )
         })
     }
 

@@ -91,7 +91,7 @@ fn others(options: &Options, scene: &Scene, light: &AreaLight) -> Option<String>
 
 /// That nothing can be shadowed, which looks like a picture without a light.
 fn unshadowed(light: &AreaLight, plan: &FramePlan) -> Option<String> {
-    let shadow = plan.verdicts.of(Effect::Shadow).outcome;
+    let shadow = plan.verdicts().of(Effect::Shadow).outcome;
     let [x, y, z] = light.light.emission().to_array().map(|c| (c * 100.0).round() / 100.0 + 0.0);
     (shadow == Outcome::LeftOut).then(|| {
         format!(

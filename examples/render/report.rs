@@ -6,7 +6,7 @@ use antumbra::auto::Choice;
 use antumbra::effects::Outcome;
 use antumbra::knob::Knob;
 use antumbra::scene::Scene;
-use antumbra::{FramePlan, Technique};
+use antumbra::{FramePlan, ResourceBytes, Technique};
 use antumbra_harness::{FrameTimes, HeadlessDevice};
 use serde_json::{Map, Value, json};
 use std::time::Duration;
@@ -24,7 +24,7 @@ pub struct Report<'a> {
     pub scene: &'a Scene,
     pub plan: &'a FramePlan,
     pub frames: Vec<FrameTimes>,
-    pub memory: Vec<(&'static str, u64)>,
+    pub memory: Vec<ResourceBytes>,
 }
 
 fn median(mut values: Vec<f64>) -> f64 {
@@ -66,7 +66,7 @@ impl Report<'_> {
     }
 
     fn gpu_bytes(&self) -> u64 {
-        self.memory.iter().map(|(_, bytes)| bytes).sum()
+        self.memory.iter().map(|r| r.bytes).sum()
     }
 
     /// Whether the error promised and the time measured are within the budget.
@@ -81,10 +81,10 @@ impl Report<'_> {
 
     /// The text of report.json.
     pub fn json(&self) -> String {
-        let graph = &self.plan.plan.graph;
+        let graph = &self.plan.plan().graph;
         let passes: Vec<_> = self
             .plan
-            .plan
+            .plan()
             .runs()
             .iter()
             .map(|run| {
@@ -93,15 +93,12 @@ impl Report<'_> {
                 json!({ "name": name, "ms": self.pass_ms(name), "times": run.times, "why": why.to_string() })
             })
             .collect();
-        let skipped: Vec<_> = self
-            .plan
-            .plan
-            .reasons()
-            .map(|(pass, why)| json!({ "name": pass.name, "why": why.to_string() }))
-            .collect();
+        let skipped = self.plan.skipped();
+        let skipped: Vec<_> =
+            skipped.map(|(name, why)| json!({ "name": name, "why": why })).collect();
         let memory: Map<String, Value> =
-            self.memory.iter().map(|(name, bytes)| ((*name).into(), json!(bytes))).collect();
-        let verdicts = &self.plan.verdicts;
+            self.memory.iter().map(|r| (r.name.into(), json!(r.bytes))).collect();
+        let verdicts = self.plan.verdicts();
         let effects: Vec<_> = verdicts
             .all()
             .iter()

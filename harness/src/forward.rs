@@ -50,7 +50,7 @@ impl Forward {
         keep: impl Fn(&Instance) -> bool,
     ) -> Result<Self, Error> {
         use vk::ImageUsageFlags as Usage;
-        let pass = plan.plan.steps.iter().map(|s| &plan.plan.graph.passes()[s.pass]);
+        let pass = plan.plan().steps.iter().map(|s| &plan.plan().graph.passes()[s.pass]);
         let is_trace = |work: &Work| matches!(work, Work::Indirect { shader, .. } if *shader == shaders::TRACE);
         let trace = pass.into_iter().find(|p| is_trace(&p.work)).ok_or_else(|| {
             Error::Frame(
@@ -146,7 +146,7 @@ impl Forward {
     /// # Errors
     /// As [`Stage::node`].
     pub fn memory(&mut self) -> Result<Vec<(&'static str, u64)>, Error> {
-        Ok(self.stage.node()?.memory())
+        Ok(self.stage.node()?.memory().into_iter().map(|r| (r.name, r.bytes)).collect())
     }
 
     /// Reads the visible fraction of every pixel's last fragment, row by row; 1 on background.

@@ -11,8 +11,8 @@ use antumbra::node::PlanObject;
 use antumbra::scene::{AreaLight, Instance, Scene};
 use antumbra::stages::visibility;
 use antumbra::{
-    Description, Error, Frame, FramePlan, FramePlans, Host, MeshInstance, RectangleLight,
-    ShadowNode, Technique, Visibility,
+    Description, Error, Frame, FramePlan, FramePlans, Host, LightIndex, MeshInstance,
+    RectangleLight, ShadowNode, Slot, Technique, Visibility, VisibilityImage,
 };
 use std::sync::PoisonError;
 use std::time::{Duration, Instant};
@@ -226,8 +226,16 @@ impl Stage {
             background: Some(0.0),
             mask: Some(self.gbuffer.mask_for_node()),
             visibility: Visibility::Own { before: RESULT, after: RESULT },
-            ..Frame::new(*light, world_from_ndc, &self.instances, depth)
+            ..Frame::new(Slot(0), *light, world_from_ndc, &self.instances, depth)
         }
+    }
+
+    /// The node's own result.
+    fn result(&mut self) -> Result<VisibilityImage, Error> {
+        let own = self.node()?.visibility();
+        own.ok_or_else(|| {
+            Error::Frame("the visibility image is lent, and not the node's to read".into())
+        })
     }
 
     /// What `auto` chooses for a scene's light; the node stays as it is.
@@ -261,8 +269,8 @@ impl Stage {
             plans.iter().try_for_each(|plan| node.record(cmd, plan))?;
             Ok(started.elapsed())
         })?;
-        let passes = plans.iter().filter_map(|p| node.timings_of(p.slot, p.light_index));
-        let passes = passes.flatten().collect();
+        let passes = plans.iter().filter_map(|p| node.timings(p.slot(), p.light_index()));
+        let passes = passes.flatten().map(|pass| (pass.name, pass.ms)).collect();
         Ok(FrameTimes { frame, record, passes })
     }
 
@@ -281,20 +289,20 @@ impl Stage {
     /// # Errors
     /// As [`read_image`].
     pub fn visibility(&mut self) -> Result<Vec<f32>, Error> {
-        self.visibility_under(0)
+        self.visibility_under(LightIndex(0))
     }
 
     /// The same under any of the description's lights.
     ///
     /// # Errors
     /// As [`read_image`].
-    pub fn visibility_under(&mut self, light_index: u32) -> Result<Vec<f32>, Error> {
-        let result = self.node()?.visibility();
+    pub fn visibility_under(&mut self, light: LightIndex) -> Result<Vec<f32>, Error> {
+        let result = self.result()?;
         let source = ImageSource {
             image: result.image,
             format: visibility::FORMAT,
             extent: result.extent,
-            layer: light_index,
+            layer: light.0,
         };
         read_image(&self.device, &source, RESULT.layout)
     }
@@ -305,7 +313,7 @@ impl Stage {
     /// # Errors
     /// As [`read_image`].
     pub fn visibility_of_color(&mut self) -> Result<Vec<[f32; 4]>, Error> {
-        let result = self.node()?.visibility();
+        let result = self.result()?;
         let (format, extent) = (visibility::COLOR_FORMAT, result.extent);
         read_image(
             &self.device,

@@ -2,6 +2,7 @@ use super::*;
 use crate::effects::*;
 use crate::frame::{Description, Frame};
 use crate::graph::Scope;
+use crate::lent::Slot;
 use crate::lent::{Geometry, HostImage, MeshBuffers, MeshInstance};
 use crate::scene::{Role, generate};
 use crate::{RectangleLight, Technique};
@@ -54,7 +55,7 @@ fn frame(light: RectangleLight, meshes: &[MeshInstance]) -> Frame<'_> {
         [0.0, 8.0, 0.0, 0.0],
         [0.0, 0.0, 0.0, 1.0],
     ]);
-    Frame { background: Some(0.0), ..Frame::new(light, world_from_ndc, meshes, depth) }
+    Frame { background: Some(0.0), ..Frame::new(Slot(0), light, world_from_ndc, meshes, depth) }
 }
 
 fn square(side: f64) -> RectangleLight {

@@ -11,19 +11,20 @@
 //! still to be recorded.
 
 use super::reuse::{self, Cached, Reuse};
+use crate::lent::{LightIndex, TechniqueIndex};
 
 /// Where a frame's results lie in the cache: the light picks the layer, the technique the maps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct CacheKey {
-    pub light: u32,
-    pub technique: u32,
+    pub light: LightIndex,
+    pub technique: TechniqueIndex,
 }
 
 /// The state of a light's layer of the visibility image.
 #[derive(Clone, Copy, Debug, Default)]
 struct Pixels {
     /// The technique that wrote it, and the scene and view revision that it shows.
-    written: Option<(u32, (u64, u64))>,
+    written: Option<(TechniqueIndex, (u64, u64))>,
     /// Whether every pixel is lit.
     lit: bool,
 }
@@ -32,7 +33,7 @@ struct Pixels {
 #[derive(Clone, Copy, Debug, Default)]
 struct Maps {
     /// The light that drew them, and what they show.
-    drawn: Option<(u32, reuse::Maps)>,
+    drawn: Option<(LightIndex, reuse::Maps)>,
     /// A bit for each light with a plan that draws them and is not recorded yet.
     planned: u64,
 }
@@ -62,8 +63,8 @@ impl Cache {
     /// What a frame finds when it is recorded; nothing for a light or a technique that does not exist.
     fn get(&self, key: CacheKey) -> Cached {
         let CacheKey { light, technique } = key;
-        let pixels = self.pixels.get(light as usize).copied().unwrap_or_default();
-        let maps = self.maps.get(technique as usize).copied().unwrap_or_default();
+        let pixels = self.pixels.get(light.0 as usize).copied().unwrap_or_default();
+        let maps = self.maps.get(technique.0 as usize).copied().unwrap_or_default();
         Cached {
             maps: maps.drawn.filter(|drawn| drawn.0 == light).map(|drawn| drawn.1),
             pixels: pixels.written.filter(|by| by.0 == technique).map(|by| by.1),
@@ -74,14 +75,14 @@ impl Cache {
     /// What a frame may reuse when it is planned.
     pub fn for_plan(&self, key: CacheKey) -> Cached {
         let cached = self.get(key);
-        let planned = self.maps.get(key.technique as usize).map_or(0, |maps| maps.planned);
+        let planned = self.maps.get(key.technique.0 as usize).map_or(0, |maps| maps.planned);
         let others = planned & !bit(key.light);
         Cached { maps: cached.maps.filter(|_| others == 0), ..cached }
     }
 
     /// Notes that a plan was made, which will draw over a technique's maps.
     pub fn planned(&mut self, key: CacheKey, reuse: &Reuse) {
-        if let Some(maps) = self.maps.get_mut(key.technique as usize)
+        if let Some(maps) = self.maps.get_mut(key.technique.0 as usize)
             && reuse.makes_maps.is_some()
         {
             maps.planned |= bit(key.light);
@@ -96,13 +97,13 @@ impl Cache {
     /// Notes that a plan is recorded, and what it leaves.
     pub fn recorded(&mut self, key: CacheKey, reuse: &Reuse) {
         let cached = reuse.cached_after(&self.get(key));
-        if let Some(pixels) = self.pixels.get_mut(key.light as usize) {
+        if let Some(pixels) = self.pixels.get_mut(key.light.0 as usize) {
             let written = cached.pixels.map(|pixels| (key.technique, pixels));
             *pixels = Pixels { written, lit: cached.lit };
         }
         // The light's earlier plans that were never recorded are not waited for any longer.
         self.maps.iter_mut().for_each(|maps| maps.planned &= !bit(key.light));
-        if let Some(maps) = self.maps.get_mut(key.technique as usize)
+        if let Some(maps) = self.maps.get_mut(key.technique.0 as usize)
             && reuse.makes_maps.is_some()
         {
             maps.drawn = cached.maps.map(|made| (key.light, made));
@@ -111,6 +112,6 @@ impl Cache {
 }
 
 /// The bit of a light; a node has up to 64.
-fn bit(light: u32) -> u64 {
-    1u64.checked_shl(light).unwrap_or(0)
+fn bit(light: LightIndex) -> u64 {
+    1u64.checked_shl(light.0).unwrap_or(0)
 }

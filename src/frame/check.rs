@@ -28,16 +28,16 @@ impl Frame<'_> {
         technique: &str,
         takes: &Takes,
     ) -> Result<(), Error> {
-        if self.slot >= description.frames_in_flight {
+        if self.slot.0 >= description.frames_in_flight {
             return bad(format!(
                 "frame slot {} does not exist; the description has {} frames in flight",
-                self.slot, description.frames_in_flight
+                self.slot.0, description.frames_in_flight
             ));
         }
-        if self.light_index >= description.lights {
+        if self.light_index.0 >= description.lights {
             return bad(format!(
                 "light {} does not exist; the description has {}, counted from 0",
-                self.light_index, description.lights
+                self.light_index.0, description.lights
             ));
         }
         if self.light.is_line() && !takes.line {

@@ -11,7 +11,7 @@ use super::reuse::{self, Cached, CameraDependence, Revisions};
 use super::{Description, Frame, FramePlans};
 use crate::Error;
 use crate::graph::{self, Border, Compiler, Draw, Graph, MeshList, ResourceId, Work};
-use crate::lent::{BorderBarriers, HostImage, MeshInstance, Visibility};
+use crate::lent::{BorderBarriers, HostImage, LightIndex, MeshInstance, Visibility};
 use ash::vk;
 use glam::DMat4;
 use smallvec::{SmallVec, smallvec};
@@ -237,7 +237,7 @@ fn access_of(
     plan: &graph::Plan,
     border: &Border,
     imports: &[(ResourceId, HostImage)],
-    light_index: u32,
+    light_index: LightIndex,
 ) -> HostAccess {
     let resource = plan.graph.resource(border.resource);
     let used = plan.boundary.iter().find(|b| b.resource == border.resource);
@@ -245,7 +245,7 @@ fn access_of(
     HostAccess {
         name: resource.name,
         image: host.map_or(vk::Image::null(), |(_, i)| i.image),
-        layer: if host.is_none() { light_index } else { 0 },
+        layer: if host.is_none() { light_index.0 } else { 0 },
         aspect: graph::aspects(resource.shape),
         before: border.before,
         node: used.map(|b| NodeUse { entry: b.entry, exit: b.exit, writes: b.writes }),

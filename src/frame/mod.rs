@@ -37,7 +37,10 @@ pub(crate) use plan::Stamp;
 pub use plans::FramePlans;
 
 use crate::graph::{self, Scope};
-use crate::lent::{BorderBarriers, HostImage, MeshInstance, OccluderMaps, Visibility};
+use crate::lent::{
+    BorderBarriers, HostImage, LightIndex, MeshInstance, OccluderMaps, Slot, TechniqueIndex,
+    Visibility,
+};
 use crate::plain::Matrix;
 use crate::technique::Technique;
 use crate::techniques::room;
@@ -110,13 +113,16 @@ impl Description {
     }
 
     /// The description with one of its techniques alone.
-    pub(crate) fn choosing(&self, technique_index: u32) -> Result<Cow<'_, Self>, Error> {
-        if technique_index == 0 {
+    pub(crate) fn choosing(
+        &self,
+        TechniqueIndex(index): TechniqueIndex,
+    ) -> Result<Cow<'_, Self>, Error> {
+        if index == 0 {
             return Ok(Cow::Borrowed(self));
         }
-        let technique = *self.all_techniques().nth(technique_index as usize).ok_or_else(|| {
+        let technique = *self.all_techniques().nth(index as usize).ok_or_else(|| {
             Error::Frame(format!(
-                "technique {technique_index} does not exist; the description has {}, counted from 0",
+                "technique {index} does not exist; the description has {}, counted from 0",
                 1 + self.other_techniques.len()
             ))
         })?;
@@ -242,10 +248,10 @@ pub struct Frame<'a> {
     pub light: RectangleLight,
     /// Which of the description's lights it is, 0 and up. Each has frames of its own, recorded in the
     /// order in which they were planned; where a light casts no shadow in them they cost nothing.
-    pub light_index: u32,
+    pub light_index: LightIndex,
     /// Which of the description's techniques this frame uses: 0 is [`Description::technique`], n the nth of
     /// [`Description::other_techniques`].
-    pub technique_index: u32,
+    pub technique_index: TechniqueIndex,
     /// The polygon that the light has instead of its rectangle: 3 to 16 corners in light space, as x and y in
     /// metres from the rectangle's centre, within it, counter-clockwise as seen from the side that the light
     /// shines to. It need not be convex, and neither touches nor crosses itself.
@@ -299,16 +305,17 @@ pub struct Frame<'a> {
     pub view_revision: Option<u64>,
     /// Which of the frames in flight this is, 0 and up. The frame that last had the same number
     /// must be done before this one is recorded.
-    pub slot: u32,
+    pub slot: Slot,
     /// Who places the barriers at the border.
     pub border_barriers: BorderBarriers,
 }
 
 impl<'a> Frame<'a> {
     /// A frame of light 0 with the first technique, the whole rectangle, the far depth that the matrix has, no mask, the
-    /// node's own visibility image sampled by fragment and compute shaders, a fitted window, slot 0, and barriers placed
-    /// by the node.
+    /// node's own visibility image sampled by fragment and compute shaders, a fitted window, and barriers placed by the
+    /// node. `slot` is the frame in flight whose commands the host has waited for.
     pub fn new(
+        slot: Slot,
         light: RectangleLight,
         world_from_ndc: impl Into<Matrix>,
         meshes: &'a [MeshInstance],
@@ -320,8 +327,8 @@ impl<'a> Frame<'a> {
         };
         Self {
             light,
-            light_index: 0,
-            technique_index: 0,
+            light_index: LightIndex(0),
+            technique_index: TechniqueIndex(0),
             outline: None,
             reach: None,
             world_from_ndc: world_from_ndc.into().0,
@@ -336,7 +343,7 @@ impl<'a> Frame<'a> {
             noise: 0,
             revision: None,
             view_revision: None,
-            slot: 0,
+            slot,
             border_barriers: BorderBarriers::Node,
         }
     }

@@ -7,7 +7,7 @@ use super::draws::{DrawList, MeshDraw};
 use super::reuse::Reuse;
 use crate::effects::Verdicts;
 use crate::graph::{self, MeshList, ResourceId};
-use crate::lent::{Geometry, HostImage};
+use crate::lent::{Geometry, HostImage, LightIndex, Slot, TechniqueIndex};
 use crate::technique::Technique;
 use ash::vk;
 
@@ -18,20 +18,14 @@ pub(crate) struct Stamp(pub u64);
 /// What one frame records.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FramePlan {
-    /// Rows, barriers, and what was skipped.
-    pub plan: graph::Plan,
+    pub(crate) plan: graph::Plan,
     /// The host's images by resource.
-    pub imports: Vec<(ResourceId, HostImage)>,
-    /// Where the result goes.
-    pub visibility: ResourceId,
-    /// The frame in flight.
-    pub slot: u32,
-    /// What the frame needs and does without, and why.
-    pub verdicts: Verdicts,
-    /// Which of the description's lights it is for.
-    pub light_index: u32,
-    /// Which of the description's settings it uses.
-    pub technique_index: u32,
+    pub(crate) imports: Vec<(ResourceId, HostImage)>,
+    pub(crate) visibility: ResourceId,
+    pub(super) slot: Slot,
+    pub(super) verdicts: Verdicts,
+    pub(super) light_index: LightIndex,
+    pub(super) technique_index: TechniqueIndex,
     pub(crate) stamp: Stamp,
     pub(crate) reuse: Reuse,
     pub(super) sight: Sight,
@@ -47,10 +41,10 @@ impl Default for FramePlan {
             plan: graph::Plan::default(),
             imports: Vec::new(),
             visibility: ResourceId::default(),
-            slot: 0,
+            slot: Slot(0),
             verdicts: Verdicts::judge(None, Technique::default().room(), None, false),
-            light_index: 0,
-            technique_index: 0,
+            light_index: LightIndex(0),
+            technique_index: TechniqueIndex(0),
             stamp: Stamp::default(),
             reuse: Reuse::default(),
             sight: Sight::default(),
@@ -62,6 +56,42 @@ impl Default for FramePlan {
 }
 
 impl FramePlan {
+    /// The passes, their barriers, and those that are skipped, as data.
+    pub fn plan(&self) -> &graph::Plan {
+        &self.plan
+    }
+
+    /// The passes that run, in order, and why each does.
+    pub fn passes(&self) -> impl Iterator<Item = (&'static str, String)> + '_ {
+        let graph = &self.plan.graph;
+        self.plan.runs().into_iter().map(|run| (run.pass.name, graph.why(run.pass).to_string()))
+    }
+
+    /// The passes that do not run, and why not.
+    pub fn skipped(&self) -> impl Iterator<Item = (&'static str, String)> + '_ {
+        self.plan.reasons().map(|(pass, why)| (pass.name, why.to_string()))
+    }
+
+    /// Which effects are simulated, which are left out, and what each decision follows from.
+    pub fn verdicts(&self) -> &Verdicts {
+        &self.verdicts
+    }
+
+    /// The frame in flight.
+    pub fn slot(&self) -> Slot {
+        self.slot
+    }
+
+    /// The light that it is for.
+    pub fn light_index(&self) -> LightIndex {
+        self.light_index
+    }
+
+    /// The technique that it uses.
+    pub fn technique_index(&self) -> TechniqueIndex {
+        self.technique_index
+    }
+
     /// Every image that crosses the node's border: how the host leaves it, how the node uses it, if
     /// this frame does, and how the host takes it back.
     pub fn accesses(&self) -> &[HostAccess] {

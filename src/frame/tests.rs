@@ -1,5 +1,6 @@
 use super::*;
 use crate::graph::MeshList;
+use crate::lent::Slot;
 use crate::lent::*;
 use crate::scene::{Role, generate};
 use crate::stages::depth_layers::{Eye, MapView};
@@ -54,7 +55,7 @@ fn meshes() -> Vec<MeshInstance> {
 
 fn frame(meshes: &[MeshInstance]) -> Frame<'_> {
     let light = generate::square_light(0.5).unwrap();
-    Frame { background: Some(0.0), ..Frame::new(light, DMat4::IDENTITY, meshes, depth()) }
+    Frame { background: Some(0.0), ..Frame::new(Slot(0), light, DMat4::IDENTITY, meshes, depth()) }
 }
 
 fn description(words: &[(&str, &str)]) -> Description {
@@ -137,7 +138,7 @@ fn every_bad_frame_is_one_sentence() {
         plan(&d, Limits::default(), frame).map(|p| ran(&p)).unwrap_err().to_string()
     };
     let f = frame(&good);
-    assert!(refuse(&Frame { slot: 2, ..f }).contains("2 frames in flight"));
+    assert!(refuse(&Frame { slot: Slot(2), ..f }).contains("2 frames in flight"));
     assert!(refuse(&Frame { mask: Some(depth()), ..f }).contains("mask"));
     let nan = DMat4::from_scale(DVec3::NAN);
     assert!(refuse(&Frame { world_from_ndc: nan, ..f }).contains("finite"));

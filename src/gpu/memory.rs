@@ -70,3 +70,12 @@ impl Allocator for gpu_allocator::vulkan::Allocator {
         }
     }
 }
+
+/// The device memory that a resource of the node takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ResourceBytes {
+    /// The resource's name.
+    pub name: &'static str,
+    /// Bytes, alignment included.
+    pub bytes: u64,
+}

@@ -21,7 +21,7 @@ mod timing;
 
 pub use host::{Host, Requirements};
 pub use layouts::SharedLayouts;
-pub use memory::{Allocator, MemoryBlock, MemoryRequest};
+pub use memory::{Allocator, MemoryBlock, MemoryRequest, ResourceBytes};
 pub(crate) use node_objects::NodeObjects;
 pub(crate) use objects::Object;
 pub use record::HostDraw;

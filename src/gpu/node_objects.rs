@@ -3,7 +3,7 @@
 use super::graph_objects::GraphObjects;
 use super::host::Host;
 use super::maker::Maker;
-use super::memory::Allocator;
+use super::memory::{Allocator, ResourceBytes};
 use super::objects::Object;
 use super::owner::{Made, ObjectOwner};
 use super::record::{HostDraw, Recorder};
@@ -12,6 +12,7 @@ use super::timing::Timing;
 use crate::Error;
 use crate::frame::{Description, FramePlan};
 use crate::graph::{Graph, ResourceId};
+use crate::lent::{LightIndex, Slot, TechniqueIndex};
 use ash::vk;
 
 /// The result and the timestamps, what the graph of each of the settings needs, and the owner of it all.
@@ -47,8 +48,8 @@ impl NodeObjects {
     }
 
     /// Where a light of a frame slot has its descriptor sets and timestamps.
-    fn place(&self, slot: u32, light: u32) -> usize {
-        (slot * self.lights + light) as usize
+    fn place(&self, slot: Slot, light: LightIndex) -> usize {
+        (slot.0 * self.lights + light.0) as usize
     }
 
     /// Whether everything but images and buffers can stay for `graphs`, which have the same passes: no
@@ -82,13 +83,13 @@ impl NodeObjects {
     }
 
     /// What is behind a resource of one of the settings.
-    pub fn get(&self, settings: u32, id: ResourceId) -> Object {
+    pub fn get(&self, TechniqueIndex(settings): TechniqueIndex, id: ResourceId) -> Object {
         self.settings.get(settings as usize).map_or(Object::None, |s| s.objects.get(id))
     }
 
     /// The image behind a resource of one of the settings; null handles for what is no image.
-    pub fn image(&self, settings: u32, id: ResourceId) -> (vk::Image, vk::ImageView) {
-        self.get(settings, id).image()
+    pub fn image(&self, technique: TechniqueIndex, id: ResourceId) -> (vk::Image, vk::ImageView) {
+        self.get(technique, id).image()
     }
 
     /// The node's own visibility image and a view of all of it; null handles where the host lends it.
@@ -97,8 +98,8 @@ impl NodeObjects {
     }
 
     /// A view of a light's layer of it; null where the host lends it.
-    pub fn result_layer(&self, light: u32) -> vk::ImageView {
-        self.result.as_ref().map_or(Default::default(), |result| result.layer(light).image().1)
+    pub fn result_layer(&self, light: LightIndex) -> vk::ImageView {
+        self.result.as_ref().map_or(Default::default(), |result| result.layer(light.0).image().1)
     }
 
     /// Records a plan whose passes are the ones that these objects were made for.
@@ -109,7 +110,7 @@ impl NodeObjects {
         plan: &FramePlan,
         draw: &mut dyn FnMut(&HostDraw),
     ) {
-        let index = plan.technique_index as usize;
+        let index = plan.technique_index().0 as usize;
         let Some(settings) = self.settings.get(index) else { return };
         Recorder {
             host,
@@ -119,7 +120,7 @@ impl NodeObjects {
             labels: &settings.labels,
             descriptors: &settings.descriptors,
             timing: self.timing.as_ref(),
-            place: self.place(plan.slot, plan.light_index),
+            place: self.place(plan.slot(), plan.light_index()),
             first_kind: kinds_of(&self.settings[..index]),
             draw,
             cmd,
@@ -131,7 +132,7 @@ impl NodeObjects {
     /// those that draw nothing.
     pub fn render_pass(
         &self,
-        settings: u32,
+        TechniqueIndex(settings): TechniqueIndex,
         kind: usize,
     ) -> Option<(vk::RenderPass, vk::Extent2D)> {
         self.settings.get(settings as usize)?.render_pass(kind)
@@ -139,19 +140,19 @@ impl NodeObjects {
 
     /// Each kind of pass that a light's frame recorded last with a slot, and the milliseconds of all of
     /// its passes; kinds are counted over all settings.
-    pub fn timings(&self, host: &Host, slot: u32, light: u32) -> Option<Vec<(usize, f64)>> {
-        let there = slot < self.slots && light < self.lights;
+    pub fn timings(&self, host: &Host, slot: Slot, light: LightIndex) -> Option<Vec<(usize, f64)>> {
+        let there = slot.0 < self.slots && light.0 < self.lights;
         self.timing.as_ref().filter(|_| there)?.read(host, self.place(slot, light))
     }
 
     /// Name and bytes of everything in device memory: the result, then settings by settings.
-    pub fn memory(&self) -> Vec<(&'static str, u64)> {
+    pub fn memory(&self) -> Vec<ResourceBytes> {
         let result = self.result.iter().map(ResultImage::memory);
         result.chain(self.settings.iter().flat_map(|s| s.objects.memory())).collect()
     }
 
     /// Name and bytes of what one of the settings has in device memory.
-    pub fn memory_of(&self, settings: u32) -> Vec<(&'static str, u64)> {
+    pub fn memory_of(&self, TechniqueIndex(settings): TechniqueIndex) -> Vec<ResourceBytes> {
         self.settings.get(settings as usize).map_or(Vec::new(), |s| s.objects.memory().collect())
     }
 

@@ -2,7 +2,7 @@
 
 use super::host::Host;
 use super::maker::Maker;
-use super::memory::MemoryRequest;
+use super::memory::{MemoryRequest, ResourceBytes};
 use super::owner::Made;
 use crate::Error;
 use crate::graph::{Graph, Owner, Resource, ResourceId, Shape};
@@ -87,8 +87,9 @@ impl Objects {
     }
 
     /// Name and bytes of everything that has memory.
-    pub fn memory(&self) -> impl Iterator<Item = (&'static str, u64)> + '_ {
-        self.0.iter().filter(|b| b.bytes > 0).map(|b| (b.name, b.bytes))
+    pub fn memory(&self) -> impl Iterator<Item = ResourceBytes> + '_ {
+        let bound = self.0.iter().filter(|b| b.bytes > 0);
+        bound.map(|b| ResourceBytes { name: b.name, bytes: b.bytes })
     }
 }
 

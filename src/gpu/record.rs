@@ -280,7 +280,7 @@ impl Recorder<'_> {
             return Object::Image { image: host.image, view: host.view };
         }
         match self.result.filter(|_| id == frame.visibility) {
-            Some(result) => result.layer(frame.light_index),
+            Some(result) => result.layer(frame.light_index().0),
             None => self.objects.get(id),
         }
     }
@@ -289,7 +289,7 @@ impl Recorder<'_> {
     fn range(&self, frame: &FramePlan, id: ResourceId) -> vk::ImageSubresourceRange {
         let aspect = graph::aspects(frame.plan.graph.resource(id).shape);
         match self.result.filter(|_| id == frame.visibility) {
-            Some(_) => layers(aspect, frame.light_index, 1),
+            Some(_) => layers(aspect, frame.light_index().0, 1),
             None => whole(aspect),
         }
     }

@@ -1,6 +1,7 @@
 //! The node's own visibility image: a layer for each light.
 
 use super::maker::Maker;
+use super::memory::ResourceBytes;
 use super::objects::{Backed, Object, layers, name};
 use super::owner::Made;
 use crate::Error;
@@ -58,8 +59,8 @@ impl ResultImage {
     }
 
     /// Its name and bytes.
-    pub fn memory(&self) -> (&'static str, u64) {
-        (self.backed.name, self.backed.bytes)
+    pub fn memory(&self) -> ResourceBytes {
+        ResourceBytes { name: self.backed.name, bytes: self.backed.bytes }
     }
 
     /// The handles that an owner keeps for it.

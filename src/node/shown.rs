@@ -30,6 +30,15 @@ pub struct VisibilityImage {
     pub layers: u32,
 }
 
+/// The time that a pass took on the device.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PassTime {
+    /// The pass's name.
+    pub name: &'static str,
+    /// Milliseconds, summed over all passes of this name.
+    pub ms: f64,
+}
+
 /// One of the node's own images, for tests and debuggers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Inspected {

@@ -5,6 +5,7 @@
 
 use antumbra::graph::Scope;
 use antumbra::{Description, Error, Requirements, ShadowNode, frame};
+use antumbra::{LightIndex, Slot};
 use antumbra_harness::{ImageSource, read_image};
 use antumbra_tests::TestDevice;
 use antumbra_tests::bench::{Bench, Described, EXTENT, Memory, OTHER_EXTENT, host};
@@ -145,7 +146,7 @@ fn calls_that_fail_around_a_node() {
     let description = Bench::description("technique=hard map=16", |_| {});
     let node = ShadowNode::new(host(&device, true), &mut memory, description).unwrap();
     bench.bits(&device, &node);
-    let result = node.visibility();
+    let result = node.visibility().unwrap();
     let format = vk::Format::R32_SFLOAT;
     let source = ImageSource { image: result.image, format, extent: result.extent, layer: 0 };
     each_call(&mut faults, &any, || read_image::<f32>(&device, &source, Scope::COPIED_FROM.layout));
@@ -213,7 +214,7 @@ fn a_device_that_is_lost_while_it_works() {
     // Of times there is none to tell then, and nobody waits for one.
     bench.stage.run(&plan).unwrap();
     tables::fail_next("get_query_pool_results", LOST);
-    assert_eq!(bench.stage.node().unwrap().timings(0), None);
+    assert_eq!(bench.stage.node().unwrap().timings(Slot(0), LightIndex(0)), None);
     tables::end();
     drop(bench);
     device.finish();

@@ -13,11 +13,12 @@ mod layer;
 #[path = "mistakes/silent.rs"]
 mod silent;
 
+use antumbra::LightIndex;
 use antumbra::frame::{self, Doubt, Limits};
 use antumbra::scene::Role;
 use antumbra::{
     Description, Error, Frame, FramePlan, Geometry, HostImage, MeshBuffers, MeshInstance,
-    RectangleLight, Scope, Technique,
+    RectangleLight, Scope, Slot, Technique,
 };
 use antumbra_tests::example::root;
 use ash::vk::{self, Handle, ImageUsageFlags as Usage};
@@ -69,7 +70,7 @@ impl Host {
     /// Plans a frame that `wrong` has changed.
     fn plan_with(&self, wrong: impl FnOnce(&mut Frame)) -> Result<FramePlan, Error> {
         let mut frame =
-            Frame::new(self.light, self.clip_from_world.inverse(), &self.meshes, depth());
+            Frame::new(Slot(0), self.light, self.clip_from_world.inverse(), &self.meshes, depth());
         wrong(&mut frame);
         self.description.check()?;
         frame::plan(&self.description, Limits::default(), &frame)
@@ -165,12 +166,15 @@ fn mistake_06_a_null_view() {
 
 #[test]
 fn mistake_07_a_slot_that_does_not_exist() {
-    says(&Host::new().refused(|f| f.slot = 2), &["slot 2", "2 frames in flight"]);
+    says(&Host::new().refused(|f| f.slot = Slot(2)), &["slot 2", "2 frames in flight"]);
 }
 
 #[test]
 fn mistake_08_a_light_that_does_not_exist() {
-    says(&Host::new().refused(|f| f.light_index = 1), &["light 1", "has 1, counted from 0"]);
+    says(
+        &Host::new().refused(|f| f.light_index = LightIndex(1)),
+        &["light 1", "has 1, counted from 0"],
+    );
 }
 
 #[test]

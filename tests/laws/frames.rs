@@ -90,7 +90,7 @@ fn lit_where_nothing_blocks(words: &str, stage: &mut Stage) {
         stage.show(scene, &setup.view, |i| i.role != Role::Occluder).unwrap();
         let plan = stage.plan(&setup.light(), None).unwrap();
         let ran: Vec<_> =
-            plan.plan.steps.iter().map(|s| plan.plan.graph.passes()[s.pass].name).collect();
+            plan.plan().steps.iter().map(|s| plan.plan().graph.passes()[s.pass].name).collect();
         assert_eq!(ran, runs, "{name}, {words}: nothing is drawn");
         assert!(setup.visibility(stage).iter().all(|v| *v == 1.0), "{name}, {words}");
     }
@@ -154,7 +154,7 @@ fn the_largest_map_works() {
     let image = |side: u32| {
         let mut stage = setup.stage(&device, &format!("receivers=pixels sides=one map={side}"));
         let plan = stage.plan(&setup.light(), None).unwrap();
-        for resource in plan.plan.graph.resources() {
+        for resource in plan.plan().graph.resources() {
             if let antumbra::graph::Shape::Buffer { bytes } = resource.shape {
                 assert!(bytes <= 1 << 27, "{}: {bytes} bytes", resource.name);
             }

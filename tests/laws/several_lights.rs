@@ -1,7 +1,10 @@
 //! Several lights in one node: each layer is what a node of its own gives, and what need not run does not.
 
 use antumbra::scene::{Scene, generate};
-use antumbra::{Error, Frame, FramePlan, FramePlans, RectangleLight, Scope, Visibility};
+use antumbra::{
+    Error, Frame, FramePlan, FramePlans, LightIndex, RectangleLight, Scope, Slot, TechniqueIndex,
+    Visibility,
+};
 use antumbra_harness::{HeadlessDevice, Stage};
 use antumbra_tests::device;
 use antumbra_tests::measure::{Setup, settings};
@@ -46,7 +49,7 @@ fn configure(stage: &mut Stage, lights: u32, words: &[&str]) -> Result<(), Error
 /// The plan of one of the lights.
 fn plan(stage: &mut Stage, index: u32, change: impl FnOnce(&mut Frame)) -> FramePlan {
     let planned = stage.plan_with(&light(shift(index), false), |frame| {
-        frame.light_index = index;
+        frame.light_index = LightIndex(index);
         change(frame);
     });
     planned.unwrap()
@@ -58,20 +61,22 @@ fn aside(frame: &mut Frame, by: f64) {
 }
 
 fn steps(plans: &[FramePlan]) -> Vec<usize> {
-    plans.iter().map(|p| p.plan.steps.len()).collect()
+    plans.iter().map(|p| p.plan().steps.len()).collect()
 }
 
 /// Runs them in one submit and reads every layer.
 fn run(stage: &mut Stage, plans: &[FramePlan]) -> Vec<Vec<f32>> {
     stage.run_all(plans).unwrap();
-    (0..plans.len() as u32).map(|light| stage.visibility_under(light).unwrap()).collect()
+    (0..plans.len() as u32)
+        .map(|light| stage.visibility_under(LightIndex(light)).unwrap())
+        .collect()
 }
 
 /// What a node of one light gives for each of four lights.
 fn of_one(one: &mut Stage, by: f64) -> Vec<Vec<f32>> {
     let of = |index| {
         let plan = plan(one, index, |frame| {
-            frame.light_index = 0;
+            frame.light_index = LightIndex(0);
             aside(frame, by);
         });
         run(one, &[plan]).remove(0)
@@ -93,23 +98,26 @@ fn four_lights_in_one_submit_are_four_nodes_to_the_bit() {
     let apart = words.map(|words| of_one(&mut stage(&device, &scene, 1, &[words]), 0.0));
     let shadows = |image: &Vec<f32>| image.iter().any(|&v| v < 0.5);
     assert!(apart.iter().flatten().all(shadows), "every light casts a shadow");
-    let plans: Vec<_> = (0..4).map(|i| plan(&mut node, i, |f| f.technique_index = i)).collect();
+    let plans: Vec<_> =
+        (0..4).map(|i| plan(&mut node, i, |f| f.technique_index = TechniqueIndex(i))).collect();
     for (index, image) in run(&mut node, &plans).into_iter().enumerate() {
         assert!(image == apart[index][index], "light {index}, with settings of its own");
     }
     // Every light has the same settings, and so the same maps and buffers one behind the other.
     for (index, apart) in (0..).zip(&apart) {
         // Recorded in another order than that of the layers, and with the other frame slot.
-        let of = |i| plan(&mut node, i, |f| (f.technique_index, f.slot) = (index, 1));
+        let of = |i| {
+            plan(&mut node, i, |f| (f.technique_index, f.slot) = (TechniqueIndex(index), Slot(1)))
+        };
         let plans: Vec<_> = [2, 0, 3, 1].map(of).into();
         assert!(run(&mut node, &plans) == *apart, "settings {index}");
-        let timed = (0..5).map(|light| node.node().unwrap().timings_of(1, light));
+        let timed = (0..5).map(|light| node.node().unwrap().timings(Slot(1), LightIndex(light)));
         let timed: Vec<_> = timed.collect();
-        let rows = plans[0].plan.runs().len();
+        let rows = plans[0].plan().runs().len();
         assert!(timed[..4].iter().flatten().all(|passes| passes.len() == rows), "{timed:?}");
         assert_eq!(timed[4], None);
     }
-    assert_eq!(node.node().unwrap().timings_of(2, 0), None);
+    assert_eq!(node.node().unwrap().timings(Slot(2), LightIndex(0)), None);
 }
 
 /// In memory that is kept, while camera and scene move or stay.
@@ -126,8 +134,8 @@ fn lights_planned_together_are_lights_planned_alone() {
     for (nth, (camera, moved, scene_revision, view_revision)) in moments.into_iter().enumerate() {
         let lamp = |index: u32| light(shift(index) + moved, false);
         let change = |index: usize, frame: &mut Frame| {
-            frame.light_index = index as u32;
-            frame.technique_index = u32::from(index == 3);
+            frame.light_index = LightIndex(index as u32);
+            frame.technique_index = TechniqueIndex(u32::from(index == 3));
             frame.revision = Some(scene_revision);
             frame.view_revision = Some(view_revision);
             aside(frame, camera);
@@ -154,7 +162,7 @@ fn what_reaches_nothing_costs_nothing_behind_the_first_frame() {
         let of = |index: u32| {
             let reaches = index.is_multiple_of(4);
             let planned = node.plan_with(&light(shift(index / 4), !reaches), |frame| {
-                frame.light_index = index;
+                frame.light_index = LightIndex(index);
             });
             planned.unwrap()
         };
@@ -170,10 +178,13 @@ fn what_reaches_nothing_costs_nothing_behind_the_first_frame() {
     for _ in 0..2 {
         let next = frame(&mut node, 16);
         assert_eq!(all(&next), all(&of_four), "12 of them reach nothing");
-        let table = next[1].plan.table();
+        let table = next[1].plan().table();
         assert!(table.contains("every pixel is lit already"), "{table}");
         assert!(run(&mut node, &next) == images);
-        assert!(node.node().unwrap().timings_of(0, 1).is_none(), "no pass, no times");
+        assert!(
+            node.node().unwrap().timings(Slot(0), LightIndex(1)).is_none(),
+            "no pass, no times"
+        );
     }
     for (index, image) in images.iter().enumerate() {
         match index % 4 {
@@ -195,7 +206,7 @@ fn idle_lights_cost_nothing_and_a_moving_camera_sees_what_each_light_shadows() {
     let plans = |node: &mut Stage, view: u64| -> Vec<FramePlan> {
         let of_light = |index: u32| {
             plan(node, index, |frame| {
-                frame.technique_index = of[index as usize];
+                frame.technique_index = TechniqueIndex(of[index as usize]);
                 (frame.revision, frame.view_revision) = (Some(1), Some(view));
                 aside(frame, 0.1 * view as f64);
             })
@@ -221,10 +232,10 @@ fn idle_lights_cost_nothing_and_a_moving_camera_sees_what_each_light_shadows() {
     assert!(passes[1..].iter().all(|p| *p == passes[1]), "{passes:?}");
     // A plan that counts on maps which another light has drawn over is refused.
     let stale = plan(&mut node, 2, |frame| {
-        frame.technique_index = 1;
+        frame.technique_index = TechniqueIndex(1);
         frame.revision = Some(1);
     });
-    let over = plan(&mut node, 0, |frame| frame.technique_index = 1);
+    let over = plan(&mut node, 0, |frame| frame.technique_index = TechniqueIndex(1));
     node.run(&over).unwrap();
     let sentence = node.run(&stale).unwrap_err().to_string();
     assert!(sentence.contains("plan the frame again"), "{sentence}");
@@ -236,22 +247,23 @@ fn a_resize_keeps_lights_apart() {
     let scene = cards();
     let mut node = stage(&device, &scene, 3, &["map=32", "technique=hard map=32"]);
     let plans = |node: &mut Stage| -> Vec<FramePlan> {
-        (0..3).map(|i| plan(node, i, |f| f.technique_index = i % 2)).collect()
+        (0..3).map(|i| plan(node, i, |f| f.technique_index = TechniqueIndex(i % 2))).collect()
     };
     let before = plans(&mut node);
     let images = run(&mut node, &before);
     let memory = node.node().unwrap().memory();
     let objects = node.node().unwrap().object_count();
-    assert_eq!(memory.iter().filter(|m| m.0 == "visibility").count(), 1);
-    assert_eq!(memory.iter().filter(|m| m.0 == "depth_layers.front_depth").count(), 2);
+    assert_eq!(memory.iter().filter(|m| m.name == "visibility").count(), 1);
+    assert_eq!(memory.iter().filter(|m| m.name == "depth_layers.front_depth").count(), 2);
     for extent in [[32, 48], [64, 64]] {
         let allocator = device.allocator();
         let mut allocator = allocator.lock().unwrap();
-        let old = node.node().unwrap().visibility();
+        let old = node.node().unwrap().visibility().unwrap();
         let retired = node.node().unwrap().resize(&mut *allocator, extent).unwrap();
-        let new = node.node().unwrap().visibility();
+        let new = node.node().unwrap().visibility().unwrap();
         assert!(new.image != old.image && new.extent == extent && new.layers == 3);
-        let views: Vec<_> = (0..4).map(|i| node.node().unwrap().visibility_layer(i)).collect();
+        let views: Vec<_> =
+            (0..4).map(|i| node.node().unwrap().visibility_layer(LightIndex(i))).collect();
         assert!(views[..3].iter().all(|v| v.is_some_and(|v| v != new.view)), "{views:?}");
         assert_eq!(views[3], None);
         retired.destroy(&mut *allocator);
@@ -282,7 +294,7 @@ fn images_are_handed_from_light_to_light() {
         .into_iter()
         .map(|(index, away)| {
             let planned = node.plan_with(&light(shift(index), away), |frame| {
-                frame.light_index = index;
+                frame.light_index = LightIndex(index);
                 let found = depth.unwrap_or(frame.depth);
                 // Last it goes back into the layout that it came in.
                 let after = if index == 2 { frame.depth.after } else { Scope::FRAGMENT_SAMPLED };
@@ -310,8 +322,13 @@ fn what_does_not_exist_is_refused() {
         });
         planned.unwrap_err().to_string()
     };
-    assert!(sentence(&mut node, 2, 0).contains("light 2 does not exist"));
-    assert!(sentence(&mut node, 0, 1).contains("technique 1 does not exist"));
+    assert!(
+        sentence(&mut node, LightIndex(2), TechniqueIndex(0)).contains("light 2 does not exist")
+    );
+    assert!(
+        sentence(&mut node, LightIndex(0), TechniqueIndex(1))
+            .contains("technique 1 does not exist")
+    );
     for lights in [0, 65] {
         let refused = configure(&mut node, lights, &["map=32"]).unwrap_err().to_string();
         assert!(refused.contains("1 to 64 lights"), "{refused}");

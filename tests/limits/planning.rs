@@ -1,12 +1,14 @@
 //! Plans of many meshes: they take no memory after the first frame, and leave out nothing that casts a shadow.
 
 use allocation_counter::measure;
+use antumbra::LightIndex;
 use antumbra::frame::{Limits, plan, plan_all};
 use antumbra::graph::{MeshList, Scope};
 use antumbra::scene::{Role, Scene, generate};
 use antumbra::truth::{Exact, PolygonLight, Receiver};
 use antumbra::{
     Description, Frame, FramePlans, Geometry, HostImage, MeshBuffers, MeshInstance, RectangleLight,
+    Slot,
 };
 use antumbra_tests::measure::settings;
 use ash::vk::{self, Handle};
@@ -43,11 +45,11 @@ fn frames(meshes: &[MeshInstance], moment: u32, stays: bool) -> [Frame<'_>; 4] {
         let light = generate::square_light(0.3).unwrap();
         let camera = DMat4::from_scale(DVec3::splat(4.0 + 0.1 * f64::from(moment)));
         Frame {
-            light_index,
+            light_index: LightIndex(light_index),
             background: Some(0.0),
             reach: (light_index == 3).then_some(3.5),
             revision: stays.then_some(1),
-            ..Frame::new(light, camera, meshes, image())
+            ..Frame::new(Slot(0), light, camera, meshes, image())
         }
     })
 }
@@ -133,7 +135,7 @@ fn what_is_not_drawn_hides_nothing() {
         };
         let meshes: Vec<_> = scene.instances.iter().map(instance).collect();
         let camera = DMat4::from_scale(DVec3::splat(9.0));
-        let own = Frame::new(light, camera, &meshes, image());
+        let own = Frame::new(Slot(0), light, camera, &meshes, image());
         let frame = Frame { background: Some(0.0), ..own };
         let plan = plan(&description, Limits::default(), &frame).unwrap();
         let kept = plan.meshes(MeshList::Occluders);

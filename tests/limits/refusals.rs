@@ -13,7 +13,7 @@ use antumbra::stages::depth_layers::{Eye, MapView};
 use antumbra::techniques::{hard, soft_shadow_map};
 use antumbra::{
     Description, Error, Frame, Geometry, HostImage, LightTexture, MeshBuffers, MeshInstance,
-    OccluderMaps, RectangleLight, Visibility,
+    OccluderMaps, RectangleLight, Slot, Visibility,
 };
 use antumbra_harness::technique;
 use antumbra_tests::measure::settings;
@@ -104,7 +104,7 @@ impl Given {
     /// Plans a frame that `wrong` has changed.
     fn plan(&self, lends: Lends, wrong: impl Fn(&mut Frame)) -> Result<(), Error> {
         let light = generate::square_light(0.5)?;
-        let own = Frame::new(light, DMat4::IDENTITY, &self.meshes, depth());
+        let own = Frame::new(Slot(0), light, DMat4::IDENTITY, &self.meshes, depth());
         let mut frame = Frame {
             background: Some(0.0),
             mask: Some(mask()),

@@ -2,6 +2,7 @@
 
 use antumbra::scene::{Role, Scene};
 use antumbra::{Description, FramePlan, MeshInstance, RetireQueue, Technique};
+use antumbra::{LightIndex, Slot, TechniqueIndex};
 use antumbra_harness::{
     GBuffer, GBufferPainter, HeadlessDevice, SceneBuffers, Stage, Submitted, View,
 };
@@ -253,13 +254,13 @@ impl<'d> Engine<'d> {
         let world_from_ndc = self.case.clip_from_world.inverse();
         let Self { stage, instances, gbuffer, .. } = self;
         let planned = stage.plan_with(&lamp.light(), |frame| {
-            frame.light_index = light as u32;
-            frame.technique_index = technique_index;
+            frame.light_index = LightIndex(light as u32);
+            frame.technique_index = TechniqueIndex(technique_index);
             frame.meshes = instances;
             frame.world_from_ndc = world_from_ndc;
             frame.depth = gbuffer.depth_for_node();
             frame.mask = Some(gbuffer.mask_for_node());
-            frame.slot = slot;
+            frame.slot = Slot(slot);
             [frame.revision, frame.view_revision] = number;
         });
         planned.unwrap_or_else(|e| panic!("{e}: {lamp:?}"))
@@ -281,7 +282,7 @@ impl<'d> Engine<'d> {
                 self.plan(light, slot, numbers)
             })
             .collect();
-        let steps: usize = plans.iter().map(|p| p.plan.steps.len()).sum();
+        let steps: usize = plans.iter().map(|p| p.plan().steps.len()).sum();
         self.passes += steps as u64;
         self.idle += u64::from(steps == 0);
         let node = self.stage.node().unwrap();
@@ -313,7 +314,8 @@ impl<'d> Engine<'d> {
     fn images(&mut self) -> Vec<Vec<f32>> {
         self.drain();
         let lights = 0..self.lamps.len() as u32;
-        let images: Vec<_> = lights.map(|l| self.stage.visibility_under(l).unwrap()).collect();
+        let images: Vec<_> =
+            lights.map(|l| self.stage.visibility_under(LightIndex(l)).unwrap()).collect();
         for image in &images {
             let bad = image.iter().find(|v| !(0.0..=1.0).contains(*v));
             assert!(bad.is_none(), "{bad:?} in frame {}, {:?}", self.frames, NODES[self.node]);

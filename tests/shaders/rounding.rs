@@ -68,7 +68,9 @@ struct Sums {
 
 fn push<T: bytemuck::AnyBitPattern>(plan: &FramePlan, name: &str) -> T {
     let named = |p: &&Pass| p.name == name;
-    bytemuck::pod_read_unaligned(plan.plan.graph.passes().iter().find(named).unwrap().push.bytes())
+    bytemuck::pod_read_unaligned(
+        plan.plan().graph.passes().iter().find(named).unwrap().push.bytes(),
+    )
 }
 
 impl Sums {

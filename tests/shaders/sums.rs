@@ -29,7 +29,7 @@ fn scenes() -> Vec<(&'static str, Scene)> {
 }
 
 fn pass<'a>(plan: &'a FramePlan, name: &str) -> &'a Pass {
-    plan.plan.graph.passes().iter().find(|p| p.name == name).unwrap()
+    plan.plan().graph.passes().iter().find(|p| p.name == name).unwrap()
 }
 
 fn push<T: bytemuck::AnyBitPattern>(pass: &Pass) -> T {

@@ -7,7 +7,9 @@ use crate::measure::settings;
 use antumbra::gpu::{MemoryBlock, MemoryRequest};
 use antumbra::graph::Scope;
 use antumbra::scene::{Scene, generate};
-use antumbra::{Allocator, Description, Error, Frame, FramePlan, Host, ShadowNode, Visibility};
+use antumbra::{
+    Allocator, Description, Error, Frame, FramePlan, Host, ShadowNode, Slot, Visibility,
+};
 use antumbra_harness::{HeadlessDevice, ImageSource, Stage, View, read_image};
 use ash::vk;
 
@@ -112,7 +114,7 @@ impl Bench {
         let light = self.scene.lights[0].light;
         let world_from_ndc = self.view.clip_from_world.inverse();
         let (instances, depth) = (self.stage.instances(), gbuffer.depth_for_node());
-        let own = Frame::new(light, world_from_ndc, instances, depth);
+        let own = Frame::new(Slot(0), light, world_from_ndc, instances, depth);
         let (before, after) = (Scope::COPIED_FROM, Scope::COPIED_FROM);
         let visibility = Visibility::Own { before, after };
         let mask = Some(gbuffer.mask_for_node());
@@ -127,7 +129,7 @@ impl Bench {
     pub fn run(&self, device: &HeadlessDevice, node: &ShadowNode, plan: &FramePlan) -> Vec<u32> {
         device.submit_and_wait(|cmd| node.record(cmd, plan)).unwrap();
         let format = vk::Format::R32_SFLOAT;
-        let result = node.visibility();
+        let result = node.visibility().unwrap();
         let source = ImageSource { image: result.image, format, extent: result.extent, layer: 0 };
         let read: Vec<f32> = read_image(device, &source, Scope::COPIED_FROM.layout).unwrap();
         assert!(read.iter().any(|v| *v < 1.0), "nothing is shadowed");

@@ -4,6 +4,7 @@ use crate::random::{Case, Lamp, Object, SIDE, Shape, meshes};
 use antumbra::knob::{Knob, Values};
 use antumbra::scene::{Role, Scene};
 use antumbra::techniques::linear_light::Across;
+use antumbra::{LightIndex, TechniqueIndex};
 use antumbra::{MeshInstance, Technique};
 use antumbra_harness::{GBufferPainter, HeadlessDevice, SceneBuffers, Stage, View};
 use glam::DMat4;
@@ -146,8 +147,8 @@ impl Rig {
         for batch in shots.chunks(BATCH as usize) {
             let plan = |(light, shot): (u32, &Shot)| {
                 let planned = self.stage.plan_with(&shot.lamp.light(), |frame| {
-                    frame.light_index = light;
-                    frame.technique_index = shot.settings as u32;
+                    frame.light_index = LightIndex(light);
+                    frame.technique_index = TechniqueIndex(shot.settings as u32);
                     frame.meshes = &shot.meshes;
                     frame.world_from_ndc = shot.world_from_ndc;
                 });
@@ -156,7 +157,9 @@ impl Rig {
             let plans: Vec<_> = (0..).zip(batch).map(plan).collect();
             self.stage.run_all(&plans).unwrap();
             images.extend(
-                (0..).zip(batch).map(|(light, _)| self.stage.visibility_under(light).unwrap()),
+                (0..)
+                    .zip(batch)
+                    .map(|(light, _)| self.stage.visibility_under(LightIndex(light)).unwrap()),
             );
         }
         images

@@ -107,9 +107,9 @@ fn kept_maps_are_made_once() {
     let plan = frame(&mut stage, &light, Some(7));
     let made = run(&mut stage, &plan);
     let kept = frame(&mut stage, &light, Some(7));
-    let runs: Vec<_> = kept.plan.runs().iter().map(|r| r.pass.name).collect();
+    let runs: Vec<_> = kept.plan().runs().iter().map(|r| r.pass.name).collect();
     assert_eq!(runs, ["linear_light.visibility"]);
-    assert!(kept.plan.table().contains("the maps of scene revision 7 are kept"));
+    assert!(kept.plan().table().contains("the maps of scene revision 7 are kept"));
     assert_eq!(run(&mut stage, &kept), made);
     assert_eq!(run(&mut stage, &kept), made);
 
@@ -127,11 +127,11 @@ fn kept_maps_are_made_once() {
     // Without a number everything is made, and nothing is kept.
     for _ in 0..2 {
         let plan = frame(&mut stage, &light, None);
-        assert!(plan.plan.steps.len() > 20);
+        assert!(plan.plan().steps.len() > 20);
         assert_eq!(run(&mut stage, &plan), made);
     }
     let plan = frame(&mut stage, &light, Some(8));
-    assert!(plan.plan.steps.len() > 20, "maps without a number are of no revision");
+    assert!(plan.plan().steps.len() > 20, "maps without a number are of no revision");
 }
 
 /// On receivers that lean against the line the transition is the rational function of eq. 1.

@@ -35,16 +35,16 @@ fn every_scene_runs_what_it_calls_for_and_what_is_left_out_costs_no_more_than_wa
         let plan = stage.plan(&other, None).unwrap();
         stage.run(&plan).unwrap();
         let (plan, pruned) = image(&mut stage, Some(1.0 / 256.0));
-        let runs: Vec<_> = plan.plan.runs().iter().map(|r| r.pass.name).collect();
+        let runs: Vec<_> = plan.plan().runs().iter().map(|r| r.pass.name).collect();
         assert_eq!(runs, case.runs, "{}\n{}", case.name, plan.explain());
         let mut bound = 0.0;
         for effect in case.left_out {
-            let verdict = plan.verdicts.of(*effect);
+            let verdict = plan.verdicts().of(*effect);
             assert_eq!(verdict.outcome, Outcome::LeftOut, "{}: {effect:?}", case.name);
             bound += verdict.bound;
         }
         // A bound is beyond what the maps' texels make of edges, in either image.
-        if let Some(s) = plan.verdicts.situation()
+        if let Some(s) = plan.verdicts().situation()
             && runs.contains(&"hard.visibility")
         {
             bound += s.texel_pixels * s.edges_a_pixel;

@@ -162,6 +162,6 @@ pub fn situation(device: &HeadlessDevice, group: &Group) -> Result<Situation, Pr
         .map_err(told)?;
     let light = ready.scene.light(None).map_err(told)?.light;
     let plan = stage.plan(&light, ready.window).map_err(told)?;
-    let situation = plan.verdicts.situation().copied();
+    let situation = plan.verdicts().situation().copied();
     situation.ok_or_else(|| format!("{}: nothing can be shadowed", group.key()))
 }

@@ -153,7 +153,7 @@ impl Runner {
             }
             Self::Node { stage, .. } | Self::Readback { stage, .. } => {
                 let node = told(stage.node())?;
-                Ok(node.memory().iter().map(|(_, bytes)| bytes).sum())
+                Ok(node.memory().iter().map(|r| r.bytes).sum())
             }
         }
     }

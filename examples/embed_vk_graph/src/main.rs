@@ -113,7 +113,7 @@ fn run(options: &Options, world: &World) -> Outcome<()> {
         let started = Instant::now();
         let plan = shadows.plan(&shot)?;
         let planned = started.elapsed();
-        let steps = &plan.plan.steps;
+        let steps = &plan.plan().steps;
         let (passes, barriers) =
             (steps.len(), steps.iter().map(|s| s.barriers.len()).sum::<usize>());
 
@@ -144,7 +144,7 @@ fn run(options: &Options, world: &World) -> Outcome<()> {
         }
     }
     let (objects, memory) = (shadows.node.object_count(), shadows.node.memory());
-    let bytes: u64 = memory.iter().map(|(_, bytes)| bytes).sum();
+    let bytes: u64 = memory.iter().map(|r| r.bytes).sum();
     println!("the node: {objects} Vulkan objects, {bytes} bytes");
     match shadows.destroy()? {
         0 => println!("the node is gone: 0 bytes left"),

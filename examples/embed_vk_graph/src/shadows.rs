@@ -11,7 +11,9 @@ use crate::frames::FRAMES_IN_FLIGHT;
 use crate::geometry::{Model, STRIDE};
 use crate::shot::Shot;
 use crate::targets::{DEPTH, MASK};
-use antumbra::{BorderBarriers, Description, Error, Frame, FramePlan, Geometry, Host, HostImage};
+use antumbra::{
+    BorderBarriers, Description, Error, Frame, FramePlan, Geometry, Host, HostImage, Slot,
+};
 use antumbra::{MeshBuffers, MeshInstance, RetireQueue, Scope, ShadowNode, Technique, Visibility};
 use gpu_allocator::vulkan::Allocator;
 use std::sync::{Arc, mpsc};
@@ -65,9 +67,14 @@ impl Shadows {
             outline: shot.light.outline(),
             mask: Some(lend(&shot.targets.mask)?),
             visibility: Visibility::Lent(lend(&shot.targets.visibility)?),
-            slot: shot.slot,
             border_barriers: BorderBarriers::Host,
-            ..Frame::new(shot.light.light, shot.world_from_ndc, &meshes, lend(&shot.targets.depth)?)
+            ..Frame::new(
+                Slot(shot.slot),
+                shot.light.light,
+                shot.world_from_ndc,
+                &meshes,
+                lend(&shot.targets.depth)?,
+            )
         };
         Ok(self.node.plan(&frame)?)
     }

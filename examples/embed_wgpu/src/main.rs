@@ -29,7 +29,7 @@ mod raw;
 mod shadows;
 mod world;
 
-use antumbra::Retired;
+use antumbra::{ResourceBytes, Retired};
 use compose::ComposePass;
 use device::{Gpu, Target, WaitAtEnd};
 use gbuffer::{GBuffer, GBufferPass};
@@ -195,7 +195,7 @@ fn run(options: &Options) -> Outcome<()> {
             format!("{width}×{height}"),
             plan_time.as_secs_f64() * 1e6,
             record_time.as_secs_f64() * 1e6,
-            plan.plan.steps.len(),
+            plan.plan().steps.len(),
         );
     }
 
@@ -213,7 +213,7 @@ fn run(options: &Options) -> Outcome<()> {
         destroy_replaced(&mut replaced, &mut shadows, done);
     }
     println!("the node: {} Vulkan objects, and in memory:", shadows.node.object_count());
-    for (name, bytes) in shadows.node.memory() {
+    for ResourceBytes { name, bytes } in shadows.node.memory() {
         println!("  {name:<32} {:>9.1} kB", bytes as f64 / 1e3);
     }
     let left = shadows.destroy();

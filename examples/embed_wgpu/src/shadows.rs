@@ -13,7 +13,7 @@
 use crate::device::{Gpu, Target};
 use crate::geometry::{Object, STRIDE};
 use crate::{FRAMES_IN_FLIGHT, Outcome, Seen, Targets, raw};
-use antumbra::{BorderBarriers, Description, Frame, FramePlan, Geometry, Host, HostImage};
+use antumbra::{BorderBarriers, Description, Frame, FramePlan, Geometry, Host, HostImage, Slot};
 use antumbra::{MeshBuffers, MeshInstance, OccluderMaps, Retired, Scope, ShadowNode, Visibility};
 use ash::vk;
 use gpu_allocator::vulkan::Allocator;
@@ -71,9 +71,14 @@ impl Shadows {
                 back: Some(lend(&maps.back, DEPTH_SAMPLED)),
                 clip_from_world: maps.clip_from_world,
             }),
-            slot: seen.slot as u32,
             border_barriers: BorderBarriers::Host,
-            ..Frame::new(*seen.world.rectangle(), seen.view.world_from_ndc(), meshes, depth)
+            ..Frame::new(
+                Slot(seen.slot as u32),
+                *seen.world.rectangle(),
+                seen.view.world_from_ndc(),
+                meshes,
+                depth,
+            )
         })
     }
 

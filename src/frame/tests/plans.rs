@@ -6,7 +6,7 @@ use super::*;
 /// A frame of each of three lights: one over the scene, one aside, one that shines away from it.
 fn lights<'a>(meshes: &'a [MeshInstance], change: impl Fn(&mut Frame<'a>)) -> [Frame<'a>; 3] {
     [0, 1, 2].map(|light_index| {
-        let mut frame = Frame { light_index, ..frame(meshes) };
+        let mut frame = Frame { light_index: LightIndex(light_index), ..frame(meshes) };
         let light = frame.light;
         let [u, v] = light.half_extents();
         let at = light.center() + DVec3::X * f64::from(light_index);

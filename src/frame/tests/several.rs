@@ -3,6 +3,7 @@
 use super::*;
 use crate::frame::Cache;
 use crate::frame::make::plan_with;
+use crate::lent::{LightIndex, TechniqueIndex};
 
 /// Rows of a soft shadow map, and those of them that look at pixels.
 const ALL: usize = 7;
@@ -51,8 +52,8 @@ impl Node {
 
 /// Frames of so many lights at a scene and a view revision.
 fn frames(meshes: &[MeshInstance], lights: u32, scene: u64, view: u64) -> Vec<Frame<'_>> {
-    let of = |light_index| Frame {
-        light_index,
+    let of = |light| Frame {
+        light_index: LightIndex(light),
         revision: Some(scene),
         view_revision: Some(view),
         ..frame(meshes)
@@ -64,25 +65,26 @@ fn frames(meshes: &[MeshInstance], lights: u32, scene: u64, view: u64) -> Vec<Fr
 fn barriers_name_the_lights_layer_of_the_result_and_nothing_else() {
     let meshes = meshes();
     let d = Description { lights: 3, ..description(&[]) };
-    for light_index in 0..3 {
+    for light in 0..3 {
+        let light_index = LightIndex(light);
         let border_barriers = BorderBarriers::Host;
         let plan = make(&d, &Frame { light_index, border_barriers, ..frame(&meshes) });
         assert_eq!(plan.light_index, light_index);
         let layers: Vec<_> = plan.accesses().iter().map(|a| (a.name, a.layer)).collect();
-        assert_eq!(layers, [("gbuffer.depth", 0), ("visibility", light_index)]);
+        assert_eq!(layers, [("gbuffer.depth", 0), ("visibility", light)]);
         let all: Vec<_> = plan.entry_barriers().chain(plan.exit_barriers()).collect();
         assert_eq!(all.len(), 4);
         for barrier in all {
             let range = barrier.vk().subresource_range;
             let result = barrier.image == vk::Image::null();
-            let layer = if result { light_index } else { 0 };
+            let layer = if result { light } else { 0 };
             assert_eq!((range.base_array_layer, range.layer_count), (layer, 1));
         }
     }
     // A lent image is the light's own.
     let d = Description { lent_visibility: true, ..d };
     let visibility = Visibility::Lent(target());
-    let plan = make(&d, &Frame { light_index: 2, visibility, ..frame(&meshes) });
+    let plan = make(&d, &Frame { light_index: LightIndex(2), visibility, ..frame(&meshes) });
     assert_eq!(plan.accesses()[1].layer, 0);
 }
 
@@ -95,9 +97,9 @@ fn every_bad_number_of_lights_or_techniques_is_one_sentence() {
     let refuse = |d: &Description, frame: Frame| {
         plan(d, Limits::default(), &frame).map(|p| ran(&p)).unwrap_err().to_string()
     };
-    let sentence = refuse(&d, Frame { light_index: 4, ..f });
+    let sentence = refuse(&d, Frame { light_index: LightIndex(4), ..f });
     assert!(sentence.contains("light 4 does not exist; the description has 4"), "{sentence}");
-    let sentence = refuse(&d, Frame { technique_index: 2, ..f });
+    let sentence = refuse(&d, Frame { technique_index: TechniqueIndex(2), ..f });
     assert!(sentence.contains("technique 2 does not exist; the description has 2"), "{sentence}");
     for lights in [0, 65] {
         let sentence = Description { lights, ..d.clone() }.check().unwrap_err().to_string();
@@ -116,7 +118,7 @@ fn every_bad_number_of_lights_or_techniques_is_one_sentence() {
     assert!(small.check().unwrap_err().to_string().contains("1 to 4096"));
     let line = generate::line_light(1.0, 0.3).unwrap();
     assert!(refuse(&d, Frame { light: line, ..f }).contains("soft-shadow-map needs an area"));
-    make(&d, &Frame { light: line, technique_index: 1, ..f });
+    make(&d, &Frame { light: line, technique_index: TechniqueIndex(1), ..f });
 }
 
 #[test]
@@ -127,11 +129,11 @@ fn a_frame_has_the_passes_of_the_technique_that_it_chooses() {
     others.retain(|technique| *technique != Technique::default());
     let several = Description { other_techniques: others.clone(), ..d.clone() };
     for (index, technique) in others.into_iter().enumerate() {
-        let technique_index = 1 + index as u32;
+        let technique_index = TechniqueIndex(1 + index as u32);
         let mut chosen = make(&several, &Frame { technique_index, ..frame(&meshes) });
         let alone = make(&Description { technique, ..d.clone() }, &frame(&meshes));
         assert_eq!(chosen.technique_index, technique_index);
-        chosen.technique_index = 0;
+        chosen.technique_index = TechniqueIndex(0);
         assert_eq!(chosen, alone);
     }
 }
@@ -162,7 +164,7 @@ fn maps_are_kept_for_a_light_that_has_settings_to_itself() {
     let mut node = Node::new(2, vec![hard]);
     let both = |view| {
         let mut both = frames(&meshes, 2, 1, view);
-        both[1].technique_index = 1;
+        both[1].technique_index = TechniqueIndex(1);
         both
     };
     assert_eq!(node.all(&both(1)), [ALL, 2]);
@@ -211,13 +213,18 @@ fn what_is_lit_stays_lit_whatever_the_numbers_say() {
     for lights in [1, 2] {
         let mut node = Node::new(lights, vec![Technique::default()]);
         let light_index = lights - 1;
-        let lit = Frame { light_index, ..frame(&[]) };
+        let lit = Frame { light_index: LightIndex(light_index), ..frame(&[]) };
         assert_eq!(node.all(&[lit]), [1]);
         let again = node.plan(&lit);
         assert!(again.plan.steps.is_empty());
         assert!(again.plan.reasons().any(|(_, why)| why == "every pixel is lit already".into()));
         // Other numbers and other settings leave every pixel lit as well.
-        let other = Frame { technique_index: 1, revision: Some(3), view_revision: Some(4), ..lit };
+        let other = Frame {
+            technique_index: TechniqueIndex(1),
+            revision: Some(3),
+            view_revision: Some(4),
+            ..lit
+        };
         assert_eq!(node.all(&[other]), [0]);
         assert_eq!(node.all(&[lit, other]), [0, 0]);
         // What forgets or writes the image leaves nothing to count on.
@@ -258,7 +265,7 @@ fn of_16_lights_12_that_reach_nothing_cost_what_4_cost() {
     let mut node = Node::new(16, Vec::new());
     let meshes = |light| if light % 4 == 0 { &shadowed[..] } else { &[] };
     let frames = || {
-        let of = |light_index| Frame { light_index, ..frame(meshes(light_index)) };
+        let of = |light| Frame { light_index: LightIndex(light), ..frame(meshes(light)) };
         (0..16).map(of).collect::<Vec<_>>()
     };
     assert_eq!(node.all(&frames()).iter().sum::<usize>(), 4 * ALL + 12);

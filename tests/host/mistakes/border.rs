@@ -1,6 +1,8 @@
 //! What hosts stumble over at the border without a mistake of theirs.
 
 use super::*;
+use antumbra::LightIndex;
+use antumbra::Slot;
 use antumbra::frame::plan_all;
 use antumbra::{BorderBarriers, Visibility};
 
@@ -21,13 +23,14 @@ fn arrays_serve_as_well_as_glam() {
     let light =
         RectangleLight::facing([0.0, 3.0, 0.0f32], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.5; 2]);
     let light = light.unwrap();
-    for frame in
-        [Frame::new(light, f64s, &meshes, depth()), Frame::new(light, columns, &meshes, depth())]
-    {
+    for frame in [
+        Frame::new(Slot(0), light, f64s, &meshes, depth()),
+        Frame::new(Slot(0), light, columns, &meshes, depth()),
+    ] {
         let plan = frame::plan(&host.description, Limits::default(), &frame).unwrap();
         assert_eq!(plan, wanted);
     }
-    let single = Frame::new(light, f64s.map(|x| x as f32), &meshes, depth());
+    let single = Frame::new(Slot(0), light, f64s.map(|x| x as f32), &meshes, depth());
     let plan = frame::plan(&host.description, Limits::default(), &single).unwrap();
     assert_eq!(plan.doubts(), [], "single precision is no mistake");
 }
@@ -58,10 +61,10 @@ fn lights_hand_depth_on_and_the_last_one_need_not_care() {
     let second = HostImage { after: Scope::ANY, ..first.handed_back() };
     let frame = |light_index, depth| {
         let matrix = host.clip_from_world.inverse();
-        Frame { light_index, ..Frame::new(host.light, matrix, &host.meshes, depth) }
+        Frame { light_index, ..Frame::new(Slot(0), host.light, matrix, &host.meshes, depth) }
     };
     let mut plans = antumbra::FramePlans::new();
-    let frames = [frame(0, first), frame(1, second)];
+    let frames = [frame(LightIndex(0), first), frame(LightIndex(1), second)];
     plan_all(&host.description, Limits::default(), &frames, &mut plans).unwrap();
     assert!(plans.all().iter().all(|plan| plan.doubts().is_empty()));
 }

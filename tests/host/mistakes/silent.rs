@@ -1,6 +1,7 @@
 //! What would give a wrong image and no error.
 
 use super::*;
+use antumbra::Slot;
 
 #[test]
 fn mistake_18_the_depth_of_the_background() {
@@ -200,7 +201,7 @@ fn doubts_stay_with_a_revision() {
     host.meshes[1].role = Role::Occluder;
     let mut plans = antumbra::FramePlans::new();
     let matrix = host.clip_from_world.inverse();
-    let own = Frame::new(host.light, matrix, &host.meshes, depth());
+    let own = Frame::new(Slot(0), host.light, matrix, &host.meshes, depth());
     let frame = Frame { revision: Some(1), ..own };
     for _ in 0..3 {
         frame::plan_all(&host.description, Limits::default(), &[frame], &mut plans).unwrap();

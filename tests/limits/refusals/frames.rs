@@ -1,15 +1,20 @@
 //! What of a frame and its meshes is refused.
 
 use super::*;
+use antumbra::{LightIndex, Slot, TechniqueIndex};
 
 #[test]
 fn frames() {
     use Lends::{GBuffer, Maps};
     let f = framed;
     refuses(vec![
-        f("a slot that is not there", |f| f.slot = 2, &["slot 2", "2 frames in flight"]),
-        f("a light that is not there", |f| f.light_index = 1, &["light 1", "has 1"]),
-        f("settings that are not there", |f| f.technique_index = 3, &["technique 3", "has 1"]),
+        f("a slot that is not there", |f| f.slot = Slot(2), &["slot 2", "2 frames in flight"]),
+        f("a light that is not there", |f| f.light_index = LightIndex(1), &["light 1", "has 1"]),
+        f(
+            "settings that are not there",
+            |f| f.technique_index = TechniqueIndex(3),
+            &["technique 3", "has 1"],
+        ),
         f(
             "a camera of NaN",
             |f| f.world_from_ndc.x_axis.x = f64::NAN,

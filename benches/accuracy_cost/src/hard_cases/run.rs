@@ -167,5 +167,5 @@ impl<'a> Prepared<'a> {
 }
 
 fn runs(plan: &FramePlan, pass: &str) -> bool {
-    plan.plan.steps.iter().any(|step| plan.plan.graph.passes()[step.pass].name == pass)
+    plan.plan().steps.iter().any(|step| plan.plan().graph.passes()[step.pass].name == pass)
 }
