@@ -5,6 +5,9 @@ use crate::plain::Vector;
 use glam::{DMat3, DMat4, DVec2, DVec3};
 
 pub(crate) mod outline;
+mod shape;
+
+pub use shape::Light;
 
 /// How far from perpendicular two half-axes may be (cosine of the angle between them).
 const MAX_SKEW: f64 = 1e-4;

@@ -170,7 +170,6 @@ fn run(options: &Options) -> Outcome<()> {
         let Targets { gbuffer, picture } = &targets;
         let seen = Seen {
             light: &light,
-            outline: world.outline(),
             clip_from_world: &clip_from_world,
             models: &models,
             gbuffer,
@@ -195,7 +194,8 @@ fn run(options: &Options) -> Outcome<()> {
         }
         barrier(&gpu, cmd, picture, COPY_READS.forgotten(), COMPOSE_WRITES);
         let visibility = shadows.node.visibility().ok_or("the node has a result of its own")?;
-        let push = compose::Push::new(&clip_from_world.inverse(), &light, world::RADIANCE);
+        let push =
+            compose::Push::new(&clip_from_world.inverse(), light.rectangle(), world::RADIANCE);
         compose_pass.record(&gpu, cmd, slot, (gbuffer, &visibility), picture, &push);
         barrier(&gpu, cmd, picture, COMPOSE_WRITES, COPY_READS);
         let (color, depth) = (vk::ImageAspectFlags::COLOR, vk::ImageAspectFlags::DEPTH);

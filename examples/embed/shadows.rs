@@ -57,7 +57,6 @@ impl Shadows {
         let depth = lend(&seen.gbuffer.depth, DEPTH_DRAWN);
         self.node.plan(&Frame {
             mask: Some(lend(&seen.gbuffer.mask, COLOR_DRAWN)),
-            outline: seen.outline,
             visibility: Visibility::Own { before: COMPOSE_READS, after: COMPOSE_READS },
             border_barriers: self.border_barriers,
             ..Frame::new(

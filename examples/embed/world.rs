@@ -3,16 +3,15 @@
 use crate::Outcome;
 use crate::gbuffer::GBuffer;
 use crate::geometry::Model;
-use antumbra::RectangleLight;
 use antumbra::scene::{AreaLight, Camera, Mesh, Role, Scene, from_gltf, generate};
+use antumbra::{Light, RectangleLight};
 use glam::{DMat3, DMat4, DVec3, DVec4};
 use std::f64::consts::TAU;
 use std::path::Path;
 
 /// What a frame shows, and where it is drawn.
 pub struct Seen<'a> {
-    pub light: &'a RectangleLight,
-    pub outline: Option<&'a [[f64; 2]]>,
+    pub light: &'a Light,
     pub clip_from_world: &'a DMat4,
     pub models: &'a [Model],
     pub gbuffer: &'a GBuffer,
@@ -71,16 +70,11 @@ impl World {
         Ok(Self { objects, fixed: Some((light, camera)) })
     }
 
-    /// The polygon that the light is, where it is one.
-    pub fn outline(&self) -> Option<&[[f64; 2]]> {
-        self.fixed.as_ref()?.0.outline()
-    }
-
     /// The light at a time; to the sky if asked, where it can go there.
-    pub fn light(&self, seconds: f64, to_the_sky: bool) -> Outcome<RectangleLight> {
+    pub fn light(&self, seconds: f64, to_the_sky: bool) -> Outcome<Light> {
         match &self.fixed {
-            Some((light, _)) => Ok(light.light),
-            None => Ok(light(seconds, to_the_sky)?),
+            Some((light, _)) => Ok(light.shape()?),
+            None => Ok(light(seconds, to_the_sky)?.into()),
         }
     }
 

@@ -179,10 +179,8 @@ impl Stage {
         light: &AreaLight,
         window: Option<[[f64; 2]; 2]>,
     ) -> Result<FramePlan, Error> {
-        self.plan_with(&light.light, |frame| {
-            frame.outline = light.outline();
-            frame.window = window;
-        })
+        let shape = light.shape()?;
+        self.plan_with(shape.rectangle(), |frame| (frame.light, frame.window) = (shape, window))
     }
 
     /// Plans what `change` makes of a frame.
@@ -243,7 +241,7 @@ impl Stage {
     /// # Errors
     /// As [`Auto::choose`].
     pub fn choose(&mut self, auto: &mut Auto, light: &AreaLight) -> Result<Choice, Error> {
-        let frame = Frame { outline: light.outline(), ..self.frame(&light.light) };
+        let frame = Frame { light: light.shape()?, ..self.frame(&light.light) };
         let node =
             self.node.as_ref().ok_or_else(|| Error::Frame("the stage has no node".into()))?;
         auto.choose(node.description(), &frame)

@@ -267,7 +267,7 @@ impl Auto {
         situation: Option<&Situation>,
         sound: &Sound,
     ) -> Choice {
-        let is_line = frame.light.is_line();
+        let is_line = frame.light.rectangle().is_line();
         let open = if situation.is_some_and(|s| s.open) { LINE_OPEN } else { 0.0 };
         let open = open + if is_line { 0.0 } else { POLYGON };
         let asked = ((sound.max_error - open) / LINE_SHARE).clamp(0.005, 0.1);
@@ -295,7 +295,7 @@ impl Auto {
 }
 
 fn is_line(frame: &Frame) -> bool {
-    frame.light.is_line() || frame.outline.is_some()
+    frame.light.rectangle().is_line() || frame.light.outline().is_some()
 }
 
 /// Whether a technique takes what a host gives.

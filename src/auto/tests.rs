@@ -321,7 +321,8 @@ fn a_line_is_for_linear_light() {
     assert!(c.problem.is_none() && c.error.unwrap() <= 0.0201, "{c}");
     c.technique.check().unwrap();
     let corners = [[-0.2, -0.2], [0.2, -0.2], [0.0, 0.2]];
-    let polygon = Frame { outline: Some(&corners), ..frame(square(0.4), &meshes) };
+    let light = crate::Light::with_outline(square(0.4), &corners).unwrap();
+    let polygon = Frame { light, ..frame(square(0.4), &meshes) };
     let c = auto(Some(0.05), None).choose(&description(), &polygon).unwrap();
     assert_eq!((c.technique.name(), c.problem), ("linear-light", None));
     c.technique.check().unwrap();

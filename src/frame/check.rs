@@ -3,7 +3,6 @@
 use super::boxes::Boxes;
 use super::{Description, Frame};
 use crate::Error;
-use crate::light::outline;
 use crate::stages::depth_layers::LightBox;
 use crate::techniques::room::{HostDraws, Room, Takes};
 
@@ -40,19 +39,24 @@ impl Frame<'_> {
                 self.light_index.0, description.lights
             ));
         }
-        if self.light.is_line() && !takes.line {
+        if self.light.rectangle().is_line() && !takes.line {
             return bad(format!(
                 "the light is a line, and {technique} needs an area; choose linear-light, many-lights or \
                  hard, or give the light a height"
             ));
         }
-        let [width, height] = self.light.half_extents().map(|half| 2.0 * half);
+        let [width, height] = self.light.rectangle().half_extents().map(|half| 2.0 * half);
         if !LENGTHS.contains(&width) || !(height == 0.0 || LENGTHS.contains(&height)) {
             return bad(format!(
                 "the light is {width:e} by {height:e} m; a side must be from 1e-15 to 1e15 m, so scale the scene"
             ));
         }
-        self.check_outline(technique, takes)?;
+        if self.light.outline().is_some() && !takes.outline {
+            return bad(format!(
+                "the light is a polygon, and {technique} knows rectangles alone; choose linear-light or \
+                 many-lights, or give its rectangle"
+            ));
+        }
         // Of numbers so large or small that it is none, a determinant is not known either.
         if !self.world_from_ndc.is_finite() || !self.world_from_ndc.determinant().is_normal() {
             return bad("world_from_ndc must be finite and invertible");
@@ -104,22 +108,5 @@ impl Frame<'_> {
         bad(format!(
             "mesh {place} blocks up to {reach:e} m from the light, and must within 1e15 m; cut it, or scale the scene"
         ))
-    }
-
-    fn check_outline(&self, technique: &str, takes: &Takes) -> Result<(), Error> {
-        let Some(corners) = self.outline else { return Ok(()) };
-        if !takes.outline {
-            return bad(format!(
-                "the light is a polygon, and {technique} knows rectangles alone; choose linear-light or \
-                 many-lights, or leave outline out"
-            ));
-        }
-        if self.light.is_line() {
-            return bad("the light is a line, which has no outline; leave outline out");
-        }
-        match outline::problem(corners, self.light.half_extents()) {
-            Some(problem) => bad(format!("the light's outline: {problem}")),
-            None => Ok(()),
-        }
     }
 }

@@ -5,14 +5,15 @@ use super::hull::Hull;
 use super::odd::Odd;
 use super::passes::PLACEHOLDER;
 use super::{Description, Frame};
+use crate::Error;
 use crate::effects::{Seen, Situation};
 use crate::graph::{Need, Why};
 use crate::lent::{MeshBounds, MeshInstance};
+use crate::light::Light;
 use crate::stages::depth_layers::{self, HostMapView, LightBox, MapView, Projection};
 use crate::stages::views::Views;
 use crate::technique::Technique;
 use crate::techniques::room::{Maps, Room, Seen as ViewsSeen, Takes};
-use crate::{Error, RectangleLight};
 use glam::DMat4;
 
 /// Meshes that matter to a light, by their places in the frame's list, and their boxes as it sees them.
@@ -68,7 +69,7 @@ impl Placed {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Inputs {
     revision: u64,
-    light: RectangleLight,
+    light: Light,
     reach: Option<f64>,
     window: Option<[[f64; 2]; 2]>,
     request: FitRequest,
@@ -175,7 +176,8 @@ impl Fit {
         boxes: &Boxes,
         near: &mut Vec<u32>,
     ) -> Result<(), Error> {
-        let (light, half) = (&frame.light, frame.light.half_extents());
+        let light = frame.light.rectangle();
+        let half = light.half_extents();
         self.light_from_world = light.light_from_world();
         self.host_maps = match (&frame.occluder_maps, description.occluder_maps) {
             (Some(lent), Some(format)) => {
@@ -226,7 +228,7 @@ impl Fit {
     /// Sorts the meshes that are near: what receives, and what can lie between it and the light. How many went because
     /// they are flat, with both on one side, and how many because they are elsewhere.
     fn place(&mut self, frame: &Frame, near: &[u32]) -> [usize; 2] {
-        let half = frame.light.half_extents();
+        let half = frame.light.rectangle().half_extents();
         let lent = self.host_maps.is_some();
         let Self { occluders, receivers, light_from_world, .. } = self;
         occluders.clear();
@@ -303,8 +305,8 @@ impl Fit {
 
     fn make_views(&self, room: &dyn Room, frame: &Frame) -> Result<Views, Error> {
         room.views(&ViewsSeen {
-            light: &frame.light,
-            outline: frame.outline,
+            light: frame.light.rectangle(),
+            outline: frame.light.outline(),
             occluders: &self.occluders.bounds(frame.meshes),
             receivers: &self.receivers.bounds(frame.meshes),
             centre: self.centre.as_ref().unwrap_or(&PLACEHOLDER),

@@ -93,7 +93,7 @@ impl SituationCache {
             None => SITUATION_MAP,
         };
         let request = FitRequest { technique: None, takes, maps: Maps::front(side) };
-        let frame = Frame { outline: None, ..*frame };
+        let frame = Frame { light: (*frame.light.rectangle()).into(), ..*frame };
         frame.check_numbers(description, ANY, &takes)?;
         self.fit.update(description, &request, &frame, mesh_boxes)?;
         Ok(situation_seen(&self.fit, &frame, description.extent))

@@ -51,7 +51,7 @@ struct Shape {
 ///
 /// # Errors
 /// [`Error::Frame`] for numbers that are not finite, a line or an outline that the technique does not
-/// take, an outline that is not what [`Frame::outline`] asks for, an image of another size, format,
+/// take, an image of another size, format,
 /// usage or layout than the description and the passes need, images or strides that the description
 /// does not have, a reach that is not above 0, or a light, settings or a frame slot beyond those of the description.
 pub fn plan(description: &Description, limits: Limits, frame: &Frame) -> Result<FramePlan, Error> {
@@ -107,14 +107,14 @@ pub(crate) fn plan_into(
     plan.stamp = Stamp::default();
     let room = description.technique.room();
     frame.check(description, room)?;
-    let (light, outline) = room.turned(&frame.light, frame.outline);
-    let frame = &Frame { light, outline: outline.as_deref(), ..*frame };
+    let light = room.turned(&frame.light);
+    let frame = &Frame { light, ..*frame };
     let Workspace { graph, compiler, borders, mesh_boxes } = workspace;
     let Memory { fit, camera, built, drawn } = memory;
     fit.update(description, &FitRequest::of(&description.technique), frame, mesh_boxes)?;
     let (inputs, verdicts) = frame_inputs(description, frame, fit)?;
     graph.clear();
-    let ids = build(graph, description, limits, &light, &inputs);
+    let ids = build(graph, description, limits, light.rectangle(), &inputs);
     let occluder_clips = inputs.occluder_clips();
     let (receiver_view, views, needs) =
         (inputs.receivers, inputs.views.count(), inputs.needs.bits());

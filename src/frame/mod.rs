@@ -36,15 +36,16 @@ pub use plan::FramePlan;
 pub(crate) use plan::Stamp;
 pub use plans::FramePlans;
 
+use crate::Error;
 use crate::graph::{self, Scope};
 use crate::lent::{
     BorderBarriers, HostImage, LightIndex, MeshInstance, OccluderMaps, Slot, TechniqueIndex,
     Visibility,
 };
+use crate::light::Light;
 use crate::plain::Matrix;
 use crate::technique::Technique;
 use crate::techniques::room;
-use crate::{Error, RectangleLight};
 use ash::vk;
 use glam::DMat4;
 use std::borrow::Cow;
@@ -245,19 +246,13 @@ impl Description {
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<'a> {
     /// The light.
-    pub light: RectangleLight,
+    pub light: Light,
     /// Which of the description's lights it is, 0 and up. Each has frames of its own, recorded in the
     /// order in which they were planned; where a light casts no shadow in them they cost nothing.
     pub light_index: LightIndex,
     /// Which of the description's techniques this frame uses: 0 is [`Description::technique`], n the nth of
     /// [`Description::other_techniques`].
     pub technique_index: TechniqueIndex,
-    /// The polygon that the light has instead of its rectangle: 3 to 16 corners in light space, as x and y in
-    /// metres from the rectangle's centre, within it, counter-clockwise as seen from the side that the light
-    /// shines to. It need not be convex, and neither touches nor crosses itself.
-    /// [`RectangleLight::around`] makes both of a polygon in the world. None: the whole rectangle.
-    /// `linear-light` and `many-lights` take one.
-    pub outline: Option<&'a [[f64; 2]]>,
     /// How far the light reaches from its centre, metres above 0: the host takes nothing of it for what is further away.
     /// Receivers beyond that need no shadow and occluders beyond cast none, so that neither is looked at. None:
     /// everywhere.
@@ -311,12 +306,12 @@ pub struct Frame<'a> {
 }
 
 impl<'a> Frame<'a> {
-    /// A frame of light 0 with the first technique, the whole rectangle, the far depth that the matrix has, no mask, the
+    /// A frame of light 0 with the first technique, the far depth that the matrix has, no mask, the
     /// node's own visibility image sampled by fragment and compute shaders, a fitted window, and barriers placed by the
     /// node. `slot` is the frame in flight whose commands the host has waited for.
     pub fn new(
         slot: Slot,
-        light: RectangleLight,
+        light: impl Into<Light>,
         world_from_ndc: impl Into<Matrix>,
         meshes: &'a [MeshInstance],
         depth: HostImage,
@@ -326,10 +321,9 @@ impl<'a> Frame<'a> {
             ..Scope::FRAGMENT_SAMPLED
         };
         Self {
-            light,
+            light: light.into(),
             light_index: LightIndex(0),
             technique_index: TechniqueIndex(0),
-            outline: None,
             reach: None,
             world_from_ndc: world_from_ndc.into().0,
             background: None,

@@ -40,7 +40,7 @@ impl Odd {
 
 /// Whether some of these meshes are within a light's reach, and all of those behind it.
 fn all_behind(frame: &Frame, which: impl Fn(&MeshInstance) -> bool) -> bool {
-    let light_from_world = frame.light.light_from_world();
+    let light_from_world = frame.light.rectangle().light_from_world();
     let mut some = false;
     for mesh in frame.meshes.iter().filter(|mesh| which(mesh) && has_triangles(mesh)) {
         let placed = LightBox::new(&mesh.bounds, &(light_from_world * mesh.world_from_mesh));

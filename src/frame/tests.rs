@@ -232,7 +232,7 @@ fn what_is_lent_must_be_what_was_described() {
         far: 9.0,
         side: 32,
     };
-    let clip_from_world = view.clip_from_light() * f.light.light_from_world();
+    let clip_from_world = view.clip_from_light() * f.light.rectangle().light_from_world();
     let both = OccluderMaps { front: map, back: Some(map), clip_from_world };
     let with = |maps| Frame { occluder_maps: Some(maps), ..f };
     assert_eq!(

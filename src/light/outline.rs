@@ -37,11 +37,6 @@ pub(crate) fn doubled_area(corners: &[[f64; 2]]) -> f64 {
     corners.windows(2).map(|edge| from_first(edge[0]).perp_dot(from_first(edge[1]))).sum()
 }
 
-/// The same corners in the space of the light that [`RectangleLight::quarter_turned`] makes.
-pub(crate) fn quarter_turned(corners: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    corners.iter().map(|&[x, y]| [y, -x]).collect()
-}
-
 /// The longer side of the box around an outline.
 fn size(corners: &[[f64; 2]]) -> f64 {
     let [low, high] = bounds(corners);
@@ -140,7 +135,7 @@ fn apart([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> f64 {
 
 impl RectangleLight {
     /// The smallest rectangle around a polygon, and the polygon's corners in its light space: a light of any
-    /// outline, for [`crate::Frame::outline`] (Heidrich, Brabec and Seidel 2000 section 4 has polygons as
+    /// outline, for [`Light::with_outline`](super::Light::with_outline) (Heidrich, Brabec and Seidel 2000 section 4 has polygons as
     /// their edges).
     ///
     /// `corners` are 3 to 16 points of one plane in world space, in metres, in order; the polygon need not be

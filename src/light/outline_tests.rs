@@ -123,9 +123,35 @@ fn a_quarter_turn_leaves_the_polygon_in_its_place() {
         let place = |p| light.world_from_light().transform_point3(place(p));
         outline.iter().map(place).collect::<Vec<_>>()
     };
-    let (turned, corners) = (light.quarter_turned(), quarter_turned(&outline));
-    for (there, here) in places(&turned, &corners).into_iter().zip(places(&light, &outline)) {
+    let whole = crate::Light::with_outline(light, &outline).unwrap().quarter_turned();
+    let (turned, corners) = (whole.rectangle(), whole.outline().unwrap());
+    for (there, here) in places(turned, corners).into_iter().zip(places(&light, &outline)) {
         assert!(there.distance(here) < 1e-12, "{there} {here}");
     }
-    assert_eq!(problem(&corners, turned.half_extents()), None);
+    assert_eq!(problem(corners, turned.half_extents()), None);
+}
+
+/// A light carries its outline, and is refused where that is none.
+#[test]
+fn a_light_with_an_outline_that_is_none_is_refused() {
+    use crate::Light;
+    use crate::scene::generate::{line_light, square_light};
+    let corners = [[-0.25, -0.25], [0.25, -0.25], [0.0, 0.25]];
+    let square = square_light(0.5).unwrap();
+    let refuse = |rectangle, corners: &[[f64; 2]]| {
+        Light::with_outline(rectangle, corners).unwrap_err().to_string()
+    };
+    let light = Light::with_outline(square, &corners).unwrap();
+    assert_eq!(light.outline(), Some(&corners[..]));
+    assert_eq!(light.quarter_turned().outline().unwrap()[0], [-0.25, 0.25]);
+    assert_eq!(Light::from(square).outline(), None);
+    let reversed: Vec<_> = corners.iter().rev().copied().collect();
+    assert!(refuse(square, &reversed).contains("its corners must run counter-clockwise"));
+    assert!(refuse(square, &corners[..2]).contains("3 to 16 corners, and has 2"));
+    assert!(refuse(square, &[[0.0, 0.0], [0.1, 0.0], [0.1, f64::NAN]]).contains("finite"));
+    assert!(refuse(square_light(0.4).unwrap(), &corners).contains("lies outside"));
+    assert!(refuse(line_light(1.0, 0.0).unwrap(), &corners).contains("has no outline"));
+    let triangle = [[0.0, 3.0, 0.0], [0.0, 3.0, 1.0], [1.0, 3.0, 0.0]];
+    let polygon = Light::polygon(&triangle).unwrap();
+    assert!(polygon.emission().y.abs() > 0.999 && polygon.outline().unwrap().len() == 3);
 }

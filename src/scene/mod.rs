@@ -8,7 +8,7 @@ pub use crate::lent::Role;
 
 use crate::error::quoted;
 use crate::lent::MeshBounds;
-use crate::{Error, RectangleLight};
+use crate::{Error, Light, RectangleLight};
 use glam::{DMat3, DMat4, DVec3};
 
 mod framing;
@@ -86,7 +86,8 @@ pub struct AreaLight {
     pub name: String,
     /// Centre and half-axes.
     pub light: RectangleLight,
-    /// The corners of its polygon, as [`crate::Frame::outline`] has them; none: the whole rectangle.
+    /// The corners of its polygon, as [`Light::with_outline`](crate::Light::with_outline) has them; none: the whole
+    /// rectangle.
     pub outline: Vec<[f64; 2]>,
     /// Linear RGB, 1 each by default.
     pub color: [f32; 3],
@@ -95,9 +96,20 @@ pub struct AreaLight {
 }
 
 impl AreaLight {
-    /// Its polygon for [`crate::Frame::outline`], where it has one.
+    /// The corners of its polygon, where it has one.
     pub fn outline(&self) -> Option<&[[f64; 2]]> {
         (!self.outline.is_empty()).then_some(self.outline.as_slice())
+    }
+
+    /// The light as a node takes it.
+    ///
+    /// # Errors
+    /// [`Error::Light`] for an outline that [`Light::with_outline`](crate::Light::with_outline) refuses.
+    pub fn shape(&self) -> Result<Light, Error> {
+        match self.outline() {
+            Some(corners) => Light::with_outline(self.light, corners),
+            None => Ok(self.light.into()),
+        }
     }
 }
 

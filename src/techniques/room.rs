@@ -6,13 +6,12 @@
 use crate::graph::{Graph, Need, ResourceId};
 use crate::knob::Tune;
 use crate::lent::MeshBounds;
-use crate::light::RectangleLight;
+use crate::light::{Light, RectangleLight};
 use crate::stages::depth_layers::{self, DepthLayers, LightLayers, MapView, Projection, Wanted};
 use crate::stages::views::Views;
 use crate::stages::visibility::GBuffer;
 use crate::{Error, graph};
 use glam::DMat4;
-use std::borrow::Cow;
 
 /// What a host may give a light of these settings, beyond a rectangle and meshes in buffers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -189,9 +188,6 @@ impl PassInputs<'_> {
     }
 }
 
-/// A light as a technique takes it, and its outline.
-pub type Turned<'a> = (RectangleLight, Option<Cow<'a, [[f64; 2]]>>);
-
 /// A technique by its settings.
 pub trait Room: Tune + std::fmt::Debug {
     /// What a host may give a light.
@@ -221,8 +217,8 @@ pub trait Room: Tune + std::fmt::Debug {
     }
 
     /// The light with its axes as the technique wants them.
-    fn turned<'a>(&self, light: &RectangleLight, outline: Option<&'a [[f64; 2]]>) -> Turned<'a> {
-        (*light, outline.map(Cow::Borrowed))
+    fn turned(&self, light: &Light) -> Light {
+        *light
     }
 
     /// Checks the knobs that must agree with each other.

@@ -64,13 +64,12 @@ impl Shadows {
     pub fn plan(&self, shot: &Shot) -> Outcome<FramePlan> {
         let meshes: Vec<_> = shot.models.iter().map(mesh).collect();
         let frame = Frame {
-            outline: shot.light.outline(),
             mask: Some(lend(&shot.targets.mask)?),
             visibility: Visibility::Lent(lend(&shot.targets.visibility)?),
             border_barriers: BorderBarriers::Host,
             ..Frame::new(
                 Slot(shot.slot),
-                shot.light.light,
+                shot.light.shape()?,
                 shot.world_from_ndc,
                 &meshes,
                 lend(&shot.targets.depth)?,

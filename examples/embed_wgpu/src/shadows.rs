@@ -63,7 +63,6 @@ impl Shadows {
         let Targets { gbuffer, visibility, .. } = seen.targets;
         let depth = lend(&gbuffer.depth, DEPTH_SAMPLED);
         self.node.plan(&Frame {
-            outline: seen.world.light.outline(),
             mask: Some(lend(&gbuffer.mask, Scope::COMPUTE_SAMPLED)),
             visibility: Visibility::Lent(lend(visibility, Scope::COMPUTE_WRITTEN)),
             occluder_maps: seen.maps.map(|maps| OccluderMaps {
@@ -74,7 +73,7 @@ impl Shadows {
             border_barriers: BorderBarriers::Host,
             ..Frame::new(
                 Slot(seen.slot as u32),
-                *seen.world.rectangle(),
+                seen.world.light.shape()?,
                 seen.view.world_from_ndc(),
                 meshes,
                 depth,

@@ -36,7 +36,7 @@ fn frames_have_the_kinds_that_the_node_was_made_for() {
             let light = generate::square_light(side).unwrap();
             for max_error in [None, Some(0.0), Some(1.0)] {
                 let description = Description { max_error, ..description.clone() };
-                let frame = Frame { light, ..frame(meshes) };
+                let frame = Frame { light: light.into(), ..frame(meshes) };
                 let plan = make(&description, &frame);
                 assert_eq!(names(&plan.plan.graph), names(&full), "{words}");
                 assert!(plan.plan.graph.passes().len() <= full.passes().len(), "{words}");

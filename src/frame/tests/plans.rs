@@ -2,17 +2,18 @@
 
 use super::kinds::WAYS;
 use super::*;
+use crate::RectangleLight;
 
 /// A frame of each of three lights: one over the scene, one aside, one that shines away from it.
 fn lights<'a>(meshes: &'a [MeshInstance], change: impl Fn(&mut Frame<'a>)) -> [Frame<'a>; 3] {
     [0, 1, 2].map(|light_index| {
         let mut frame = Frame { light_index: LightIndex(light_index), ..frame(meshes) };
-        let light = frame.light;
+        let light = *frame.light.rectangle();
         let [u, v] = light.half_extents();
         let at = light.center() + DVec3::X * f64::from(light_index);
         frame.light = match light_index {
-            2 => RectangleLight::new(at, DVec3::X * u, DVec3::Z * v).unwrap(),
-            _ => RectangleLight::new(at, DVec3::X * u, DVec3::NEG_Z * v).unwrap(),
+            2 => RectangleLight::new(at, DVec3::X * u, DVec3::Z * v).unwrap().into(),
+            _ => RectangleLight::new(at, DVec3::X * u, DVec3::NEG_Z * v).unwrap().into(),
         };
         change(&mut frame);
         frame

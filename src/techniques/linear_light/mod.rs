@@ -68,16 +68,17 @@ pub use passes::Visibility;
 pub use samples::{CopyDepth, Mask, Place, Sample, Spread};
 pub use segments::{Edges, Keep, Skins, Start};
 pub use settings::{Across, Settings, Transition};
-pub use view::{lines, turned};
+pub use view::lines;
+
+use self::view::is_taller;
 
 use self::passes::declare;
-use super::room::{HostDraws, Maps, PassInputs, Room, Seen, Shows, Takes, Turned};
+use super::room::{HostDraws, Maps, PassInputs, Room, Seen, Shows, Takes};
+use crate::Error;
 use crate::graph::{Graph, ResourceId};
-use crate::light::outline::quarter_turned;
+use crate::light::Light;
 use crate::stages::depth_layers::MapView;
 use crate::stages::views::{Line, Views};
-use crate::{Error, RectangleLight};
-use std::borrow::Cow;
 
 impl Room for Settings {
     fn takes(&self) -> Takes {
@@ -101,13 +102,8 @@ impl Room for Settings {
         Maps { receivers_in_views: true, ..Maps::own_views(self.map) }
     }
 
-    fn turned<'a>(&self, light: &RectangleLight, outline: Option<&'a [[f64; 2]]>) -> Turned<'a> {
-        let along = turned(light);
-        let outline = match along == *light {
-            true => outline.map(Cow::Borrowed),
-            false => outline.map(|corners| Cow::Owned(quarter_turned(corners))),
-        };
-        (along, outline)
+    fn turned(&self, light: &Light) -> Light {
+        if is_taller(light.rectangle()) { light.quarter_turned() } else { *light }
     }
 
     fn views(&self, seen: &Seen) -> Result<Views, Error> {

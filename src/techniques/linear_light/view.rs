@@ -12,10 +12,10 @@ use glam::DVec2;
 /// lines of a square would jump from one direction to the other as it turns.
 const LONGER: f64 = 1e-6;
 
-/// A light that is as long along x as its longer side: lines run along x.
-pub fn turned(light: &RectangleLight) -> RectangleLight {
+/// Whether a light is longer along y than along x: lines run along x.
+pub(super) fn is_taller(light: &RectangleLight) -> bool {
     let [a, b] = light.half_extents();
-    if b > a * (1.0 + LONGER) { light.quarter_turned() } else { *light }
+    b > a * (1.0 + LONGER)
 }
 
 /// A segment of the light's plane.

@@ -1,6 +1,7 @@
 //! What of a frame and its meshes is refused.
 
 use super::*;
+use antumbra::Light;
 use antumbra::{LightIndex, Slot, TechniqueIndex};
 
 #[test]
@@ -67,7 +68,7 @@ fn frames() {
         ),
         f(
             "maps that were not described",
-            |f| f.occluder_maps = Some(maps(&f.light)),
+            |f| f.occluder_maps = Some(maps(f.light.rectangle())),
             &["occluder maps"],
         ),
         f(
@@ -79,42 +80,14 @@ fn frames() {
             "an outline for rectangles",
             GBuffer,
             "",
-            Framed(|f| f.outline = Some(&TRIANGLE)),
+            Framed(|f| f.light = Light::with_outline(*f.light.rectangle(), &TRIANGLE).unwrap()),
             &["polygon", "rectangles"],
-        ),
-        (
-            "two corners",
-            GBuffer,
-            "technique=many-lights",
-            Framed(|f| f.outline = Some(&TRIANGLE[..2])),
-            &["outline", "3 to 16 corners", "has 2"],
-        ),
-        (
-            "an outline that is turned round",
-            GBuffer,
-            "technique=many-lights",
-            Framed(|f| f.outline = Some(&[[0.1, 0.0], [0.0, 0.2], [0.2, 0.2]])),
-            &["outline", "counter-clockwise"],
-        ),
-        (
-            "an outline outside of its light",
-            GBuffer,
-            "technique=many-lights",
-            Framed(|f| f.outline = Some(&[[0.0, 0.0], [9.0, 0.0], [0.0, 9.0]])),
-            &["outline", "outside"],
-        ),
-        (
-            "an outline of NaN",
-            GBuffer,
-            "technique=many-lights",
-            Framed(|f| f.outline = Some(&[[0.0, 0.0], [0.1, 0.0], [0.1, f64::NAN]])),
-            &["outline", "finite"],
         ),
         (
             "a line for an area",
             GBuffer,
             "technique=pcss",
-            Framed(|f| f.light = line()),
+            Framed(|f| f.light = line().into()),
             &["line", "linear-light"],
         ),
         (
