@@ -86,6 +86,7 @@ pub mod techniques;
 pub mod truth;
 
 pub use ash;
+pub use effects::Omit;
 pub use error::Error;
 pub use frame::{Description, Doubt, Frame, FramePlan, FramePlans, LightTexture};
 pub use glam;

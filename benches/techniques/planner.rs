@@ -4,6 +4,7 @@ use crate::ready::{frame_ms, median_of, settings};
 use crate::table::Table;
 use crate::{Bench, Scale};
 use antumbra::LightIndex;
+use antumbra::Omit;
 use antumbra::RectangleLight;
 use antumbra::frame::{Limits, plan_all};
 use antumbra::graph::{MeshList, Scope};
@@ -40,11 +41,11 @@ fn pruned(_: &HeadlessDevice, scale: &Scale) -> Table {
         let scene = &case.scene;
         let light = scene.light(None).unwrap().light;
         let view = View::map_of_ground(case.half, 8.0);
-        let mut stages = [Some(1.0 / 256.0), None].map(|max_error| {
+        let mut stages = [Omit::default(), Omit::Nothing].map(|omit| {
             let keep = |i: &Instance| i.role != Role::Occluder;
             let hard = settings("hard map=16");
             let mut stage = Stage::new(&device, scene, &view, [SIDE; 2], hard, keep).unwrap();
-            stage.configure_with(settings(case.words), |d| d.max_error = max_error).unwrap();
+            stage.configure_with(settings(case.words), |d| d.omit = omit).unwrap();
             stage
         });
         let plans = stages.each_mut().map(|stage| stage.plan(&light, None).unwrap());

@@ -9,6 +9,7 @@ mod output;
 mod report;
 
 use antumbra::Error;
+use antumbra::Omit;
 use antumbra::auto::Auto;
 use antumbra::scene::{Camera, Scene, from_gltf};
 use antumbra_harness::shade;
@@ -93,7 +94,7 @@ fn render(options: &Options) -> Result<String, Stop> {
         }
     };
     stage.configure_with(settings, |description| {
-        description.max_error = options.max_error.or(description.max_error);
+        description.omit = options.max_error.map_or(description.omit, Omit::Below);
     })?;
     let plan = stage.plan_under(light, None)?;
     for note in notes::of(options, &scene, light, &plan, choice.as_ref()) {

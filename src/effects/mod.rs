@@ -6,10 +6,12 @@
 //! ```
 //! Everything here is pure: no Vulkan calls, microseconds. `docs/planner.md` derives the bounds.
 
+mod omit;
 mod rules;
 mod situation;
 mod verdicts;
 
+pub use omit::Omit;
 pub use rules::{COUNT, Effect, RULES, Rule};
 pub use situation::Situation;
 pub(crate) use situation::{Camera, Seen};

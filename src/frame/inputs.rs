@@ -19,7 +19,7 @@ pub(super) fn frame_inputs<'a>(
     let room = description.technique.room();
     let texture = description.light_texture.is_some();
     let situation = situation_seen(fit, frame, description.extent);
-    let verdicts = Verdicts::judge(situation, room, description.max_error, texture);
+    let verdicts = Verdicts::judge(situation, room, description.omit.most(), texture);
     let needs = Needs::of(description, fit.need, &verdicts);
     let is_soft = needs.technique.is_yes();
     let light_from_ndc = fit.light_from_world * frame.world_from_ndc;

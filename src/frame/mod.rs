@@ -37,6 +37,7 @@ pub(crate) use plan::Stamp;
 pub use plans::FramePlans;
 
 use crate::Error;
+use crate::effects::Omit;
 use crate::graph::{self, Scope};
 use crate::lent::{
     BorderBarriers, HostImage, LightIndex, MeshInstance, OccluderMaps, Slot, TechniqueIndex,
@@ -60,10 +61,8 @@ pub struct Description {
     pub extent: [u32; 2],
     /// The technique and its settings.
     pub technique: Technique,
-    /// What leaving an effect out may add to the mean error at most, 0 to 1, as a mean of visible fractions over the
-    /// pixels that shadow touches: see [`crate::effects::RULES`]. 1/256 by default, a step of an 8-bit image; 0 leaves
-    /// out what cannot matter and nothing else; none leaves out nothing, for studying what it costs.
-    pub max_error: Option<f64>,
+    /// Which effects may be left out where they hardly matter; those that add less than 1/256 by default.
+    pub omit: Omit,
     /// Further techniques that a frame may choose ([`Frame::technique_index`]), up to 7: for some of the lights another
     /// one, or the same with other settings. Each has pipelines, maps and buffers of its own, which its lights share.
     pub other_techniques: Vec<Technique>,
@@ -136,7 +135,7 @@ impl Description {
         Self {
             extent,
             technique: Technique::default(),
-            max_error: Some(1.0 / 256.0),
+            omit: Omit::default(),
             other_techniques: Vec::new(),
             lights: 1,
             frames_in_flight: 2,
@@ -172,9 +171,9 @@ impl Description {
                 "a G-buffer of {w}×{h} pixels is outside 1×1 to 16384×16384"
             )));
         }
-        if let Some(most) = self.max_error.filter(|most| !(0.0..=1.0).contains(most)) {
+        if let Some(most) = self.omit.most().filter(|most| !(0.0..=1.0).contains(most)) {
             return Err(Error::Frame(format!(
-                "max_error is {most}, and must be 0 to 1: a mean of visible fractions"
+                "omit is Below({most}), and must be below 0 to 1: a mean of visible fractions"
             )));
         }
         if !(1..=8).contains(&self.frames_in_flight) {

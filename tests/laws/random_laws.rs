@@ -11,6 +11,7 @@ mod occluders;
 mod promises;
 mod tally;
 
+use antumbra::Omit;
 use antumbra::Technique;
 use antumbra::scene::Role;
 use antumbra_tests::device::unwatched;
@@ -33,7 +34,7 @@ type Verdict = Result<(), TestCaseError>;
 /// judge them; what it measured.
 fn judge<S: Strategy>(
     (law, seed, cases): (&'static str, u8, u32),
-    max_error: Option<f64>,
+    omit: Omit,
     strategy: &S,
     pixels: impl Fn(&S::Value) -> &Case,
     shots: impl Fn(&Rig, usize, &S::Value) -> Vec<Shot>,
@@ -48,7 +49,7 @@ fn judge<S: Strategy>(
     for set in 0..SETS {
         let all = Technique::all().into_iter().map(|t| random_settings(t, &mut random));
         let settings: Vec<_> = all.collect();
-        let rig = RefCell::new(Rig::new(&device, &settings, max_error));
+        let rig = RefCell::new(Rig::new(&device, &settings, omit));
         hold(cases, seed.wrapping_mul(SETS).wrapping_add(set), strategy, |value| {
             let (mut rig, mut tally) = (rig.borrow_mut(), tally.borrow_mut());
             let case = pixels(&value);

@@ -6,6 +6,7 @@
 mod frames;
 mod images;
 
+use antumbra::Omit;
 use antumbra::frame::{self, Limits};
 use antumbra::graph::Scope;
 use antumbra::scene::{Role, generate};
@@ -209,10 +210,10 @@ fn descriptions() {
         d("an absurd stride", |d| d.position_strides = vec![4096], &["4096", "2048"]),
         d(
             "an error of more than all",
-            |d| d.max_error = Some(1.5),
-            &["max_error is 1.5", "0 to 1"],
+            |d| d.omit = Omit::Below(1.5),
+            &["omit is Below(1.5)", "0 to 1"],
         ),
-        d("an error that is no number", |d| d.max_error = Some(f64::NAN), &["max_error", "NaN"]),
+        d("an error that is no number", |d| d.omit = Omit::Below(f64::NAN), &["omit", "NaN"]),
         d(
             "too many techniques",
             |d| d.other_techniques = vec![d.technique; 8],

@@ -1,6 +1,7 @@
 //! One stage that evaluates random scenes: a node of several settings, its lights a batch of images in one submit.
 
 use crate::random::{Case, Lamp, Object, SIDE, Shape, meshes};
+use antumbra::Omit;
 use antumbra::knob::{Knob, Values};
 use antumbra::scene::{Role, Scene};
 use antumbra::techniques::linear_light::Across;
@@ -73,11 +74,11 @@ pub struct Rig {
 }
 
 impl Rig {
-    /// A node of up to eight settings, that leaves out what `max_error` lets it.
+    /// A node of up to eight settings, that leaves out what `omit` lets it.
     ///
     /// # Panics
     /// If the device refuses.
-    pub fn new(device: &HeadlessDevice, settings: &[Technique], max_error: Option<f64>) -> Self {
+    pub fn new(device: &HeadlessDevice, settings: &[Technique], omit: Omit) -> Self {
         let mut scene = Scene { meshes: meshes(), ..Scene::default() };
         let buffers = SceneBuffers::new(device, &scene).unwrap();
         let identity = DMat4::IDENTITY;
@@ -91,7 +92,7 @@ impl Rig {
         let made = stage.configure_with(settings[0], |description| {
             description.other_techniques = settings[1..].to_vec();
             description.lights = BATCH;
-            description.max_error = max_error;
+            description.omit = omit;
         });
         made.unwrap_or_else(|e| panic!("{e}: {settings:?}"));
         let painter = GBufferPainter::new(device).unwrap();

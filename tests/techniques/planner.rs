@@ -1,5 +1,6 @@
 //! Only what the scene calls for: the passes of scenes made for it, and what leaving the rest out costs.
 
+use antumbra::Omit;
 use antumbra::RectangleLight;
 use antumbra::effects::Outcome;
 use antumbra_harness::Stage;
@@ -21,20 +22,20 @@ fn every_scene_runs_what_it_calls_for_and_what_is_left_out_costs_no_more_than_wa
         let setup = Setup::ground(&case.scene, case.half, SIDE);
         let mut stage = setup.stage(&device, "technique=hard map=16");
         let light = setup.light();
-        let image = |stage: &mut Stage, max_error| {
-            stage.configure_with(settings(case.words), |d| d.max_error = max_error).unwrap();
+        let image = |stage: &mut Stage, omit| {
+            stage.configure_with(settings(case.words), |d| d.omit = omit).unwrap();
             let plan = stage.plan(&light, None).unwrap();
             stage.run(&plan).unwrap();
             (plan, stage.visibility().unwrap())
         };
-        let (_, full) = image(&mut stage, None);
+        let (_, full) = image(&mut stage, Omit::Nothing);
         // What a pixel would show that nobody writes must be another image.
         stage.configure(settings("technique=hard map=16")).unwrap();
         let other =
             RectangleLight::sun(DVec3::new(1.0, -0.7, 0.3), 0.01, DVec3::ZERO, 4.0).unwrap();
         let plan = stage.plan(&other, None).unwrap();
         stage.run(&plan).unwrap();
-        let (plan, pruned) = image(&mut stage, Some(1.0 / 256.0));
+        let (plan, pruned) = image(&mut stage, Omit::default());
         let runs: Vec<_> = plan.plan().runs().iter().map(|r| r.pass.name).collect();
         assert_eq!(runs, case.runs, "{}\n{}", case.name, plan.explain());
         let mut bound = 0.0;

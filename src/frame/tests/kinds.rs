@@ -34,8 +34,8 @@ fn frames_have_the_kinds_that_the_node_was_made_for() {
             [(&cube, 0.5), (&sheet, 0.5), (&low, 1e-6), (&sheet, 1e-6), (&Vec::new(), 0.5)]
         {
             let light = generate::square_light(side).unwrap();
-            for max_error in [None, Some(0.0), Some(1.0)] {
-                let description = Description { max_error, ..description.clone() };
+            for omit in [Omit::Nothing, Omit::Invisible, Omit::Below(1.0)] {
+                let description = Description { omit, ..description.clone() };
                 let frame = Frame { light: light.into(), ..frame(meshes) };
                 let plan = make(&description, &frame);
                 assert_eq!(names(&plan.plan.graph), names(&full), "{words}");

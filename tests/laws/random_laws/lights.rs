@@ -2,6 +2,7 @@
 
 use super::compare::{beyond_edges, difference, differences, mean_of};
 use super::{Case, OBJECTS, judge, promises};
+use antumbra::Omit;
 use antumbra_tests::random::{case, case_under, lamp_of};
 use antumbra_tests::rig::Rig;
 
@@ -17,7 +18,7 @@ fn the_halves_of_a_light_average_to_the_whole() {
     let law = ("halves of a light", 7, 80);
     let tally = judge(
         law,
-        None,
+        Omit::Nothing,
         &strategy,
         |c| c,
         shots,
@@ -58,7 +59,7 @@ fn a_light_that_shrinks_casts_a_hard_shadow() {
     let law = ("a light of 0.1 mm", 8, 70);
     let tally = judge(
         law,
-        None,
+        Omit::Nothing,
         &strategy,
         |c| c,
         shots,

@@ -3,6 +3,7 @@
 use super::compare::{alike, changed, difference, differences, rounding};
 use super::promises::{self, FEW_TEXELS, FEW_TEXELS_MIRRORED, Likeness};
 use super::{Case, OBJECTS, Object, judge, shadows, well_conditioned};
+use antumbra::Omit;
 use antumbra_harness::View;
 use antumbra_tests::random::{Lamp, case, magnitude, turn, vector};
 use antumbra_tests::rig::Rig;
@@ -40,7 +41,7 @@ fn a_world_scaled_and_moved_looks_the_same() {
     let law = ("scaled and moved", 4, 60);
     let tally = judge(
         law,
-        Some(1.0 / 256.0),
+        Omit::default(),
         &strategy,
         |e| &e.case,
         shots,
@@ -108,7 +109,7 @@ fn a_world_moved_exactly_looks_the_same_to_the_bit() {
     let law = ("moved exactly", 5, 40);
     let tally = judge(
         law,
-        Some(0.0),
+        Omit::Invisible,
         &strategy,
         |(c, _)| c,
         shots,
@@ -146,7 +147,7 @@ fn a_mirrored_world_looks_the_same_and_so_does_a_light_told_of_otherwise() {
     let law = ("mirrored and turned", 6, 70);
     let tally = judge(
         law,
-        Some(0.0),
+        Omit::Invisible,
         &strategy,
         |c| c,
         shots,

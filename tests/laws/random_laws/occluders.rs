@@ -4,6 +4,7 @@ use super::compare::{changed, not_lit, rise};
 use super::promises::{self, HIDES, Rise};
 use super::{Case, OBJECTS, Object, blocking_only, judge};
 use antumbra::MeshInstance;
+use antumbra::Omit;
 use antumbra::scene::Role;
 use antumbra_tests::random::{case, object};
 use antumbra_tests::rig::Rig;
@@ -33,7 +34,7 @@ fn where_nothing_blocks_all_is_lit_to_the_last_bit() {
     let law = ("nothing blocks", 1, 60);
     let tally = judge(
         law,
-        Some(1.0 / 256.0),
+        Omit::default(),
         &strategy,
         |c| c,
         shots,
@@ -62,7 +63,7 @@ fn another_occluder_never_shows_more() {
     let law = ("another occluder", 2, 120);
     let tally = judge(
         law,
-        None,
+        Omit::Nothing,
         &strategy,
         |(c, _)| c,
         shots,
@@ -109,7 +110,7 @@ fn another_occluder_elsewhere_never_shows_more() {
     let law = ("another occluder elsewhere", 3, 80);
     let tally = judge(
         law,
-        None,
+        Omit::Nothing,
         &strategy,
         |(c, _)| c,
         shots,

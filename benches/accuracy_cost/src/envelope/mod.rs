@@ -9,7 +9,7 @@
 //! ```
 //! One variable at a time leaves the centre, [`CENTRE`]; the truth is exact, so that there is no noise but
 //! that of where pixels are. The techniques compute what they can compute: what a node's planner would
-//! leave out for costing next to nothing ([`antumbra::Description::max_error`]) is not left out.
+//! leave out for costing next to nothing ([`antumbra::Description::omit`]) is not left out.
 
 mod page;
 mod place;
@@ -21,6 +21,7 @@ use crate::progress::duration;
 use crate::techniques::{Method, method};
 use crate::truth::{mask, receivers};
 use crate::{Problem, report};
+use antumbra::Omit;
 use antumbra::scene::{Instance, Role};
 use antumbra::truth::ErrorSummary;
 use antumbra_harness::{HeadlessDevice, HeadlessOptions, Stage};
@@ -271,7 +272,7 @@ impl Bench<'_> {
         let Ready { scene, view, .. } = ready;
         let mut stage =
             Stage::new(self.device, scene, view, extent, *settings.clone(), seen).map_err(told)?;
-        stage.configure_with(*settings, |d| d.max_error = None).map_err(told)?;
+        stage.configure_with(*settings, |d| d.omit = Omit::Nothing).map_err(told)?;
         Ok(stage)
     }
 }
