@@ -1,4 +1,4 @@
-//! What one frame records.
+//! The plan of one frame.
 
 use super::accesses::{self, BufferAccess, HostAccess, ImageBarrier, NodeUse};
 use super::cache::CacheKey;
@@ -10,26 +10,26 @@ use crate::lent::{Geometry, HostImage};
 use crate::technique::Technique;
 use ash::vk;
 
-/// Which node a plan was made by, and since which resize; none for a plan made without a node.
+/// Identifies the node, and its size, that a plan was made for; 0 for a plan that no node made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Stamp(pub u64);
 
-/// What one frame records.
+/// The plan of one frame of one light: which passes run behind which barriers, and why; with which images and meshes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FramePlan {
-    /// Rows, barriers, and what was skipped.
+    /// The passes that run, their barriers, and the passes that are skipped.
     pub plan: graph::Plan,
-    /// The host's images by resource.
+    /// The host's images, each with the resource that stands for it in the graph.
     pub imports: Vec<(ResourceId, HostImage)>,
-    /// Where the result goes.
+    /// The resource that stands for the visibility image.
     pub visibility: ResourceId,
-    /// The frame in flight.
+    /// Which of the frames in flight the plan is for, counted from 0.
     pub slot: u32,
-    /// What the frame needs and does without, and why.
+    /// Which effects the frame needs and which it leaves out, and why.
     pub verdicts: Verdicts,
-    /// Which of the description's lights it is for.
+    /// Which of the description's lights the plan is for, counted from 0.
     pub light_index: u32,
-    /// Which of the description's settings it uses.
+    /// Which of the description's techniques it uses, counted from 0.
     pub technique_index: u32,
     pub(crate) stamp: Stamp,
     pub(crate) reuse: Reuse,
@@ -39,7 +39,7 @@ pub struct FramePlan {
 }
 
 impl Default for FramePlan {
-    /// Of no frame: no node records it.
+    /// A plan of no frame, which no node records.
     fn default() -> Self {
         Self {
             plan: graph::Plan::default(),
@@ -59,35 +59,35 @@ impl Default for FramePlan {
 }
 
 impl FramePlan {
-    /// Every image that crosses the node's border: how the host leaves it, how the node uses it, if
-    /// this frame does, and how the host takes it back.
+    /// The accesses to every image that node and host share: the host's last use before the node, the node's uses, if
+    /// this frame has any, and the host's first use after it.
     pub fn accesses(&self) -> &[HostAccess] {
         &self.accesses
     }
 
-    /// How the node uses one of the images of the border; none where this frame leaves it alone.
+    /// How the node uses an image that it shares with the host; `None` where this frame does not use it.
     pub fn use_of(&self, image: vk::Image) -> Option<NodeUse> {
         self.accesses.iter().find(|a| a.image == image)?.node
     }
 
-    /// For people: what runs and why, what does not and why not, and what of the effects that the node can simulate
-    /// is simulated or left out, with the bound on the error of that.
+    /// A report for people: which passes run and why, which do not and why not, and which effects are simulated or left
+    /// out, with a bound on the error of each that is left out.
     pub fn explain(&self) -> String {
         format!("{}\n{}", self.plan.table(), self.verdicts)
     }
 
-    /// The barriers to place before the node, for a host that asked for [`BorderBarriers::Host`](super::BorderBarriers::Host).
+    /// The barriers to record before the node, for a host that chose [`BorderBarriers::Host`](super::BorderBarriers::Host).
     pub fn entry_barriers(&self) -> impl Iterator<Item = ImageBarrier> + '_ {
         self.accesses.iter().filter_map(HostAccess::entry_barrier)
     }
 
-    /// The barriers to place behind the node, for a host that asked for [`BorderBarriers::Host`](super::BorderBarriers::Host).
+    /// The barriers to record after the node, for a host that chose [`BorderBarriers::Host`](super::BorderBarriers::Host).
     pub fn exit_barriers(&self) -> impl Iterator<Item = ImageBarrier> + '_ {
         self.accesses.iter().filter_map(HostAccess::exit_barrier)
     }
 
-    /// The vertex and index buffers that this frame reads, each once. The node places no barrier for
-    /// them: what was written to them must be visible to these scopes.
+    /// The vertex and index buffers that this frame reads, each once. The node records no barrier for them: the host must
+    /// make what it wrote to them visible to these scopes.
     pub fn buffer_accesses(&self) -> Vec<BufferAccess> {
         accesses::of_buffers(self.occluders.meshes.iter().chain(&self.receivers.meshes))
     }
@@ -97,8 +97,8 @@ impl FramePlan {
         &self.list(list).meshes
     }
 
-    /// The meshes of a list with their matrices in one of its views: mesh space to clip space, by
-    /// column.
+    /// The meshes of a list with their matrices from mesh space to the clip space of one of the list's views,
+    /// column-major. Empty for a view that does not exist.
     pub fn draws(
         &self,
         list: MeshList,
@@ -115,7 +115,7 @@ impl FramePlan {
         }
     }
 
-    /// Whether some of its meshes are the host's to draw.
+    /// Whether the host has to draw some of the plan's meshes.
     pub fn has_host_draws(&self) -> bool {
         let mut all = self.occluders.meshes.iter().chain(&self.receivers.meshes);
         all.any(|d| matches!(d.mesh.geometry, Geometry::HostDrawn(_)))
@@ -126,10 +126,10 @@ impl FramePlan {
         CacheKey { light: self.light_index, technique: self.technique_index }
     }
 
-    /// Puts the node's mark on it, and the image that the node owns.
+    /// Marks the plan as made for a node, and fills in the node's own visibility image.
     pub(crate) fn stamp(&mut self, stamp: Stamp, own_visibility: vk::Image) {
         self.stamp = stamp;
-        // Every image of the host's was checked to be none of these.
+        // Null handles stand for the node's own image: those of lent images were refused.
         for access in self.accesses.iter_mut().filter(|a| a.image == vk::Image::null()) {
             access.image = own_visibility;
         }
