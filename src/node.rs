@@ -22,26 +22,26 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Soft shadows as one node of the host's render graph.
 ///
-/// Borrows the host's device and memory; records into the host's command buffers; never submits,
-/// waits, allocates or panics while recording. Give it back with [`ShadowNode::destroy`] once the
-/// device is done with its last frame: dropping it alone leaks its Vulkan objects, because only the
-/// host knows when they are idle and whose allocator they came from.
+/// The node borrows the host's device and memory and records into the host's command buffers; while recording it never
+/// submits, waits, allocates or panics. Call [`ShadowNode::destroy`] once the device has completed the node's last frame.
+/// Dropping the node leaks its Vulkan objects, because only the host knows when they are idle and which allocator they
+/// came from.
 pub struct ShadowNode {
     host: Host,
     description: Description,
-    /// The description with each of its techniques alone.
+    /// The description once for each of its techniques, with that technique alone.
     chosen: Vec<Description>,
     limits: Limits,
     objects: NodeObjects,
-    /// The names of the kinds of row that the objects were made for, settings by settings.
+    /// The names of the kinds of pass that the objects were made for, technique by technique.
     kinds: Vec<&'static str>,
-    /// What plans for these objects carry.
+    /// The mark of plans that were made for these objects.
     stamp: Stamp,
     /// What the node still holds from recorded frames.
     cache: Mutex<Cache>,
 }
 
-/// The next [`Stamp`]: no two nodes or sizes share one.
+/// The next [`Stamp`]: no two nodes share one, and no two sizes of a node.
 static STAMPS: AtomicU64 = AtomicU64::new(1);
 
 fn next_stamp() -> Stamp {
@@ -49,13 +49,12 @@ fn next_stamp() -> Stamp {
 }
 
 impl ShadowNode {
-    /// Makes every pipeline, image and buffer that frames of this description need.
+    /// Creates every pipeline, image and buffer that frames of this description need.
     ///
     /// # Errors
-    /// [`Error::Device`] with every gap of the device; [`Error::Setting`] or [`Error::Frame`] for a
-    /// description that cannot work, or not on this device; [`Error::DeviceLost`], [`Error::Vulkan`] or
-    /// [`Error::Memory`] where the driver or the allocator refuses. Nothing is left behind: every object is
-    /// destroyed and every piece of memory given back.
+    /// [`Error::Device`] with everything that the device lacks; [`Error::Setting`] or [`Error::Frame`] for a description
+    /// that cannot work, or not on this device; [`Error::DeviceLost`], [`Error::Vulkan`] or [`Error::Memory`] where driver
+    /// or allocator fail. After an error every object is destroyed and all memory is freed.
     pub fn new(
         host: Host,
         allocator: &mut dyn Allocator,
@@ -79,13 +78,13 @@ impl ShadowNode {
         self.cache.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// What the node was made for.
+    /// The description that the node was made for.
     pub fn description(&self) -> &Description {
         &self.description
     }
 
-    /// Plans one frame of one light; microseconds, no Vulkan calls. Plans of several lights are recorded
-    /// in the order in which they were made.
+    /// Plans one frame of one light, in microseconds and without Vulkan calls. Record the plans of several lights in the
+    /// order in which they were made.
     ///
     /// # Errors
     /// See [`frame::plan`].
@@ -95,12 +94,12 @@ impl ShadowNode {
         Ok(plan)
     }
 
-    /// Plans the frames of several lights, in order, into plans that are kept from frame to frame: after the first one it
-    /// takes no new memory, places a list of meshes that frames share once, and looks at them no more while their
-    /// revision stays. Record them in that order.
+    /// Plans the frames of several lights, in order, into plans that the host keeps from frame to frame. After the first
+    /// call it allocates no memory, visits a list of meshes that frames share once, and does not visit it while the
+    /// frames' revision stays. Record the plans in that order.
     ///
     /// # Errors
-    /// See [`frame::plan`]; the plans are then those of the frames before the one that is refused.
+    /// See [`frame::plan`]; `plans` then holds those of the frames before the refused one.
     pub fn plan_all(&self, frames: &[Frame], plans: &mut FramePlans) -> Result<(), Error> {
         plans.begin();
         frames.iter().try_for_each(|frame| {
@@ -120,7 +119,7 @@ impl ShadowNode {
         let chosen;
         let description = match self.chosen.get(frame.technique_index.0 as usize) {
             Some(description) => description,
-            // Says what is wrong.
+            // Returns the error for an index beyond the last technique.
             None => {
                 chosen = self.description.choosing(frame.technique_index)?;
                 &*chosen
@@ -132,9 +131,9 @@ impl ShadowNode {
         Ok(())
     }
 
-    /// Records a plan into a command buffer of the host's: no submit, no wait, no allocation.
+    /// Records a plan into a command buffer of the host, without submitting, waiting or allocating.
     ///
-    /// What must hold of the command buffer and the plan's slot was promised at [`Host::borrow`].
+    /// The promises made at [`Host::borrow`] say what must hold for the command buffer and the plan's slot.
     ///
     /// # Errors
     /// [`Error::StalePlan`] where the plan was made by another node, before a resize, or counts on what has been
@@ -147,8 +146,8 @@ impl ShadowNode {
         self.record_with(cmd, plan, &mut |_| {})
     }
 
-    /// As [`Self::record`], with `draw` called for each mesh that the host draws, in each layer that
-    /// shows it, between the node's own draws. [`Self::layer_pass`] says what its pipelines must fit.
+    /// Records a plan with meshes that the host draws: calls `draw` for each of them in each layer that shows it, between
+    /// the node's own draws. [`Self::layer_pass`] says what the host's pipelines must be compatible with.
     ///
     /// # Errors
     /// As [`Self::record`], but for [`Error::NeedsHostDraws`].
@@ -175,7 +174,7 @@ impl ShadowNode {
         Ok(())
     }
 
-    /// What a host's own pipeline must fit to draw into a layer; none where the technique has no such layer.
+    /// The render pass and raster state that a host's own pipeline needs to draw into a layer of a technique; `None` where the technique has no such layer.
     pub fn layer_pass(&self, technique: TechniqueIndex, layer: Layer) -> Option<LayerPass> {
         let description = self.description.choosing(technique).ok()?;
         let graph = frame::all_passes(&description, self.limits);
@@ -190,7 +189,7 @@ impl ShadowNode {
         Some(LayerPass { render_pass, extent, raster: depth_layers::raster_of(layer) })
     }
 
-    /// The node's own image that holds the result, another one after each resize; none where the host lends it.
+    /// The node's own visibility image, a new one after each resize; `None` where the host lends the image.
     pub fn visibility(&self) -> Option<VisibilityImage> {
         let (image, view) = self.objects.result();
         let Description { extent, lights: layers, .. } = self.description;
@@ -198,18 +197,18 @@ impl ShadowNode {
         owned.then_some(VisibilityImage { image, view, extent, layers })
     }
 
-    /// A 2D view of a light's layer of that image; none for a light that does not exist, or where the
-    /// host lends the image.
+    /// A 2D image view of a light's layer of the node's visibility image; `None` for a light that does not exist, or where
+    /// the host lends the image.
     pub fn visibility_layer(&self, light: LightIndex) -> Option<vk::ImageView> {
         let view = self.objects.result_layer(light);
         (light.0 < self.description.lights && view != vk::ImageView::null()).then_some(view)
     }
 
-    /// Makes what depends on the G-buffer's size anew and gives back what to retire. Pipelines stay,
-    /// and so do the timings of frames in flight.
+    /// Replaces every object that depends on the G-buffer's size, and returns the old ones to retire. Pipelines stay, and
+    /// so do the timings of frames in flight.
     ///
     /// # Errors
-    /// As [`Self::new`]; the node then goes on at its old size, and plans made before still fit it.
+    /// See [`Self::new`]; the node then keeps its old size, and accepts plans made before.
     pub fn resize(
         &mut self,
         allocator: &mut dyn Allocator,
@@ -230,10 +229,10 @@ impl ShadowNode {
         Ok(Retired::new(self.host.clone(), old))
     }
 
-    /// Makes everything anew for another description and gives back what to retire.
+    /// Replaces every object for another description, and returns the old ones to retire.
     ///
     /// # Errors
-    /// As [`Self::new`]; the node then goes on as it was, and plans made before still fit it.
+    /// See [`Self::new`]; the node then stays as it was, and accepts plans made before.
     pub fn reconfigure(
         &mut self,
         allocator: &mut dyn Allocator,
@@ -244,12 +243,12 @@ impl ShadowNode {
         Ok(Retired::new(old.host, old.objects.into_owner()))
     }
 
-    /// Asks `auto` what to compute the shadows of a frame's lights with, and makes the node anew where it was not made for
-    /// that: the answers, light by light, and what to retire then. Each frame is told its settings. Call it before
-    /// [`Self::plan`], with the frames of all lights.
+    /// Lets `auto` choose a technique for each light and sets each frame's [`Frame::technique_index`]. Where the node lacks
+    /// a chosen technique, every object is replaced. Returns the choices, light by light, and the objects to retire. Call
+    /// it before [`Self::plan`], with the frames of all lights.
     ///
     /// # Errors
-    /// As [`Auto::choose_all`] and [`Self::new`]; the node then goes on as it was.
+    /// See [`Auto::choose_all`] and [`Self::new`]; the node then stays as it was.
     pub fn adapt(
         &mut self,
         allocator: &mut dyn Allocator,
@@ -268,21 +267,22 @@ impl ShadowNode {
         for (frame, choice) in frames.iter_mut().zip(&choices) {
             let mut all = self.description.all_techniques();
             let same = all.position(|t| *t == choice.technique);
-            // Beyond as many settings as a node may have, the first serve.
+            // Where more are chosen than a node may have, the rest use the first.
             frame.technique_index = TechniqueIndex(same.unwrap_or(0) as u32);
         }
         Ok((choices, retired))
     }
 
-    /// What each pass took that `slot` recorded last for a light; none until the host knows that its commands are done,
-    /// where no pass ran, where the queue family has no timestamps, or when the device is lost. Never waits.
+    /// The time of each pass in the last frame of a light that was recorded for `slot`. `None` while the device has not
+    /// completed that frame, where no pass ran, where the queue family has no timestamps, and when the device is lost.
+    /// Never waits.
     pub fn timings(&self, slot: Slot, light: LightIndex) -> Option<Vec<PassTime>> {
         let sums = self.objects.timings(&self.host, slot, light)?;
         Some(sums.into_iter().map(|(kind, ms)| PassTime { name: self.kinds[kind], ms }).collect())
     }
 
-    /// The node's own images that a plan writes, and the layout they are in behind it; they can be
-    /// copied out where the description says `inspect`.
+    /// The node's own images that a plan uses, with the layouts they are in after it. They can be copied out where
+    /// [`Description::inspect`] is set.
     pub fn inspect(&self, plan: &FramePlan) -> Vec<Inspected> {
         let graph = &plan.plan.graph;
         let last_layout = |id| {
@@ -295,7 +295,7 @@ impl ShadowNode {
             .filter(|&id| matches!(graph.resource(id).owner, Owner::Transient | Owner::Kept))
             .filter_map(|id| {
                 let resource = graph.resource(id);
-                // A read-back has room for one layer.
+                // The read-back copies one layer.
                 let Shape::Image { format, width, height, layers: None } = resource.shape else {
                     return None;
                 };
@@ -312,8 +312,8 @@ impl ShadowNode {
             .collect()
     }
 
-    /// The image or buffer behind a resource of a plan's graph, by the resource's name, for tests and
-    /// debuggers; none where no pass touches it, where the host lends it, and for the visibility image.
+    /// The image or buffer of a resource of a plan's graph, by the resource's name, for tests and debuggers; `None` where
+    /// no pass uses it, where the host lends it, and for the visibility image.
     pub fn object(&self, plan: &FramePlan, name: &str) -> Option<PlanObject> {
         let graph = &plan.plan.graph;
         let mut ids = (0..graph.resources().len()).map(|index| graph.id(index));
@@ -327,12 +327,14 @@ impl ShadowNode {
         }
     }
 
-    /// Everything that the node holds in device memory: the visibility image, then the resources of each technique.
+    /// The bytes of each image and buffer that the node holds in device memory: the visibility image, then those of each
+    /// technique in turn.
     pub fn memory(&self) -> Vec<ResourceBytes> {
         self.objects.memory()
     }
 
-    /// What one of the techniques holds for the lights that choose it; nothing for one that does not exist.
+    /// The bytes of the images and buffers of one technique, which its lights share; empty for a technique that does not
+    /// exist.
     pub fn memory_of(&self, technique: TechniqueIndex) -> Vec<ResourceBytes> {
         self.objects.memory_of(technique)
     }
@@ -342,13 +344,13 @@ impl ShadowNode {
         self.objects.count()
     }
 
-    /// Destroys everything. The device must be done with every frame that was recorded.
+    /// Destroys every object and frees all memory. The device must have completed every recorded frame.
     pub fn destroy(self, allocator: &mut dyn Allocator) {
         Retired::new(self.host, self.objects.into_owner()).destroy(allocator);
     }
 }
 
-/// Every pass that any frame may run, for each of the description's techniques.
+/// The graph of every pass that any frame may run, for each of the description's techniques.
 fn graphs(description: &Description, limits: Limits) -> Result<Vec<Graph>, Error> {
     let of = |index| {
         Ok(frame::all_passes(&*description.choosing(TechniqueIndex(index as u32))?, limits))
@@ -356,13 +358,13 @@ fn graphs(description: &Description, limits: Limits) -> Result<Vec<Graph>, Error
     (0..description.all_techniques().count()).map(of).collect()
 }
 
-/// The description with each of its techniques alone.
+/// The description once for each of its techniques, with that technique alone.
 fn chosen(description: &Description) -> Result<Vec<Description>, Error> {
     let of = |index| Ok(description.choosing(TechniqueIndex(index as u32))?.into_owned());
     (0..description.all_techniques().count()).map(of).collect()
 }
 
-/// A node may be shared by threads: each records slots of its own.
+/// Threads may share a node: each records its own slots.
 const _: () = {
     const fn shared<T: Send + Sync>() {}
     shared::<ShadowNode>();

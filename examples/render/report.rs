@@ -117,7 +117,7 @@ impl Report<'_> {
                 "error": c.error,
                 "ms": c.ms,
                 "measured_ms": self.frame_ms(),
-                "alike": c.alike,
+                "alike": c.nearest,
                 "max_error": self.options.auto.and_then(|b| b.max_error),
                 "max_ms": self.options.auto.and_then(|b| b.max_ms),
                 "met": self.met(c),

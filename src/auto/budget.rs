@@ -1,28 +1,28 @@
-//! What a host asks of `auto`.
+//! The error and time that a host allows.
 
-/// The most that a light's shadow may err and cost; with neither, [`Budget::DEFAULT_ERROR`] stands.
+/// The most error and time that shadows may have; with neither given, [`Budget::DEFAULT_ERROR`] is the most error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Budget {
-    /// The mean error over the pixels in shadow and penumbra, a visible fraction above 0.
+    /// The most mean error of the visible fraction over the pixels in shadow and penumbra, above 0.
     pub max_error: Option<f64>,
-    /// Milliseconds of the device for all lights of a frame together, above 0.
+    /// The most time on the device for all lights of a frame together, milliseconds above 0.
     pub max_ms: Option<f64>,
 }
 
-/// A budget that can be worked with, and what was wrong with the one given.
+/// A budget whose values are valid, and what was wrong with the host's.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Sound {
+pub(crate) struct ValidBudget {
     pub max_error: f64,
     pub max_ms: f64,
     pub problem: Option<String>,
 }
 
 impl Budget {
-    /// What an error of nobody's wish may be: what a careful eye finds in a still picture.
+    /// The most error where the host gives no budget: about what a careful eye finds in a still picture.
     pub const DEFAULT_ERROR: f64 = 0.02;
 
-    /// The nearest budget that makes sense, and a sentence where that is not the one given.
-    pub(crate) fn sound(&self) -> Sound {
+    /// The valid budget that is nearest to this one, with a sentence where they differ.
+    pub(crate) fn valid(&self) -> ValidBudget {
         let mut problem = None;
         let mut check = |name: &str, value: f64, instead: f64, what: &str| {
             if value > 0.0 {
@@ -34,13 +34,13 @@ impl Budget {
         };
         let default = match self.max_ms {
             None => Self::DEFAULT_ERROR,
-            // The best that the time buys.
+            // The least error that the time allows.
             Some(_) => 0.0,
         };
         let most = "the nearest to it is chosen";
         let max_error =
             self.max_error.map_or(default, |e| check("max_error", e, Self::DEFAULT_ERROR, most));
         let max_ms = self.max_ms.map_or(f64::INFINITY, |t| check("max_ms", t, f64::INFINITY, most));
-        Sound { max_error, max_ms, problem }
+        ValidBudget { max_error, max_ms, problem }
     }
 }

@@ -1,13 +1,13 @@
-//! What `auto` chooses among.
+//! The techniques and settings that [`super::Auto`] chooses among.
 
 use crate::technique::Technique;
 
-/// A technique with its settings, as words of a command line.
+/// A technique with its settings in text form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Candidate {
     /// The technique's name.
     pub technique: &'static str,
-    /// Its settings, as `key=value` words; the rest are the defaults.
+    /// The settings as `key=value` words; those not named have their defaults.
     pub words: &'static str,
 }
 
@@ -15,9 +15,8 @@ const fn of(technique: &'static str, words: &'static str) -> Candidate {
     Candidate { technique, words }
 }
 
-/// Every choice for a light with an area: those that are the fastest at some error in some scene of the
-/// report, and what lies between them. A line's own technique places its samples by the error itself, so that
-/// it is no row here.
+/// Every candidate for a light with an area: those that are the fastest at some error in some scene of the report, and
+/// settings between them. `linear-light` places its samples by the allowed error itself, and is not among them.
 pub const CANDIDATES: &[Candidate] = &[
     of("hard", "map=256"),
     of("hard", "map=512"),
@@ -49,7 +48,7 @@ pub const CANDIDATES: &[Candidate] = &[
 ];
 
 impl Candidate {
-    /// The technique; by its defaults where the words name none, which a test holds there is no case of.
+    /// The candidate's technique. A test holds that every candidate's words are valid.
     pub fn settings(&self) -> Technique {
         format!("{} {}", self.technique, self.words).parse().unwrap_or_default()
     }

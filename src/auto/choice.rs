@@ -1,28 +1,29 @@
-//! What `auto` answers.
+//! The choice that [`super::Auto`] makes for a light.
 
 use crate::frame;
 use crate::technique::Technique;
 use std::fmt;
 
-/// What to compute a light's shadow with.
+/// The technique chosen for a light's shadow, and what is expected of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Choice {
     /// The technique, with its settings.
     pub technique: Technique,
-    /// The mean error over shadow and penumbra that the model promises, a visible fraction; none where nothing can be
-    /// shadowed.
+    /// The promised mean error of the visible fraction over the pixels in shadow and penumbra, 0 to 1; `None` where nothing
+    /// can be shadowed.
     pub error: Option<f64>,
-    /// Milliseconds that the model expects; none where it knows nothing of it.
+    /// The expected time on the device, milliseconds; `None` where the table has none: for lines and polygons, and where
+    /// nothing can be shadowed.
     pub ms: Option<f64>,
-    /// Scene and light of the report that the situation is most like.
-    pub alike: Option<[String; 2]>,
-    /// Whether it is another one than in the frame before.
+    /// Scene and light of the table's view that is nearest to the situation.
+    pub nearest: Option<[String; 2]>,
+    /// Whether the technique differs from the light's last one.
     pub changed: bool,
-    /// What of the budget makes no sense or cannot be met; the choice is then the nearest to it.
+    /// A sentence where the budget is not valid or cannot be met; the choice is then the nearest to it.
     pub problem: Option<String>,
 }
 
-/// The techniques of some choices, each once and the most accurate first, as many as a node may have.
+/// The different techniques of some choices, most accurate first, as many as a node may have.
 pub(crate) fn distinct(choices: &[Choice]) -> (Technique, Vec<Technique>) {
     let mut by_error: Vec<&Choice> = choices.iter().collect();
     by_error.sort_by(|a, b| {
@@ -49,7 +50,7 @@ impl fmt::Display for Choice {
         if let Some(ms) = self.ms {
             write!(f, ", {ms:.1} ms expected")?;
         }
-        if let Some([scene, light]) = &self.alike {
+        if let Some([scene, light]) = &self.nearest {
             write!(f, ", as in {scene} under the {light} light")?;
         }
         if let Some(problem) = &self.problem {

@@ -1,57 +1,57 @@
-//! `auto`: technique and settings by a budget.
+//! Chooses a technique with its settings for each light by a budget of error and time.
 //!
 //! ```text
-//!   frame ─► Situation ─► Likeness ─► the table's views that are most like it
+//!   frame ─► Situation ─► Features ─► the nearest views of the table
 //!                                        │ their worst error, their mean time × Costs
-//!   Budget ──────────────────────────────┴─► the fastest that is good enough ─► hysteresis ─► Choice
+//!   Budget ──────────────────────────────┴─► the fastest whose error is allowed ─► hysteresis ─► Choice
 //! ```
-//! The promise of an error is that of the views of the report that are most alike, the worst of them, and more the
-//! less alike they are. How often it is kept is told in `docs/planner.md`, for scenes of the table and for scenes that
-//! the table has never seen.
+//! The promised error is the worst of the nearest views, and grows with their distance. `docs/planner.md` says how often
+//! the promise is kept, for scenes of the table and for scenes that the table does not have.
 
-use super::budget::Sound;
-use super::expected::{Expected, alike, expect, share, unmet};
+use super::budget::ValidBudget;
+use super::expected::{Expected, expect, nearest_views, share, unmet};
 use super::table::Table;
-use super::{Budget, CANDIDATES, Choice, Costs, Likeness};
+use super::{Budget, CANDIDATES, Choice, Costs, Features};
 use crate::Error;
 use crate::effects::Situation;
 use crate::frame::{Description, Frame, MeshBoxes, SituationCache};
 use crate::technique::Technique;
 use crate::techniques::room::HostDraws;
 
-/// How much faster another choice must be to replace one that is good enough.
-const FASTER: f64 = 0.8;
+/// Another candidate replaces one that meets the budget where its time or error is below this share of that one's.
+const BETTER: f64 = 0.8;
 
-/// For how many frames in a row.
+/// The number of successive frames in which it must be better.
 const PATIENCE: u32 = 30;
 
-/// What `linear-light` errs by at most where `error` is set, as measured over the report's lines: a share of it, and
-/// what is lost between the occluders of open meshes whatever the samples.
+/// The measured error bound of `linear-light` over the report's lines: `LINE_SHARE` × its `error` setting, plus
+/// `LINE_OPEN` for gaps in open meshes.
 const LINE_SHARE: f64 = 1.4;
 const LINE_OPEN: f64 = 0.012;
 
-/// What so few lines of a polygon may miss beyond that.
+/// The error that the few lines of a polygon add to that bound.
 const POLYGON: f64 = 0.01;
 
-/// What is remembered of a light.
+/// The state of one light from frame to frame.
 #[derive(Clone, Debug)]
-struct Held {
-    /// What its boxes tell.
-    situation: SituationCache,
+struct LightState {
+    /// Describes the light's situation in each frame.
+    situations: SituationCache,
+    /// The chosen candidate's index in [`CANDIDATES`].
     candidate: Option<usize>,
-    /// For how many frames another one would have been better.
+    /// The number of successive frames in which another candidate was better.
     waited: u32,
-    /// The error of each candidate, at its worst in the last frames.
+    /// The worst error of each candidate in the last frames.
     worst: [f64; CANDIDATES.len()],
-    /// What the last frame was to take.
+    /// The technique of the last frame, and the milliseconds it was expected to take.
     expected: Option<(&'static str, f64)>,
     technique: Option<Technique>,
 }
 
-impl Default for Held {
+impl Default for LightState {
     fn default() -> Self {
         Self {
-            situation: SituationCache::default(),
+            situations: SituationCache::default(),
             candidate: None,
             waited: 0,
             worst: [0.0; CANDIDATES.len()],
@@ -61,9 +61,9 @@ impl Default for Held {
     }
 }
 
-impl Held {
-    /// Remembers each candidate's error and puts the worst of the last frames in its place: what moves to and fro is
-    /// judged by all of its way. What is over is forgotten within some [`PATIENCE`].
+impl LightState {
+    /// Replaces each candidate's error by the worst of the last frames, so that an occluder that moves to and fro does not
+    /// change the choice each time. A peak decays within some [`PATIENCE`] frames.
     fn remember(&mut self, expected: &mut [Expected]) {
         for e in expected {
             let worst = &mut self.worst[e.candidate];
@@ -75,72 +75,75 @@ impl Held {
 
 /// Chooses technique and settings for the lights of a node, frame by frame.
 ///
-/// It holds no Vulkan objects and makes no calls. The host asks it, reconfigures the node where the answer changes
-/// ([`crate::ShadowNode::adapt`] does both), and tells it what frames took.
+/// It holds no Vulkan objects and makes no Vulkan calls. The host gets its choices, reconfigures the node where they change
+/// ([`crate::ShadowNode::adapt`] does both), and reports the times of frames to [`Self::observe`].
 #[derive(Clone, Debug)]
 pub struct Auto {
     budget: Budget,
     costs: Costs,
-    held: Vec<Held>,
+    lights: Vec<LightState>,
     mesh_boxes: MeshBoxes,
 }
 
 impl Auto {
-    /// By a budget, on a device of these costs.
+    /// A chooser with a budget, for a device with these costs.
     pub fn new(budget: Budget, costs: Costs) -> Self {
-        Self { budget, costs, held: Vec::new(), mesh_boxes: MeshBoxes::default() }
+        Self { budget, costs, lights: Vec::new(), mesh_boxes: MeshBoxes::default() }
     }
 
-    /// What is known of the device, to be kept.
+    /// The costs learnt so far, which the host may store for the next start.
     pub fn costs(&self) -> &Costs {
         &self.costs
     }
 
-    /// Another budget from the next frame on.
+    /// Sets the budget for the frames from now on.
     pub fn set_budget(&mut self, budget: Budget) {
         self.budget = budget;
     }
 
-    /// What to compute a light's shadow with.
+    /// Chooses the technique for the frame of a single light.
     ///
     /// # Errors
-    /// Those of planning the frame.
+    /// See [`Self::choose_all`].
     pub fn choose(&mut self, description: &Description, frame: &Frame) -> Result<Choice, Error> {
         let mut all = self.choose_all(description, std::slice::from_ref(frame))?;
         Ok(all.swap_remove(0))
     }
 
-    /// The same for a light with an area whose situation is known, on a node that takes every technique, at so many pixels:
-    /// for studying how it chooses.
+    /// Chooses the technique for a light with an area from its situation and the image's size in pixels, with no host to
+    /// restrict the techniques: to study how choices are made.
     pub fn choose_in(&mut self, situation: &Situation, [width, height]: [u32; 2]) -> Choice {
-        self.held.resize(1, Held::default());
-        let sound = self.budget.sound();
+        self.lights.resize(1, LightState::default());
+        let budget = self.budget.valid();
         let pixels = f64::from(width) * f64::from(height);
         let triangles = situation.triangles as f64;
-        let likeness = Likeness::of(situation);
-        let expected = expect(Table::own(), &self.costs, &likeness, pixels, triangles);
-        match share(std::slice::from_ref(&expected), &sound)[0] {
-            Some(best) => self.settle(0, situation, &expected, best, &sound),
-            None => self.nothing(0, &Technique::default()),
+        let features = Features::of(situation);
+        let expected = expect(Table::own(), &self.costs, &features, pixels, triangles);
+        match share(std::slice::from_ref(&expected), &budget)[0] {
+            Some(best) => self.settle(0, situation, &expected, best, &budget),
+            None => self.unshadowed(0, &Technique::default()),
         }
     }
 
-    /// The same for several lights, which share `max_ms` by what more time would better.
+    /// Chooses the technique for each light of a frame, in the order of `frames`. The lights share `max_ms`, which goes
+    /// where it reduces errors most.
     ///
     /// # Errors
-    /// Those of planning the frames.
+    /// [`Error::Frame`] for a frame that every technique refuses.
     pub fn choose_all(
         &mut self,
         description: &Description,
         frames: &[Frame],
     ) -> Result<Vec<Choice>, Error> {
-        self.held.resize(frames.len(), Held::default());
+        self.lights.resize(frames.len(), LightState::default());
         self.mesh_boxes.forget();
-        let lights = self.held.iter_mut().zip(frames);
+        let lights = self.lights.iter_mut().zip(frames);
         let situations: Vec<_> = lights
-            .map(|(held, frame)| held.situation.situation(description, frame, &mut self.mesh_boxes))
+            .map(|(state, frame)| {
+                state.situations.situation(description, frame, &mut self.mesh_boxes)
+            })
             .collect::<Result<_, _>>()?;
-        let sound = self.budget.sound();
+        let budget = self.budget.valid();
         let pixels = f64::from(description.extent[0]) * f64::from(description.extent[1]);
         let mut expected: Vec<Vec<Expected>> = frames
             .iter()
@@ -150,8 +153,8 @@ impl Auto {
                     let can = |e: &Expected| {
                         takes(&CANDIDATES[e.candidate].settings(), description, frame, s)
                     };
-                    let likeness = Likeness::of(s);
-                    expect(Table::own(), &self.costs, &likeness, pixels, s.triangles as f64)
+                    let features = Features::of(s);
+                    expect(Table::own(), &self.costs, &features, pixels, s.triangles as f64)
                         .into_iter()
                         .filter(can)
                         .collect()
@@ -159,39 +162,39 @@ impl Auto {
                 _ => Vec::new(),
             })
             .collect();
-        for (held, expected) in self.held.iter_mut().zip(&mut expected) {
-            held.remember(expected);
+        for (state, expected) in self.lights.iter_mut().zip(&mut expected) {
+            state.remember(expected);
         }
-        let picked = share(&expected, &sound);
+        let picked = share(&expected, &budget);
         let least: f64 = picked.iter().flatten().map(|e| e.ms).sum();
         let lights = picked.iter().flatten().count();
-        let too_slow = (lights > 1 && least > sound.max_ms).then(|| {
+        let too_slow = (lights > 1 && least > budget.max_ms).then(|| {
             format!(
                 "the {lights} lights together take no less than {least:.1} ms here, and max_ms is {}; \
                  the fastest is chosen for each",
-                sound.max_ms
+                budget.max_ms
             )
         });
-        let sound = Sound { problem: sound.problem.or(too_slow), ..sound };
-        // What is held must fit together too.
-        let held = |(i, best): (usize, &Option<Expected>)| {
-            best.map(|best| self.held_of(i, &expected[i]).unwrap_or(best).ms)
+        let budget = ValidBudget { problem: budget.problem.or(too_slow), ..budget };
+        // The candidates that lights keep must fit the time together too.
+        let kept = |(i, best): (usize, &Option<Expected>)| {
+            best.map(|best| self.current(i, &expected[i]).unwrap_or(best).ms)
         };
-        let together: f64 = picked.iter().enumerate().filter_map(held).sum();
-        if together > sound.max_ms {
-            self.held.iter_mut().for_each(|held| held.candidate = None);
+        let together: f64 = picked.iter().enumerate().filter_map(kept).sum();
+        if together > budget.max_ms {
+            self.lights.iter_mut().for_each(|state| state.candidate = None);
         }
         let mut choices = Vec::with_capacity(frames.len());
         for (i, (frame, situation)) in frames.iter().zip(&situations).enumerate() {
             choices.push(match (situation, picked[i]) {
-                (Some(s), Some(best)) => self.settle(i, s, &expected[i], best, &sound),
-                // What is there stays where it takes the light, and costs nothing.
-                (None, _) if !is_line(frame) => self.nothing(i, &description.technique),
-                (s, _) => self.of_line(i, frame, s.as_ref(), &sound),
+                (Some(s), Some(best)) => self.settle(i, s, &expected[i], best, &budget),
+                // An unshadowed light keeps its technique, which then costs nothing.
+                (None, _) if !is_line(frame) => self.unshadowed(i, &description.technique),
+                (s, _) => self.for_line(i, frame, s.as_ref(), &budget),
             });
         }
         if description.occluder_maps.is_some() {
-            // They are as large as the host has them.
+            // Lent maps have the size that the host gave them.
             for choice in &mut choices {
                 choice.technique = choice.technique.with_map(description.technique.map())?;
             }
@@ -199,87 +202,89 @@ impl Auto {
         Ok(choices)
     }
 
-    /// What frames of the last choice took, in milliseconds of the device: all passes of light `light` together.
+    /// Reports the device's time for the last choice: the milliseconds of all passes of light number `light`. Does nothing
+    /// for a light without a choice.
     pub fn observe(&mut self, light: usize, ms: f64) {
-        if let Some((technique, expected)) = self.held.get(light).and_then(|h| h.expected) {
+        if let Some((technique, expected)) = self.lights.get(light).and_then(|state| state.expected)
+        {
             self.costs.learn(technique, expected, ms);
         }
     }
 
-    /// What the held choice of a light is expected to do now.
-    fn held_of(&self, light: usize, expected: &[Expected]) -> Option<Expected> {
-        let candidate = self.held.get(light)?.candidate?;
+    /// The expectation of the candidate that a light has, in the present frame.
+    fn current(&self, light: usize, expected: &[Expected]) -> Option<Expected> {
+        let candidate = self.lights.get(light)?.candidate?;
         expected.iter().find(|e| e.candidate == candidate).copied()
     }
 
-    /// Nothing can be shadowed.
-    fn nothing(&mut self, light: usize, technique: &Technique) -> Choice {
-        let held = &mut self.held[light];
-        held.expected = None;
-        let technique = held.technique.unwrap_or(*technique);
-        Choice { technique, error: None, ms: None, alike: None, changed: false, problem: None }
+    /// The choice where nothing can be shadowed: the light keeps its technique.
+    fn unshadowed(&mut self, light: usize, technique: &Technique) -> Choice {
+        let state = &mut self.lights[light];
+        state.expected = None;
+        let technique = state.technique.unwrap_or(*technique);
+        Choice { technique, error: None, ms: None, nearest: None, changed: false, problem: None }
     }
 
-    /// Keeps what is held where it is good enough, unless another one has been better for long.
+    /// Keeps the light's candidate where it meets the budget, unless another one has been better for long.
     fn settle(
         &mut self,
         light: usize,
         s: &Situation,
         expected: &[Expected],
         best: Expected,
-        sound: &Sound,
+        budget: &ValidBudget,
     ) -> Choice {
-        let kept = self.held_of(light, expected);
-        let held = &mut self.held[light];
-        let taken = match kept {
+        let kept = self.current(light, expected);
+        let state = &mut self.lights[light];
+        let chosen = match kept {
             Some(kept) if kept.candidate != best.candidate => {
-                let good = kept.error <= sound.max_error.max(best.error)
-                    && kept.ms <= sound.max_ms.max(best.ms);
-                let better = best.ms < FASTER * kept.ms || best.error < FASTER * kept.error;
-                held.waited = if better { held.waited + 1 } else { 0 };
-                if good && held.waited < PATIENCE { kept } else { best }
+                let good = kept.error <= budget.max_error.max(best.error)
+                    && kept.ms <= budget.max_ms.max(best.ms);
+                let better = best.ms < BETTER * kept.ms || best.error < BETTER * kept.error;
+                state.waited = if better { state.waited + 1 } else { 0 };
+                if good && state.waited < PATIENCE { kept } else { best }
             }
             _ => best,
         };
-        if held.candidate != Some(taken.candidate) {
-            held.waited = 0;
+        if state.candidate != Some(chosen.candidate) {
+            state.waited = 0;
         }
-        held.candidate = Some(taken.candidate);
-        held.expected = Some((CANDIDATES[taken.candidate].technique, taken.ms));
-        let technique = CANDIDATES[taken.candidate].settings();
-        let changed = held.technique.replace(technique).is_some_and(|before| before != technique);
-        let (_, like) = alike(Table::own(), &Likeness::of(s));
+        state.candidate = Some(chosen.candidate);
+        state.expected = Some((CANDIDATES[chosen.candidate].technique, chosen.ms));
+        let technique = CANDIDATES[chosen.candidate].settings();
+        let changed = state.technique.replace(technique).is_some_and(|before| before != technique);
+        let (_, views) = nearest_views(Table::own(), &Features::of(s));
         Choice {
             technique,
-            error: Some(taken.error),
-            ms: Some(taken.ms),
-            alike: like.first().map(|v| v.name.clone()),
+            error: Some(chosen.error),
+            ms: Some(chosen.ms),
+            nearest: views.first().map(|v| v.name.clone()),
             changed,
-            problem: sound.problem.clone().or_else(|| unmet(&taken, expected, sound)),
+            problem: budget.problem.clone().or_else(|| unmet(&chosen, expected, budget)),
         }
     }
 
-    /// A line or a polygon: its technique places samples until what is lost is below an error.
-    fn of_line(
+    /// The choice for a line or a polygon: linear-light, which places samples until their error is below its setting.
+    fn for_line(
         &mut self,
         light: usize,
         frame: &Frame,
         situation: Option<&Situation>,
-        sound: &Sound,
+        budget: &ValidBudget,
     ) -> Choice {
         let is_line = frame.light.rectangle().is_line();
         let open = if situation.is_some_and(|s| s.open) { LINE_OPEN } else { 0.0 };
         let open = open + if is_line { 0.0 } else { POLYGON };
-        let asked = ((sound.max_error - open) / LINE_SHARE).clamp(0.005, 0.1);
-        let error = LINE_SHARE * asked + open;
-        // Of a polygon's lines each has as many samples: no more than its maps have memory for.
+        let share = ((budget.max_error - open) / LINE_SHARE).clamp(0.005, 0.1);
+        let error = LINE_SHARE * share + open;
+        // Each of a polygon's lines has this many samples, as many as the memory of their maps allows.
         let (samples, lines) = if is_line { (16, 1) } else { (8, 8) };
-        let technique = Technique::along_lines(asked as f32, samples, lines);
-        let held = &mut self.held[light];
-        held.candidate = None;
-        held.expected = None;
-        let changed = held.technique.replace(technique).is_some_and(|before| before != technique);
-        let met = error <= sound.max_error * 1.0001 || situation.is_none();
+        let technique = Technique::along_lines(share as f32, samples, lines);
+        let state = &mut self.lights[light];
+        state.candidate = None;
+        state.expected = None;
+        let changed = state.technique.replace(technique).is_some_and(|before| before != technique);
+        let met = error <= budget.max_error * 1.0001 || situation.is_none();
         let problem = (!met).then(|| {
             format!("no error below {error:.3} can be promised for a line or a polygon here")
         });
@@ -287,9 +292,9 @@ impl Auto {
             technique,
             error: situation.map(|_| error),
             ms: None,
-            alike: None,
+            nearest: None,
             changed,
-            problem: sound.problem.clone().or(problem),
+            problem: budget.problem.clone().or(problem),
         }
     }
 }
@@ -298,13 +303,13 @@ fn is_line(frame: &Frame) -> bool {
     frame.light.rectangle().is_line() || frame.light.outline().is_some()
 }
 
-/// Whether a technique takes what a host gives.
+/// Whether a technique accepts what the host lends and draws.
 fn takes(technique: &Technique, description: &Description, frame: &Frame, s: &Situation) -> bool {
     let (takes, maps) = (technique.room().takes(), technique.room().maps());
     let textured = description.light_texture.is_some();
     let lent = description.occluder_maps.is_some();
     let back = frame.occluder_maps.is_some_and(|m| m.back.is_some());
-    // A promise holds with finer maps than it was made for, and not with coarser ones.
+    // The promised error holds with finer maps than the candidate's, and not with coarser ones.
     let fits = takes.lent_maps.is_ok()
         && maps.side <= description.technique.map()
         && (back || !maps.layers.back);

@@ -1,32 +1,33 @@
-//! What passes cost on the device at hand, by what they cost on the one that measured the table.
+//! The times of passes on the device at hand, relative to the device that the table was measured on.
 
 use super::table::{Measured, PIXELS};
 use crate::technique::Technique;
 
-/// How many techniques there are.
+/// The number of techniques.
 const TECHNIQUES: usize = Technique::NAMES.len();
 
-/// How much of what a frame's own times say is believed at once.
+/// The weight of one frame's time, once several frames have been learnt from: the exponent on its correction.
 const BELIEF: f64 = 0.2;
 
-/// A correction beyond this factor is a hiccup, not a device.
+/// The largest correction: a factor beyond it is an outlier and no property of the device.
 const MOST: f64 = 16.0;
 
-/// Milliseconds that a thousand triangles take in a depth layer, on the table's device.
+/// The time that a triangle takes in a depth layer on the table's device, milliseconds.
 const DRAW_MS: f64 = 0.35e-3;
 
-/// Factors between the table's device and the one at hand: 1 where nothing was measured.
+/// Factors from times on the table's device to times on the device at hand; 1 where nothing was measured.
 ///
-/// They belong to a driver: a host keeps [`Self::to_text`] by the device's name and gives it back at the next start.
+/// The factors hold for one device and driver: a host stores [`Self::to_text`] under the device's name and restores it
+/// with [`Self::from_text`] at the next start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Costs {
-    /// Of passes in light space.
+    /// The factor of passes in light space.
     pub maps: f64,
-    /// Of passes at the pixels.
+    /// The factor of passes over the pixels.
     pub pixels: f64,
-    /// Of each technique beyond these, by the times of its own frames.
+    /// A further factor for each technique, learnt from the times of its frames.
     by_technique: [f64; TECHNIQUES],
-    /// How many frames that was learnt from.
+    /// The number of frames that each factor was learnt from.
     frames: [u32; TECHNIQUES],
 }
 
@@ -36,19 +37,21 @@ impl Default for Costs {
     }
 }
 
-/// A technique's place in [`Technique::NAMES`]; none for another name.
+/// The index of a technique in [`Technique::NAMES`]; `None` for an unknown name.
 fn place(technique: &str) -> Option<usize> {
     Technique::NAMES.iter().position(|name| *name == technique)
 }
 
 impl Costs {
-    /// Of a device on which passes take so many times as long as on the table's.
+    /// The costs of a device on which passes in light space and passes over the pixels take `maps` and `pixels` times as
+    /// long as on the table's. A factor that is not finite or not above 0 counts as 1.
     pub fn new(maps: f64, pixels: f64) -> Self {
         let sound = |x: f64| if x.is_finite() && x > 0.0 { x } else { 1.0 };
         Self { maps: sound(maps), pixels: sound(pixels), ..Self::default() }
     }
 
-    /// Milliseconds of what took so long in the table, at another size and with other geometry.
+    /// The expected milliseconds of a technique that took `table`'s times, for `pixels` pixels and `more_triangles` more
+    /// triangles than in the table.
     pub(crate) fn ms(
         &self,
         technique: &str,
@@ -62,21 +65,21 @@ impl Costs {
         ms * place(technique).map_or(1.0, |i| self.by_technique[i])
     }
 
-    /// Learns from a frame that was to take `expected` milliseconds, and took `measured`.
+    /// Learns from a frame that was expected to take `expected` milliseconds and took `measured`.
     pub(crate) fn learn(&mut self, technique: &str, expected: f64, measured: f64) {
         let Some(i) = place(technique) else { return };
         let factor = measured / expected;
         if !(factor.is_finite() && factor > 0.0) {
             return;
         }
-        // The first frames are believed most: they stand against nothing but a guess.
+        // The first frames count most: they replace a guess.
         let belief = BELIEF.max(1.0 / (1.0 + f64::from(self.frames[i])));
         let by = factor.clamp(1.0 / MOST, MOST).powf(belief);
         self.by_technique[i] = (self.by_technique[i] * by).clamp(1.0 / MOST, MOST);
         self.frames[i] = self.frames[i].saturating_add(1);
     }
 
-    /// As text to be kept, one line a factor.
+    /// The factors as text, one to a line.
     pub fn to_text(&self) -> String {
         let mut text = format!("maps {}\npixels {}\n", self.maps, self.pixels);
         for (name, (factor, frames)) in
@@ -87,7 +90,7 @@ impl Costs {
         text
     }
 
-    /// Reads what [`Self::to_text`] wrote; what cannot be read stays 1.
+    /// Reads the text of [`Self::to_text`]; factors that are missing or invalid are 1.
     pub fn from_text(text: &str) -> Self {
         let mut costs = Self::default();
         for line in text.lines() {

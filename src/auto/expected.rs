@@ -1,70 +1,70 @@
-//! What each candidate is expected to do in a situation, and which of them lights take.
+//! The error and time that each candidate is expected to have in a situation, and the choice for each light by them.
 
-use super::budget::Sound;
+use super::budget::ValidBudget;
 use super::table::{Table, View};
-use super::{CANDIDATES, Costs, Likeness};
+use super::{CANDIDATES, Costs, Features};
 
-/// Views no further than this from a situation count, and the further the nearest one is the more others do.
-const AS_NEAR: f64 = 0.1;
-const AS_FAR: f64 = 1.6;
+/// Views within `NEAR` + `FAR` × the nearest view's distance count as near a situation.
+const NEAR: f64 = 0.1;
+const FAR: f64 = 1.6;
 
-/// What a unit of distance to the nearest view adds to the error that is promised, as a share of it. Chosen with
-/// [`AS_FAR`] by leaving each scene out and asking the others (docs/planner.md).
+/// The share that the promised error grows by for each unit of distance to the nearest view. This and [`FAR`] are fitted
+/// by leaving out each scene and predicting it from the others (docs/planner.md).
 const DOUBT: f64 = 0.7;
 
-/// What images of other sizes err by more than the table's, as a share.
+/// A factor on the promised error, for images of other sizes than the table's.
 const MARGIN: f64 = 1.05;
 
-/// What a candidate is expected to do.
+/// The error and time that a candidate is expected to have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Expected {
-    /// Its place among [`CANDIDATES`].
+    /// The candidate's index in [`CANDIDATES`].
     pub candidate: usize,
-    /// Mean error, a visible fraction.
+    /// The mean error of the visible fraction, 0 to 1.
     pub error: f64,
-    /// Milliseconds.
+    /// The time on the device, milliseconds.
     pub ms: f64,
 }
 
-/// What each candidate would do in a situation like this.
+/// The expected error and time of each candidate in a situation, for an image of `pixels` pixels and occluders of
+/// `triangles` triangles; empty without a table.
 pub(super) fn expect(
     table: &Table,
     costs: &Costs,
-    likeness: &Likeness,
+    features: &Features,
     pixels: f64,
     triangles: f64,
 ) -> Vec<Expected> {
-    let (nearest, like) = alike(table, likeness);
+    let (nearest, views) = nearest_views(table, features);
     let doubt = MARGIN * (1.0 + DOUBT * nearest);
     let of = |candidate: usize| {
         let technique = CANDIDATES[candidate].technique;
         let mut error: f64 = 0.0;
         let mut ms = 0.0;
-        for view in &like {
+        for view in &views {
             let measured = &view.measured[candidate];
             error = error.max(measured.error);
             ms += costs.ms(technique, measured, pixels, triangles - view.triangles);
         }
-        Expected { candidate, error: (error * doubt).min(1.0), ms: ms / like.len() as f64 }
+        Expected { candidate, error: (error * doubt).min(1.0), ms: ms / views.len() as f64 }
     };
-    // Without a table nothing is known.
-    (0..if like.is_empty() { 0 } else { CANDIDATES.len() }).map(of).collect()
+    (0..if views.is_empty() { 0 } else { CANDIDATES.len() }).map(of).collect()
 }
 
-/// The views that are most like a situation, the nearest first, and how far away that one is.
-pub(super) fn alike<'a>(table: &'a Table, likeness: &Likeness) -> (f64, Vec<&'a View>) {
+/// The distance of the table's view that is nearest to a situation, and the near views, nearest first.
+pub(super) fn nearest_views<'a>(table: &'a Table, features: &Features) -> (f64, Vec<&'a View>) {
     let mut all: Vec<(f64, &View)> =
-        table.views.iter().map(|v| (v.likeness.distance(likeness), v)).collect();
+        table.views.iter().map(|v| (v.features.distance(features), v)).collect();
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
     let nearest = all.first().map_or(0.0, |v| v.0);
-    all.retain(|v| v.0 <= AS_NEAR + AS_FAR * nearest);
+    all.retain(|v| v.0 <= NEAR + FAR * nearest);
     (nearest, all.into_iter().map(|v| v.1).collect())
 }
 
-/// A candidate for each light: the fastest that is good enough, or, where the time does not reach, what most betters the
-/// lights' errors for it.
-pub(super) fn share(expected: &[Vec<Expected>], sound: &Sound) -> Vec<Option<Expected>> {
-    let good = |e: &Expected| e.error <= sound.max_error;
+/// Picks a candidate for each light: the fastest whose error is allowed. Where the time does not suffice, it starts from
+/// the fastest and takes the steps that reduce errors most for their time.
+pub(super) fn share(expected: &[Vec<Expected>], budget: &ValidBudget) -> Vec<Option<Expected>> {
+    let good = |e: &Expected| e.error <= budget.max_error;
     let fastest = |all: &[Expected], which: &dyn Fn(&Expected) -> bool| {
         all.iter().filter(|e| which(e)).min_by(|a, b| a.ms.total_cmp(&b.ms)).copied()
     };
@@ -72,19 +72,19 @@ pub(super) fn share(expected: &[Vec<Expected>], sound: &Sound) -> Vec<Option<Exp
     let wanted: Vec<_> =
         expected.iter().map(|all| fastest(all, &good).or_else(|| best(all))).collect();
     let sum = |picked: &[Option<Expected>]| picked.iter().flatten().map(|e| e.ms).sum::<f64>();
-    if sum(&wanted) <= sound.max_ms {
+    if sum(&wanted) <= budget.max_ms {
         return wanted;
     }
     let mut picked: Vec<_> = expected.iter().map(|all| fastest(all, &|_| true)).collect();
     loop {
-        let left = sound.max_ms - sum(&picked);
-        // Of every step that fits, the one that takes most error away for its time.
+        let left = budget.max_ms - sum(&picked);
+        // The step within the time left that reduces the error most for its time.
         let steps = picked.iter().enumerate().flat_map(|(light, now)| {
             let now = *now;
             expected[light].iter().filter_map(move |e| {
                 let now = now?;
                 let fits =
-                    e.ms - now.ms <= left && e.error < now.error && now.error > sound.max_error;
+                    e.ms - now.ms <= left && e.error < now.error && now.error > budget.max_error;
                 let gain = (now.error - e.error) / (e.ms - now.ms).max(1e-6);
                 fits.then_some((gain, light, *e))
             })
@@ -96,23 +96,27 @@ pub(super) fn share(expected: &[Vec<Expected>], sound: &Sound) -> Vec<Option<Exp
     }
 }
 
-/// A sentence where a choice is not what was asked for.
-pub(super) fn unmet(taken: &Expected, expected: &[Expected], sound: &Sound) -> Option<String> {
-    if taken.ms > sound.max_ms {
-        let (least, most) = (taken.ms, sound.max_ms);
+/// A sentence that says how a chosen candidate misses the budget; `None` where it meets it.
+pub(super) fn unmet(
+    chosen: &Expected,
+    expected: &[Expected],
+    budget: &ValidBudget,
+) -> Option<String> {
+    if chosen.ms > budget.max_ms {
+        let (least, most) = (chosen.ms, budget.max_ms);
         return Some(format!(
             "nothing takes less than {least:.1} ms here, and max_ms is {most}; the fastest is chosen"
         ));
     }
-    if taken.error <= sound.max_error || sound.max_error == 0.0 {
+    if chosen.error <= budget.max_error || budget.max_error == 0.0 {
         return None;
     }
-    let error = taken.error;
-    let could = expected.iter().any(|e| e.error <= sound.max_error);
+    let error = chosen.error;
+    let could = expected.iter().any(|e| e.error <= budget.max_error);
     Some(if could {
         format!(
             "an error of {} takes more than {} ms; {error:.4} is what the time buys",
-            sound.max_error, sound.max_ms
+            budget.max_error, budget.max_ms
         )
     } else {
         format!("no error below {error:.4} can be promised here; that is chosen")

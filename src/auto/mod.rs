@@ -1,13 +1,13 @@
-//! Technique and settings by a budget of error and time.
+//! Chooses a technique and its settings by a budget of error and time.
 //!
 //! ```text
-//!   Situation (effects) ──► Likeness ──► Table     what every candidate did in the views of the report that are
-//!                                          │       most alike
+//!   Situation (effects) ──► Features ──► Table     the errors and times of every candidate, measured in the views
+//!                                          │       of the report; the nearest views count
 //!                                          ▼
-//!                              Budget ──► Auto ──► Choice     by a Budget of error and time, and what passes
-//!                                                             cost here (Costs)
+//!                              Budget ──► Auto ──► Choice     Costs bring the times to the device at hand
 //! ```
-//! Everything here is pure: no Vulkan calls, microseconds. `docs/planner.md` tells how often promises are kept.
+//! Everything here is pure, without Vulkan calls, and takes microseconds. `docs/planner.md` says how often the promised
+//! error is kept.
 
 mod budget;
 mod candidates;
@@ -15,7 +15,7 @@ mod choice;
 mod choose;
 mod costs;
 mod expected;
-mod likeness;
+mod features;
 mod table;
 
 pub use budget::Budget;
@@ -24,7 +24,7 @@ pub use choice::Choice;
 pub(crate) use choice::distinct;
 pub use choose::Auto;
 pub use costs::Costs;
-pub use likeness::{Likeness, PARTS};
+pub use features::{FEATURES, Features};
 pub use table::{COLUMNS, Measured, PIXELS, PROBE, Table, View};
 
 #[cfg(test)]

@@ -1,63 +1,63 @@
-//! What every candidate did in every view of the report: its error, and its time on the device that measured it.
+//! The error and time of every candidate in every view of the report, as measured on one device.
 
-use super::likeness::PARTS;
-use super::{CANDIDATES, Likeness};
+use super::{CANDIDATES, FEATURES, Features};
 use std::sync::OnceLock;
 
-/// `cargo bench --bench accuracy_cost -- --choices` measures it and `--write-choices` copies it here.
+/// The table's text, which `cargo bench --bench accuracy_cost -- --choices` measures and `--write-choices` copies here.
 const TEXT: &str = include_str!("table.csv");
 
 /// The columns of the text.
 pub const COLUMNS: &str = "scene,light,triangles,size,penumbra,edges,layers,both,open,contact,technique,settings,\
                            error,noise,maps_ms,pixels_ms";
 
-/// What the line begins with that tells what a small frame took: milliseconds of its maps, and of its pixels.
+/// The first cell of the line with the times of a small frame: milliseconds of its maps, and of its pixels.
 pub const PROBE: &str = "probe";
 
-/// The pixels of each view.
+/// The number of pixels of each view's image.
 pub const PIXELS: f64 = 512.0 * 384.0;
 
-/// What one candidate did in one view.
+/// The error and time of one candidate in one view.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measured {
-    /// The mean error over shadow and penumbra, a visible fraction, less what the truth's own noise makes of it.
+    /// The mean error of the visible fraction over the pixels in shadow and penumbra, 0 to 1, less the noise of the truth.
     pub error: f64,
-    /// Milliseconds of the passes in light space.
+    /// The time of the passes in light space, milliseconds.
     pub maps_ms: f64,
-    /// Milliseconds of the passes at [`PIXELS`] pixels.
+    /// The time of the passes over [`PIXELS`] pixels, milliseconds.
     pub pixels_ms: f64,
 }
 
-/// A scene under a light.
+/// A scene of the report under one light, with the measurements of all candidates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
-    /// Scene and light.
+    /// The names of scene and light.
     pub name: [String; 2],
-    /// What of it decides errors.
-    pub likeness: Likeness,
-    /// Triangles of its occluders.
+    /// The features of its situation.
+    pub features: Features,
+    /// The number of its occluders' triangles.
     pub triangles: f64,
-    /// In the order of [`CANDIDATES`].
+    /// The measurements, in the order of [`CANDIDATES`].
     pub measured: Vec<Measured>,
 }
 
-/// All views.
+/// The measurements of all views.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
-    /// In the order in which they were measured.
+    /// The views, in the order in which they were measured.
     pub views: Vec<View>,
-    /// What a small frame took on the same device, by which others are compared with it.
+    /// The times of a small frame on the same device, to which those of other devices are compared.
     pub probe: Measured,
 }
 
 impl Table {
-    /// The project's own, read at its first use.
+    /// The table that comes with the crate, read on first use.
     pub fn own() -> &'static Self {
         static OWN: OnceLock<Table> = OnceLock::new();
         OWN.get_or_init(|| Self::read(TEXT))
     }
 
-    /// Reads a table; lines that are no measurement of a candidate are left out, as are views that lack one.
+    /// Reads a table from text. Lines that are not measurements of a candidate are left out, and so are views without
+    /// measurements of all candidates.
     pub fn read(text: &str) -> Self {
         Self::parse(text).0
     }
@@ -75,12 +75,12 @@ impl Table {
                 probe = Measured { maps_ms, pixels_ms, ..probe };
                 continue;
             }
-            let Some((name, likeness, triangles, candidate, measured)) = row(&cells) else {
+            let Some((name, features, triangles, candidate, measured)) = row(&cells) else {
                 left_out.push(format!("line {number}: {line}"));
                 continue;
             };
             if views.last().is_none_or(|v| v.name != name) {
-                views.push(View { name, likeness, triangles, measured: Vec::new() });
+                views.push(View { name, features, triangles, measured: Vec::new() });
             }
             match views.last_mut() {
                 Some(view) if view.measured.len() == candidate => view.measured.push(measured),
@@ -94,20 +94,20 @@ impl Table {
         (Self { views, probe }, left_out)
     }
 
-    /// The same without one scene, to see what the others say of it.
+    /// The table without the views of one scene, to predict that scene from the others.
     pub fn without(&self, scene: &str) -> Self {
         let others = self.views.iter().filter(|v| v.name[0] != scene);
         Self { views: others.cloned().collect(), probe: self.probe }
     }
 }
 
-type Row = ([String; 2], Likeness, f64, usize, Measured);
+type Row = ([String; 2], Features, f64, usize, Measured);
 
 fn row(cells: &[&str]) -> Option<Row> {
     let number = |i: usize| cells.get(i)?.parse::<f64>().ok();
-    let mut parts = [0.0; PARTS.len()];
-    for (i, part) in parts.iter_mut().enumerate() {
-        *part = number(3 + i)?;
+    let mut values = [0.0; FEATURES.len()];
+    for (i, value) in values.iter_mut().enumerate() {
+        *value = number(3 + i)?;
     }
     let (technique, words) = (*cells.get(10)?, *cells.get(11)?);
     let candidate = CANDIDATES.iter().position(|c| c.technique == technique && c.words == words)?;
@@ -117,7 +117,7 @@ fn row(cells: &[&str]) -> Option<Row> {
         pixels_ms: number(15)?,
     };
     let name = [cells.first()?.to_string(), cells.get(1)?.to_string()];
-    Some((name, Likeness::from_parts(parts), number(2)?, candidate, measured))
+    Some((name, Features::from_values(values), number(2)?, candidate, measured))
 }
 
 #[cfg(test)]

@@ -38,7 +38,7 @@ fn over(bounds: [[f32; 3]; 2], y: f64) -> Vec<MeshInstance> {
     vec![ground(), mesh(bounds, DVec3::Y * y, Role::Occluder, 12)]
 }
 
-/// From straight above, the ground's 8 m over 512 pixels.
+/// A camera straight above, with the ground's 8 m over 512 pixels.
 fn frame(light: RectangleLight, meshes: &[MeshInstance]) -> Frame<'_> {
     let depth = HostImage {
         image: vk::Image::from_raw(1),
@@ -105,7 +105,7 @@ fn boxes_tell_distances_penumbrae_and_pixels() {
 #[test]
 fn perspective_pixels_grow_with_distance_and_a_camera_inside_knows_no_smallest() {
     let meshes = over(CARD, 2.0);
-    // From this high straight down, a field of view of 1 rad.
+    // A camera this high looks straight down with a field of view of 1 rad.
     let look = |height: f64| {
         let scale = 1.0 / 0.5f64.tan();
         let clip_from_world = DMat4::from_cols_array_2d(&[
@@ -163,7 +163,7 @@ fn every_effect_has_a_rule_and_a_reason_for_both_outcomes() {
     assert!(!hard.needs(Effect::Penumbra) && hard.needs(Effect::Shadow));
 }
 
-/// What is left out is never less for a smaller error asked for.
+/// A smaller allowed error never leaves out more effects.
 #[test]
 fn a_stricter_bound_leaves_out_no_more() {
     let technique: Technique = "ray-march".parse().unwrap();
@@ -338,7 +338,7 @@ fn a_line_is_for_linear_light() {
 fn promises_are_kept_in_the_tables_own_views_and_mostly_in_others() {
     let table = Table::own();
     assert!(table.views.len() >= 36, "{} views", table.views.len());
-    let mut told = Vec::new();
+    let mut report = Vec::new();
     for e in [0.05, 0.03, 0.02, 0.01] {
         for (kind, seen) in [("seen", true), ("unseen", false)] {
             let (mut can, mut kept) = (0, 0);
@@ -346,7 +346,7 @@ fn promises_are_kept_in_the_tables_own_views_and_mostly_in_others() {
                 let others = table.without(&view.name[0]);
                 let of = if seen { table } else { &others };
                 let all =
-                    expected::expect(of, &Costs::default(), &view.likeness, PIXELS, view.triangles);
+                    expected::expect(of, &Costs::default(), &view.features, PIXELS, view.triangles);
                 let good = all.iter().filter(|x| x.error <= e);
                 let Some(best) = good.min_by(|a, b| a.ms.total_cmp(&b.ms)) else {
                     let could = view.measured.iter().any(|m| 1.06 * m.error <= e);
@@ -357,12 +357,12 @@ fn promises_are_kept_in_the_tables_own_views_and_mostly_in_others() {
                 kept += u32::from(view.measured[best.candidate].error <= e);
             }
             let share = f64::from(kept) / f64::from(can.max(1));
-            told.push(format!("{e} {kind}: {kept} of {can}"));
+            report.push(format!("{e} {kind}: {kept} of {can}"));
             let least = if seen { 1.0 } else { 0.8 };
-            assert!(share >= least, "{told:?}");
+            assert!(share >= least, "{report:?}");
         }
     }
-    println!("{told:#?}");
+    println!("{report:#?}");
 }
 
 #[test]
@@ -373,9 +373,9 @@ fn what_a_texture_cuts_is_said_to_be_drawn_whole() {
     let judge = |meshes: &[MeshInstance]| {
         Verdicts::judge(see(square(0.4), meshes), technique.room(), Some(0.01), false)
     };
-    let told = judge(&meshes);
-    assert_eq!(told.of(Effect::CutOuts).outcome, Outcome::NotSimulated);
-    assert!(told.to_string().contains("1 meshes are cut out by textures, and drawn whole"));
+    let drawn_whole = judge(&meshes);
+    assert_eq!(drawn_whole.of(Effect::CutOuts).outcome, Outcome::NotSimulated);
+    assert!(drawn_whole.to_string().contains("1 meshes are cut out by textures, and drawn whole"));
     // The host can.
     meshes[1].geometry = Geometry::HostDrawn(3);
     assert_eq!(judge(&meshes).of(Effect::CutOuts).outcome, Outcome::Simulated);

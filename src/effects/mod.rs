@@ -1,10 +1,11 @@
-//! What a frame calls for: which effects matter in it by more than an error, and what leaving one out costs at most.
+//! Which effects a frame needs: those that change its image by more than an allowed error. The others are left out, each
+//! with a bound on the error that this adds.
 //!
 //! ```text
-//!   Frame: boxes, light, camera ──► Situation ──► Verdicts    what `ShadowNode::plan` leaves out by,
-//!                                                             and `FramePlan::explain` prints
+//!   Frame: boxes, light, camera ──► Situation ──► Verdicts    `ShadowNode::plan` leaves passes out by them,
+//!                                                             `FramePlan::explain` prints them
 //! ```
-//! Everything here is pure: no Vulkan calls, microseconds. `docs/planner.md` derives the bounds.
+//! Everything here is pure, without Vulkan calls, and takes microseconds. `docs/planner.md` derives the bounds.
 
 mod omit;
 mod rules;
@@ -12,7 +13,7 @@ mod situation;
 mod verdicts;
 
 pub use omit::Omit;
-pub use rules::{COUNT, Effect, RULES, Rule};
+pub use rules::{COUNT, Effect, HARD_PIXELS, RULES, Rule};
 pub use situation::Situation;
 pub(crate) use situation::{Camera, Seen};
-pub use verdicts::{HARD_PIXELS, Outcome, Verdict, Verdicts};
+pub use verdicts::{Outcome, Verdict, Verdicts};

@@ -1,75 +1,76 @@
-//! What boxes tell of a light, its occluders and its receivers: in microseconds, before anything is drawn.
+//! A description of a light, its occluders and its receivers, from their bounding boxes alone, before anything is drawn.
 
 use crate::lent::{Geometry, MeshInstance};
 use crate::stages::depth_layers::{self, Eye, LightBox, MapView};
 use glam::{DMat4, DVec4};
 
-/// More occluders than this are not compared in pairs: they count as overlapping.
+/// The most occluders that are compared in pairs; more count as overlapping.
 const MOST_COMPARED: usize = 16;
 
-/// A light, what blocks it and what receives, by their boxes.
+/// A light, its occluders and its receivers, as far as their bounding boxes show.
 ///
-/// Distances are along the light's normal from its plane, in metres. They are bounds: the true ones lie within.
+/// Distances are from the light's plane along its normal, in metres. They are bounds: the true distances lie between.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Situation {
-    /// The light's width and height, metres; a line has no height.
+    /// The light's width and height, metres; the height of a line is 0.
     pub light: [f64; 2],
-    /// Meshes that may block light on its way to a receiver.
+    /// The number of meshes that may block light on its way to a receiver.
     pub occluders: usize,
-    /// Of so many that block.
+    /// The number of all meshes of the frame that block light.
     pub given: usize,
-    /// Meshes that receive.
+    /// The number of meshes that receive.
     pub receivers: usize,
-    /// Meshes that block and receive.
+    /// The number of meshes that block and receive.
     pub both: usize,
-    /// Meshes that the host draws.
+    /// The number of occluders that the host draws.
     pub host_drawn: usize,
-    /// Meshes that the node draws whole, though a texture cuts holes into them.
+    /// The number of occluders that the node draws whole although a texture cuts holes into them.
     pub cut_out: usize,
-    /// Triangles of the occluders; those of what the host draws are not known.
+    /// The number of the occluders' triangles, without those of meshes that the host draws.
     pub triangles: u64,
-    /// Least and largest distance of occluders; no less than a ten-thousandth of the largest.
+    /// The least and largest distance of occluders; the least is at least 1e-4 of the receivers' largest.
     pub occluder_distances: [f64; 2],
-    /// Least and largest distance of receivers, where an occluder may shadow them.
+    /// The least and largest distance of receivers where an occluder may shadow them.
     pub receiver_distances: [f64; 2],
-    /// Every occluder is flat: a sheet.
+    /// Whether every occluder is a sheet: a flat box.
     pub sheets: bool,
-    /// Some occluder is open: seen from both sides, and no sheet.
+    /// Whether some occluder is double-sided and no sheet, and so may be open.
     pub open: bool,
-    /// Some occluder may lie before another, as the map's eye sees them.
+    /// Whether some occluder may hide another from the map's projection point.
     pub overlap: bool,
-    /// Atty 2006 eq. 3 for the whole thickness of an occluder, over the light's side: the most of the light that its
-    /// back hides and its front does not, or the other way round; 0 to 1, the largest of all occluders.
+    /// The largest share of the light, 0 to 1, that an occluder's back hides and its front does not, or the other way
+    /// round: Atty 2006 eq. 3 for the occluder's whole thickness, over the light's side.
     pub thickness: f64,
-    /// Width of the widest penumbra across the light's rays, metres.
+    /// The width of the widest penumbra, across the light's rays, metres.
     pub penumbra: f64,
-    /// The same in pixels, by the smallest pixel there; infinite where the camera is inside what may be shadowed.
+    /// The width of the widest penumbra in pixels of the smallest size there; infinite where the camera is inside the
+    /// region that may be shadowed.
     pub penumbra_pixels: f64,
-    /// The most edges that a metre across a shadow may have, by the occluders' triangles: as many as they have if
-    /// together they cover their box's face once. Infinite where they are not known.
+    /// The most shadow edges that a line of one metre may cross, estimated from the occluders' triangles as if they cover
+    /// a face of their box once; infinite where the triangles are not known.
     pub edges: f64,
-    /// The same over a pixel, by the largest pixel there: 0 to 1.
+    /// The most shadow edges across a pixel of the largest size there, 0 to 1.
     pub edges_a_pixel: f64,
-    /// A map's texel where shadows fall furthest, in pixels, by the smallest pixel there; infinite where the camera is
-    /// inside. Every technique errs by something like it at edges.
+    /// The size of a map's texel at the furthest shadow, in pixels of the smallest size there; infinite where the camera is
+    /// inside the region. Every technique's edges are off by about this much.
     pub texel_pixels: f64,
-    /// The smaller side of what the map shows at the occluders' mean distance, metres.
+    /// The smaller side of the map's view at the occluders' mean distance, metres.
     pub size: f64,
 }
 
-/// What a situation is made from, beyond what the camera sees.
+/// The inputs of a situation, besides occluders and camera.
 pub(crate) struct Seen<'a> {
     pub light: [f64; 2],
-    /// How many meshes block, whether or not they matter.
+    /// The number of meshes that block, whether or not they can shadow anything.
     pub given: usize,
     pub receivers: &'a [LightBox],
-    /// The part of the receivers that may be shadowed, from the light's centre.
+    /// The view from the light's centre of the receivers that may be shadowed.
     pub shadowed: &'a MapView,
-    /// How the technique's map looks at the occluders.
+    /// The view of the technique's map.
     pub map: &'a MapView,
 }
 
-/// A camera, as pixels have it.
+/// The camera whose pixels a situation is measured in.
 pub(crate) struct Camera {
     pub light_from_world: DMat4,
     pub world_from_ndc: DMat4,
@@ -77,8 +78,9 @@ pub(crate) struct Camera {
 }
 
 impl Situation {
-    /// Looks at a frame's boxes. The occluders are those that the node draws; where the host lends maps there are none,
-    /// and the situation says of them what the maps' view does, at its worst. What pixels are to it is still unknown.
+    /// Describes a frame by its boxes. `occluders` are those that the node draws. Where the host lends maps there are
+    /// none, and the worst case within the maps' view stands for them. The values in pixels are unknown until
+    /// [`Self::seen_by`].
     pub(crate) fn of<'a>(
         seen: &Seen,
         occluders: impl Iterator<Item = (&'a MeshInstance, &'a LightBox)>,
@@ -116,7 +118,7 @@ impl Situation {
         let mut windows = [None; MOST_COMPARED];
         for (mesh, placed) in occluders {
             s.add(mesh, placed);
-            // More are not compared.
+            // Only the first few are compared.
             if let Some(window) = windows.get_mut(s.occluders) {
                 *window = depth_layers::window_of(map.eye, placed, map.near);
                 let before = &windows[..s.occluders];
@@ -136,7 +138,7 @@ impl Situation {
         s
     }
 
-    /// The same with what a camera's pixels are to it.
+    /// The situation with its values in a camera's pixels filled in.
     pub(crate) fn seen_by(mut self, camera: &Camera, shadowed: &MapView, map: &MapView) -> Self {
         let [smallest, largest] = pixel_sizes(camera, shadowed);
         let inside = smallest <= 0.0;
@@ -186,25 +188,27 @@ impl Situation {
     }
 }
 
-/// Least and largest u and v; none where nothing is seen.
+/// The least and largest (u, v) of a box; `None` where the map shows nothing of it.
 type Window = Option<([f64; 2], [f64; 2])>;
 
-/// Whether two windows share a texel of this size.
+/// Whether two windows come within a texel of this size of each other.
 fn meet(a: &Window, b: &Window, texel: [f64; 2]) -> bool {
     let (Some(a), Some(b)) = (a, b) else { return false };
     (0..2).all(|i| a.1[i] + texel[i] >= b.0[i] && b.1[i] + texel[i] >= a.0[i])
 }
 
-/// The smallest and the largest pixel where shadows may fall, metres across the view.
+/// The width of the smallest and of the largest pixel where shadows may fall, metres; 0 and infinity where the camera is
+/// inside that region.
 ///
-/// A pixel at a point is 2w/(W |g|) wide, with w the point's clip coordinate and g the part of x's gradient across the
-/// view; w is linear, so that its extremes over the frustum of what may be shadowed are at its corners.
+/// A pixel at a point is 2w/(W |g|) wide, with w the point's clip coordinate, W the image's width and g the part of the
+/// gradient of clip x across the view. w is linear, so that its extremes over the frustum that may be shadowed lie at
+/// the frustum's corners.
 fn pixel_sizes(camera: &Camera, shadowed: &MapView) -> [f64; 2] {
     let clip_from_world = camera.world_from_ndc.inverse();
     let clip_from_light = clip_from_world * camera.light_from_world.inverse();
     let row = |i: usize| clip_from_light.row(i);
     let center = camera.world_from_ndc * DVec4::new(0.0, 0.0, 0.5, 1.0);
-    // Which sign w has in front of the camera.
+    // The sign that w has in front of the camera.
     let sign = (clip_from_world * (center / center.w)).w.signum();
     let across = |r: DVec4| {
         let view = row(3).truncate();
@@ -224,7 +228,7 @@ fn pixel_sizes(camera: &Camera, shadowed: &MapView) -> [f64; 2] {
         let at = sign * row(3).dot(DVec4::new(u * d, t * d, d, 1.0));
         w = [w[0].min(at), w[1].max(at)];
     }
-    // Behind the camera, or not to be told.
+    // A corner lies behind the camera, or the matrix does not say what does.
     if !(w[0] > 0.0 && w[0] <= w[1] && w[1].is_finite()) {
         return [0.0, f64::INFINITY];
     }

@@ -1,37 +1,39 @@
-//! What a frame does at the node's border, resolved to the host's own handles.
+//! How a frame accesses images and buffers of the host: the barriers and scopes at the node's border.
 
 use super::MeshDraw;
 use crate::graph::Scope;
 use crate::lent::Geometry;
 use ash::vk;
 
-/// How the node uses an image of the border.
+/// How the node uses an image that it shares with the host.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NodeUse {
-    /// Its first use, or all of them where it only reads, and the layout the image must then be in.
+    /// The scope of the node's first use, or of all its uses where it only reads, with the layout that the image must
+    /// be in then.
     pub entry: Scope,
-    /// Its last use, and the layout the image is left in.
+    /// The scope of the node's last use, with the layout that the image is left in.
     pub exit: Scope,
-    /// Whether it writes.
+    /// Whether the node writes the image.
     pub writes: bool,
 }
 
-/// One image that crosses the node's border.
+/// The accesses to one image that node and host share, before, in and after the node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HostAccess {
-    /// `gbuffer.depth`, `gbuffer.mask`, `occluder_maps.front`, `occluder_maps.back`, `visibility`.
+    /// The image's name: `gbuffer.depth`, `gbuffer.mask`, `occluder_maps.front`, `occluder_maps.back`, `light.texture`
+    /// or `visibility`.
     pub name: &'static str,
-    /// The image; null for a node's own where the plan was made without its node.
+    /// The image; a null handle for the node's own image in a plan that was made without a node.
     pub image: vk::Image,
-    /// Which of its array layers: the light's, in a node's own visibility image; otherwise 0.
+    /// The array layer: the light's index in the node's own visibility image, otherwise 0.
     pub layer: u32,
-    /// Every aspect that it has.
+    /// All aspects of the image's format.
     pub aspect: vk::ImageAspectFlags,
     /// The host's last use before the node, as the frame says.
     pub before: Scope,
-    /// What the node does with it; none where this frame's passes leave it alone.
+    /// How the node uses the image; `None` where no pass of this frame does.
     pub node: Option<NodeUse>,
-    /// The host's first use behind the node, as the frame says.
+    /// The host's first use after the node, as the frame says.
     pub after: Scope,
 }
 
@@ -40,18 +42,19 @@ pub struct HostAccess {
 pub struct ImageBarrier {
     /// The image.
     pub image: vk::Image,
-    /// Which of its array layers.
+    /// The array layer.
     pub layer: u32,
-    /// Its aspects.
+    /// The image's aspects.
     pub aspect: vk::ImageAspectFlags,
-    /// The use that must be done.
+    /// The use that must be complete.
     pub before: Scope,
     /// The use that waits.
     pub after: Scope,
 }
 
 impl ImageBarrier {
-    /// As Vulkan takes it, for one layer and the image's only level; the stages go beside it.
+    /// The barrier as a Vulkan struct, for one layer and the image's only mip level. Its stages, `before.stage` and
+    /// `after.stage`, are arguments of `vkCmdPipelineBarrier`.
     pub fn vk(&self) -> vk::ImageMemoryBarrier<'static> {
         vk::ImageMemoryBarrier::default()
             .src_access_mask(self.before.access)
@@ -88,17 +91,17 @@ impl ImageBarrier {
 }
 
 impl HostAccess {
-    /// The barrier before the node, for a host that places them; none where the node leaves the
-    /// image alone.
+    /// The barrier that a host which places them itself records before the node; `None` where the node does not use the
+    /// image.
     pub fn entry_barrier(&self) -> Option<ImageBarrier> {
         let used = self.node?;
-        // What the node writes it writes whole: the old content may go.
+        // The node overwrites the whole image: the old content may be discarded.
         let before = if used.writes { self.before.forgotten() } else { self.before };
         Some(self.barrier(before, used.entry))
     }
 
-    /// The barrier behind the node, for a host that places them; none where nothing need be waited
-    /// for. An image that the node leaves alone goes straight from the host's one use to its next.
+    /// The barrier that a host which places them itself records after the node; `None` where there is nothing to wait
+    /// for. For an image that the node does not use, it leads straight from the host's last use to its next.
     pub fn exit_barrier(&self) -> Option<ImageBarrier> {
         let before = self.node.map_or(self.before, |used| used.exit);
         let layout = match self.after.layout {
@@ -121,16 +124,16 @@ impl HostAccess {
     }
 }
 
-/// A buffer of the host's that the node reads.
+/// A vertex or index buffer of the host that the node reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BufferAccess {
     /// The buffer.
     pub buffer: vk::Buffer,
-    /// Stages and accesses; the layout is `UNDEFINED`.
+    /// The stages and accesses of the node's reads; the layout is `UNDEFINED`.
     pub scope: Scope,
 }
 
-/// Every buffer that these draws read, once.
+/// The buffers that these draws read, each once, with all accesses to it.
 pub(super) fn of_buffers<'a>(draws: impl Iterator<Item = &'a MeshDraw>) -> Vec<BufferAccess> {
     let scope = |access| Scope {
         stage: vk::PipelineStageFlags::VERTEX_INPUT,

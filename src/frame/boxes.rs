@@ -1,42 +1,42 @@
-//! The meshes of a frame as all of its lights look at them, placed in the world once.
+//! Bounding spheres of a frame's meshes, computed once for all of its lights, and the faults found on the way.
 
 use crate::RectangleLight;
 use crate::lent::{Geometry, MeshBounds, MeshInstance};
 use ash::vk;
 use glam::{DVec3, DVec4};
 
-/// Spheres tested at once.
+/// How many spheres are tested at once.
 const BATCH: usize = 64;
 
-/// What a sphere's numbers may be off by, as a share: more than single precision rounds.
+/// The relative error that a sphere's coordinates may have: more than single precision rounds by.
 const SLACK: f32 = 1e-6;
 
-/// Spheres around the meshes' boxes, and what concerns all lights.
+/// Spheres around the meshes' boxes, in world space, and the first mesh with each kind of fault.
 ///
-/// In single precision and one array a coordinate, because most meshes concern most lights not at all, and are to be
-/// told from the others at a nanosecond each.
+/// Most meshes are out of most lights' reach. Single precision and an array for each coordinate let a light reject
+/// such a mesh in about a nanosecond.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Boxes {
     x: Vec<f32>,
     y: Vec<f32>,
     z: Vec<f32>,
     radius: Vec<f32>,
-    /// Of how many meshes with triangles, which block.
+    /// How many meshes block light and have triangles.
     pub blockers: usize,
-    /// The first mesh whose transform or bounds are no finite numbers.
+    /// The first mesh whose transform or bounds are not finite.
     pub not_finite: Option<usize>,
-    /// The first one that cannot be drawn as it is said to be, and why.
+    /// The first mesh whose transform or buffers are invalid, and why.
     pub unsound: Option<(usize, &'static str)>,
-    /// The first one that blocks and does not receive.
+    /// The first mesh that blocks and does not receive.
     pub occluder_alone: Option<usize>,
-    /// The first one that the host draws.
+    /// The first mesh that the host draws.
     pub host_drawn: Option<usize>,
-    /// The first one that the host draws and that blocks.
+    /// The first mesh that the host draws and that blocks light.
     pub host_drawn_blocker: Option<usize>,
 }
 
 impl Boxes {
-    /// Looks at a frame's meshes.
+    /// Computes the spheres of a frame's meshes and finds the faulty ones.
     pub fn place(&mut self, meshes: &[MeshInstance]) {
         let Self { x, y, z, radius, .. } = self;
         for of in [&mut *x, y, z, radius] {
@@ -62,7 +62,8 @@ impl Boxes {
                 self.occluder_alone.get_or_insert(index);
             }
             let [center, half] = around(mesh);
-            // Every number is in one of these, and what is not finite stays so; what is may have become too large.
+            // Every number of the mesh enters one of these, so one that is not finite shows. Finite numbers may overflow
+            // on the way; `is_finite` then looks at the mesh itself.
             let sound =
                 center.is_finite() && half.is_finite() && mesh.world_from_mesh.row(3).is_finite();
             if !(sound || is_finite(mesh)) {
@@ -73,13 +74,14 @@ impl Boxes {
             self.x.push(center.x);
             self.y.push(center.y);
             self.z.push(center.z);
-            // Without triangles there is nothing anywhere.
+            // A mesh without triangles is near no light.
             let reach = half.length() as f32 * (1.0 + SLACK) + rounding;
             self.radius.push(if there { reach } else { f32::NEG_INFINITY });
         }
     }
 
-    /// The places of the meshes that are partly before a light and no further from its centre than it reaches, metres.
+    /// Writes the indices of the meshes that are at least partly in front of a light and within `reach`, in metres from
+    /// its centre, into `places`.
     pub fn near(&self, light: &RectangleLight, reach: Option<f64>, places: &mut Vec<u32>) {
         places.clear();
         let center = light.center().as_vec3();
@@ -96,7 +98,7 @@ impl Boxes {
                 let before = normal.x * x + normal.y * y + normal.z * z;
                 let slack = SLACK * (x.abs() + y.abs() + z.abs()) + rounding;
                 let most = reach + radius;
-                // What is too large for these numbers is kept.
+                // Where a number overflows, every comparison is false and the mesh is kept.
                 let behind = before + slack + radius < 0.0;
                 let beyond = x * x + y * y + z * z > most * most || most < 0.0;
                 *kept = !(behind | beyond);
@@ -107,22 +109,22 @@ impl Boxes {
     }
 }
 
-/// Boxes that are placed once for all lights whose frames lend the same list of meshes at the same time.
+/// The [`Boxes`] of the last list of meshes, which all lights that share the list use again.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct MeshBoxes {
     boxes: Boxes,
     near: Vec<u32>,
-    /// Where the list lies, and how long it is.
+    /// The list's address and length.
     list: Option<(usize, usize)>,
 }
 
 impl MeshBoxes {
-    /// Forgets which list was placed: the next one lies where it may, and is another.
+    /// Forgets the list: another one may lie at its address in the next frame.
     pub fn forget(&mut self) {
         self.list = None;
     }
 
-    /// The boxes of some meshes, and memory for places.
+    /// The boxes of a list of meshes, and memory for [`Boxes::near`].
     pub fn of(&mut self, meshes: &[MeshInstance]) -> (&Boxes, &mut Vec<u32>) {
         let list = Some((meshes.as_ptr() as usize, meshes.len()));
         if self.list != list {
@@ -139,13 +141,13 @@ fn is_finite(mesh: &MeshInstance) -> bool {
     mesh.world_from_mesh.is_finite() && bounds.iter().all(|x| x.is_finite())
 }
 
-/// How far the last row of a transform may be from 0, 0, 0, 1: what hosts round.
+/// How far the last row of a transform may be from 0, 0, 0, 1, for the rounding of hosts.
 const PROJECTIVE: f64 = 1e-6;
 
-/// What of a mesh cannot be: its transform or its buffers.
+/// Why a mesh's transform or buffers are invalid; `None` for a valid mesh.
 fn problem(mesh: &MeshInstance) -> Option<&'static str> {
     let last = mesh.world_from_mesh.row(3) - DVec4::W;
-    // What is not finite is told elsewhere.
+    // `Boxes::not_finite` reports numbers that are not finite; those compare false here.
     if last.abs().max_element() > PROJECTIVE {
         return Some("its transform must end in the row 0, 0, 0, 1; is it transposed?");
     }
@@ -175,7 +177,7 @@ fn problem(mesh: &MeshInstance) -> Option<&'static str> {
     let bytes = match kind {
         vk::IndexType::UINT16 => 2,
         vk::IndexType::UINT32 => 4,
-        // An extension's, which its device has or has not.
+        // Needs an extension, which the host has enabled if it uses the type.
         vk::IndexType::UINT8_KHR => 1,
         _ => return Some("its indices must be of 16 or 32 bits"),
     };
@@ -194,7 +196,7 @@ fn swapped([least, largest]: &MeshBounds) -> Option<&'static str> {
     )
 }
 
-/// The middle of a mesh's box in the world, and half its extents along the world's axes.
+/// The centre of a mesh's bounding box in world space, and half the box's extents along the world's axes.
 fn around(mesh: &MeshInstance) -> [DVec3; 2] {
     let [low, high] = mesh.bounds.map(|p| DVec3::from_array(p.map(f64::from)));
     let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
@@ -203,7 +205,7 @@ fn around(mesh: &MeshInstance) -> [DVec3; 2] {
     [m.transform_point3(middle), axis(0, half.x) + axis(1, half.y) + axis(2, half.z)]
 }
 
-/// Whether there is anything to draw of a mesh.
+/// Whether a mesh has at least one triangle, as far as is known.
 pub(super) fn has_triangles(mesh: &MeshInstance) -> bool {
     match mesh.geometry {
         Geometry::Buffers(buffers) => buffers.count >= 3,
@@ -231,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_behind_or_out_of_reach_is_told() {
+    fn meshes_behind_or_out_of_reach_are_left_out() {
         let to = RectangleLight::new(DVec3::ZERO, DVec3::X, DVec3::Y).unwrap().emission();
         let meshes = [2.0, -2.0, 0.0, 9.0, -0.8].map(|d| cube(to * d));
         assert_eq!(near(&meshes, None), [0, 2, 3, 4]);

@@ -1,4 +1,4 @@
-//! What a frame's numbers and meshes must be, each refusal a sentence in the host's words.
+//! Checks of a frame's numbers and meshes; each error is a sentence that names the host's own field.
 
 use super::boxes::Boxes;
 use super::{Description, Frame};
@@ -6,7 +6,7 @@ use crate::Error;
 use crate::stages::depth_layers::LightBox;
 use crate::techniques::room::{HostDraws, Room, Takes};
 
-/// Lengths in metres whose squares, and those over each other, single precision holds with room to spare.
+/// The lengths in metres whose squares, and the ratios of these, single precision holds.
 const LENGTHS: std::ops::RangeInclusive<f64> = 1e-15..=1e15;
 
 pub(super) fn bad<T>(what: impl Into<String>) -> Result<T, Error> {
@@ -14,13 +14,19 @@ pub(super) fn bad<T>(what: impl Into<String>) -> Result<T, Error> {
 }
 
 impl Frame<'_> {
-    /// Whether everything but its meshes suits a node of this description, with its first technique.
+    /// Checks everything but the frame's meshes against a description and its first technique.
+    ///
+    /// # Errors
+    /// [`Error::Frame`] for the first thing that does not fit.
     pub(super) fn check(&self, description: &Description, room: &dyn Room) -> Result<(), Error> {
         self.check_numbers(description, room.name(), &room.takes())?;
         self.check_images(description, &room.maps())
     }
 
-    /// The same of all but its images.
+    /// Checks the frame's indices, light, camera, window and reach: everything but images and meshes.
+    ///
+    /// # Errors
+    /// [`Error::Frame`] for the first thing that does not fit.
     pub(super) fn check_numbers(
         &self,
         description: &Description,
@@ -57,13 +63,13 @@ impl Frame<'_> {
                  many-lights, or give its rectangle"
             ));
         }
-        // Of numbers so large or small that it is none, a determinant is not known either.
+        // A determinant that overflows or underflows says nothing about the matrix, which is refused too.
         if !self.world_from_ndc.is_finite() || !self.world_from_ndc.determinant().is_normal() {
             return bad("world_from_ndc must be finite and invertible");
         }
         self.check_background()?;
         if let Some([min, max]) = self.window {
-            // Which the shaders divide by, in 32 bits.
+            // The shaders divide by the width in 32 bits.
             let is_width = |i: usize| ((max[i] - min[i]) as f32).is_normal() && min[i] < max[i];
             if !(0..2).all(is_width) {
                 return bad("the occluder map's window must have finite tangents, least first");
@@ -78,7 +84,10 @@ impl Frame<'_> {
         Ok(())
     }
 
-    /// Whether the meshes of the frame, whose boxes are placed, suit a technique that takes this.
+    /// Checks the frame's meshes, whose `boxes` are these, against what a technique takes.
+    ///
+    /// # Errors
+    /// [`Error::Frame`] for the first mesh that does not fit.
     pub(super) fn check_meshes(&self, boxes: &Boxes, takes: &Takes) -> Result<(), Error> {
         if let Some(index) = boxes.not_finite {
             return bad(format!("mesh {index}: its transform and bounds must be finite numbers"));
@@ -99,7 +108,10 @@ impl Frame<'_> {
         }
     }
 
-    /// Whether an occluder, the mesh at a place of the frame's list, is near enough to be told in single precision.
+    /// Checks that an occluder, mesh number `place` of the frame, is near enough to the light for single precision.
+    ///
+    /// # Errors
+    /// [`Error::Frame`] for one further away than 1e15 m.
     pub(super) fn check_reach(place: u32, of: &LightBox) -> Result<(), Error> {
         let reach = of.min.abs().max(of.max.abs()).max_element();
         if reach <= *LENGTHS.end() {

@@ -1,49 +1,52 @@
-//! What a frame draws: meshes, and the matrices that bring them into each view.
+//! The meshes that a frame draws, and the matrices that transform them into each view.
 
 use super::Description;
 use crate::Error;
 use crate::lent::{Geometry, MeshBuffers, MeshInstance};
 use glam::DMat4;
 
-/// How a mesh's triangles are wound as the light sees them.
+/// Which of a mesh's triangles face the light: the winding of front faces, as the light sees them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Faces {
-    /// Fronts are counter-clockwise.
+    /// Front faces are counter-clockwise.
     CounterClockwise,
-    /// Fronts are clockwise: the mesh is mirrored.
+    /// Front faces are clockwise: the mesh's transform mirrors it.
     Clockwise,
-    /// Every face is a front and a back.
+    /// Every face counts as a front and a back face: the mesh is double-sided.
     Both,
 }
 
-/// A mesh of a list, ready to be drawn.
+/// A mesh with the state that draws it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshDraw {
     /// The host's mesh.
     pub mesh: MeshInstance,
-    /// Index into [`Description::position_strides`]; 0 for what the host draws.
+    /// The index of the mesh's stride in [`Description::position_strides`]; 0 for a mesh that the host draws.
     pub stride: usize,
-    /// Which faces are fronts.
+    /// Which faces are front faces.
     pub faces: Faces,
 }
 
-/// The meshes of a list, and the matrices that bring them into each view of it.
+/// A list of meshes, and the matrices that transform them into each of the list's views.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct DrawList {
     pub meshes: Vec<MeshDraw>,
-    /// Mesh space to clip space, by column; view by view, mesh by mesh.
+    /// Matrices from mesh space to clip space, column-major: all meshes of view 0, then those of view 1, and so on.
     pub clip_from_mesh: Vec<[f32; 16]>,
 }
 
 impl DrawList {
-    /// Draws nothing.
+    /// Empties the list.
     pub fn clear(&mut self) {
         self.meshes.clear();
         self.clip_from_mesh.clear();
     }
 
-    /// The meshes as each of some views sees them, which are given as light space to clip space. Meshes come into light
-    /// space first: there a scene's distance from the world's origin is gone, before anything is rounded.
+    /// Fills the list with `meshes` for `views`, matrices from light space to clip space. The product with the mesh's
+    /// transform is made in light space and 64 bits, so that a scene far from the world's origin loses no precision.
+    ///
+    /// # Errors
+    /// [`Error::Frame`] for a mesh whose stride is not in the description.
     pub fn fill<'a>(
         &mut self,
         description: &Description,

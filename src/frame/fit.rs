@@ -1,4 +1,4 @@
-//! What of a frame stays as long as light and meshes stay: which meshes matter, and how the maps look at them.
+//! Fits a light's maps to the meshes that matter to it. The result stays valid while light and meshes do.
 
 use super::boxes::{Boxes, MeshBoxes};
 use super::hull::Hull;
@@ -16,7 +16,7 @@ use crate::technique::Technique;
 use crate::techniques::room::{Maps, Room, Seen as ViewsSeen, Takes};
 use glam::DMat4;
 
-/// Meshes that matter to a light, by their places in the frame's list, and their boxes as it sees them.
+/// Meshes that matter to a light: their indices in the frame's list, and their boxes in light space.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Placed {
     pub places: Vec<u32>,
@@ -34,7 +34,7 @@ impl Placed {
         self.boxes.push(of);
     }
 
-    /// Keeps those that `keep` says; how many went.
+    /// Keeps the meshes whose box `keep` accepts; returns how many were removed.
     fn retain(&mut self, keep: impl Fn(&LightBox) -> bool) -> usize {
         let mut kept = 0;
         for i in 0..self.boxes.len() {
@@ -65,7 +65,7 @@ impl Placed {
     }
 }
 
-/// What a fit is for: frames that agree in it have the same.
+/// The inputs of a fit: frames with equal inputs have the same fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Inputs {
     revision: u64,
@@ -76,49 +76,49 @@ struct Inputs {
     meshes: usize,
 }
 
-/// What a technique asks of a fit.
+/// What a technique needs from a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct FitRequest {
-    /// The technique that views are made for; none where there are to be none.
+    /// The technique whose views are made; `None` before one is chosen, when there are none.
     pub technique: Option<Technique>,
-    /// What it takes.
+    /// Which lights and meshes the technique accepts.
     pub takes: Takes,
-    /// The maps that it has drawn.
+    /// The maps that the technique draws.
     pub maps: Maps,
 }
 
 impl FitRequest {
-    /// What a technique asks of a fit.
+    /// The request of a technique.
     pub fn of(technique: &Technique) -> Self {
         let room = technique.room();
         Self { technique: Some(*technique), takes: room.takes(), maps: room.maps() }
     }
 }
 
-/// Which meshes matter to a light, and how its maps look at them.
+/// The meshes that matter to a light, and the views of its maps.
 #[derive(Clone, Debug)]
 pub(super) struct Fit {
     of: Option<Inputs>,
     pub light_from_world: DMat4,
-    /// None where the host lends maps.
+    /// The meshes that may block the light; empty where the host lends occluder maps.
     pub occluders: Placed,
     pub receivers: Placed,
     pub host_maps: Option<HostMapView>,
-    /// The occluders from the light's centre.
+    /// The view of the occluders from the light's centre.
     pub centre: Option<MapView>,
-    /// What of the receivers they may shadow, from there.
+    /// The view from the light's centre of the receivers that the occluders may shadow.
     pub shadowed: Option<MapView>,
-    /// The occluders from behind the light, where the technique looks from there.
+    /// The view of the occluders from behind the light, for techniques whose projection point lies there.
     pub behind: Option<MapView>,
-    /// Whether anything can be shadowed.
+    /// Whether anything can be shadowed, and why or why not.
     pub need: Need<Why>,
-    /// What boxes tell; none where nothing can be shadowed.
+    /// The situation as far as the meshes' boxes show it; `None` where nothing can be shadowed.
     pub situation: Option<Situation>,
     /// Signs of mistakes in the meshes.
     pub odd: Odd,
-    /// Another one each time that meshes are looked at.
+    /// Counts the fits that were made: it changes with each.
     number: u64,
-    /// Views for techniques that look from all over the light, once they are asked for.
+    /// The technique's own views, once [`Self::views`] has made them.
     views: Option<Views>,
 }
 
@@ -143,10 +143,11 @@ impl Default for Fit {
 }
 
 impl Fit {
-    /// Becomes that of a frame, which it may be already.
+    /// Fits the maps to a frame, unless the fit is that frame's already.
     ///
     /// # Errors
-    /// [`Error::Frame`] for meshes that do not suit the technique, or a camera of the host's maps that is none.
+    /// [`Error::Frame`] for meshes that do not suit the technique, or a matrix of lent maps that is no camera at the
+    /// light's centre.
     pub fn update(
         &mut self,
         description: &Description,
@@ -201,7 +202,7 @@ impl Fit {
         let no_occluder = self.occluders.boxes.is_empty() && gone == [0, 0];
         self.odd = Odd::of(frame, boxes, [no_occluder, receivers.is_empty()]);
         self.need = self.need_of(boxes.blockers, gone);
-        // The host's maps are seen from the light's centre.
+        // Lent maps look from the light's centre.
         let eye = if self.host_maps.is_some() { Projection::Centre } else { maps.eye };
         self.behind = match eye {
             Projection::Centre => None,
@@ -225,8 +226,9 @@ impl Fit {
         Ok(())
     }
 
-    /// Sorts the meshes that are near: what receives, and what can lie between it and the light. How many went because
-    /// they are flat, with both on one side, and how many because they are elsewhere.
+    /// Sorts the meshes near the light into receivers and the occluders that can lie between a receiver and the light.
+    /// Returns how many occluders were removed because they are flat with light and receivers on one side, and how many
+    /// because they lie elsewhere.
     fn place(&mut self, frame: &Frame, near: &[u32]) -> [usize; 2] {
         let half = frame.light.rectangle().half_extents();
         let lent = self.host_maps.is_some();
@@ -253,7 +255,7 @@ impl Fit {
         [aside, elsewhere]
     }
 
-    /// Whether anything can be shadowed, and why not.
+    /// Whether anything can be shadowed, and why or why not.
     fn need_of(&self, given: usize, [aside, elsewhere]: [usize; 2]) -> Need<Why> {
         let receivers = self.receivers.boxes.len();
         match (&self.centre, &self.shadowed) {
@@ -286,15 +288,15 @@ impl Fit {
         }
     }
 
-    /// Which look at the meshes this is: with the same number they are the same.
+    /// The number of this fit: the meshes and views are the same while it is.
     pub fn number(&self) -> u64 {
         self.number
     }
 
-    /// The technique's own views.
+    /// The technique's own views, made on the first call after an update.
     ///
     /// # Errors
-    /// [`Error::Setting`] where a light takes more of them than there may be.
+    /// [`Error::Setting`] where the light takes more views than the technique allows.
     pub fn views(&mut self, room: &dyn Room, frame: &Frame) -> Result<&Views, Error> {
         let views = match self.views.take() {
             Some(views) => views,
@@ -316,7 +318,8 @@ impl Fit {
 }
 
 impl Inputs {
-    /// None where the host gives no number; a camera of the host's maps is looked at each time.
+    /// The inputs of a frame's fit; `None` where the frame has no revision or lends occluder maps, whose camera may
+    /// change: its fit is made anew.
     fn of(request: &FitRequest, frame: &Frame) -> Option<Self> {
         if frame.occluder_maps.is_some() {
             return None;

@@ -1,15 +1,15 @@
-//! What of a light's surroundings can lie between it and what receives.
+//! The region between a light and its receivers: occluders outside it shadow nothing.
 
 use crate::stages::depth_layers::LightBox;
 use glam::DVec3;
 
-/// What boxes may be off by, as a share of the distances.
+/// The error that a box's coordinates may have, as a share of the distances.
 const SLACK: f64 = 1e-9;
 
 /// A convex region around every segment from a light to a receiver, in light space.
 ///
 /// ```text
-///        light              across each of x and y: what is between a line from the light's left end past the
+///        light              in x and in y: the region between a line from the light's left end past the
 ///       ───────             receivers' left side and one on the right, between the outermost of both, and
 ///      /       \            before the furthest receiver
 ///     |         |
@@ -19,17 +19,17 @@ const SLACK: f64 = 1e-9;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hull {
     half: [f64; 2],
-    /// Metres aside a metre away from the light, on the left and on the right, across x and y; none where receivers touch
-    /// the light's plane, since no slope holds them.
+    /// How far the left and the right side move outwards for each metre from the light's plane, in x and in y; `None`
+    /// where receivers touch that plane and no slope contains them.
     slopes: Option<[[f64; 2]; 2]>,
-    /// How far light and receivers reach aside.
+    /// The least and largest coordinate of light and receivers, in x and in y, metres.
     sides: [[f64; 2]; 2],
     far: f64,
 }
 
 impl Hull {
-    /// Around a light of these half-extents and the boxes of what receives; none where none of it is before the light.
-    /// Receivers further away than `reach` from the light's centre matter no more than to there.
+    /// The region around a light of half-extents `half` and the boxes of its receivers; `None` where no receiver lies in
+    /// front of the light. What of a receiver is further from the light's centre than `reach`, in metres, is cut off.
     pub fn new(half: [f64; 2], receivers: &[LightBox], reach: Option<f64>) -> Option<Self> {
         let reach = DVec3::splat(reach.unwrap_or(f64::INFINITY));
         let least = receivers.iter().fold(DVec3::INFINITY, |m, b| m.min(b.min)).max(-reach);
@@ -44,7 +44,7 @@ impl Hull {
         Some(Self { half, slopes: (near > 0.0).then_some(slopes), sides, far: most.z })
     }
 
-    /// Whether some of a box may lie in it.
+    /// Whether a box may overlap the region.
     pub fn meets(&self, of: &LightBox) -> bool {
         let slack = SLACK * (of.min.abs().max(of.max.abs()).max_element() + self.far);
         if of.max.z <= 0.0 || of.min.z > self.far + slack {
@@ -81,11 +81,11 @@ mod tests {
         assert!(!hull.meets(&cube(1.2, 5.0, 0.1)) && !hull.meets(&cube(-1.2, 5.0, 0.1)));
         assert!(!hull.meets(&cube(0.0, -1.0, 0.5)), "behind the light");
         assert!(!hull.meets(&cube(0.0, 11.0, 0.1)), "beyond");
-        // A receiver aside: from ±1 to 19 … 21.
+        // A receiver to the side: from ±1 to 19 … 21.
         let hull = Hull::new([1.0, 1.0], &[cube(20.0, 10.0, 1.0)], None).unwrap();
         assert!(hull.meets(&cube(10.0, 5.0, 0.1)) && !hull.meets(&cube(-2.0, 5.0, 0.1)));
         assert!(!hull.meets(&cube(14.0, 5.0, 0.1)));
-        // What a light does not reach needs no shadow.
+        // Receivers out of the light's reach need no shadow.
         let ground = cube(0.0, 60.0, 50.0);
         let hull = Hull::new([1.0, 1.0], &[ground], Some(12.0)).unwrap();
         assert!(!hull.meets(&cube(0.0, 14.0, 0.5)));
@@ -100,7 +100,7 @@ mod tests {
         assert!(hull.meets(&cube(-3.0, 1.0, 0.1)) && !hull.meets(&cube(-5.0, 1.0, 0.1)));
     }
 
-    /// Points of segments from the light to receivers are never left out.
+    /// The region contains every point of each segment from the light to a receiver.
     #[test]
     fn no_segment_leaves_it() {
         let mut state = 1u64;

@@ -1,4 +1,4 @@
-//! What the images that a host lends for a frame must be, each refusal a sentence in its words.
+//! Checks of the images that a host lends for a frame; each error is a sentence that names the image.
 
 use super::check::bad;
 use super::{Description, Frame};
@@ -9,18 +9,21 @@ use crate::stages::visibility;
 use crate::techniques::room::Maps;
 use ash::vk::{self, ImageLayout as Layout, ImageUsageFlags as Usage};
 
-/// What one of the host's images must be.
+/// The properties that one of the host's images must have.
 struct Wanted {
     name: &'static str,
     format: vk::Format,
     extent: [u32; 2],
     usage: Usage,
-    /// Its content is read.
+    /// Whether the node reads the image's content.
     read: bool,
 }
 
 impl Frame<'_> {
-    /// Whether the frame's images are what the description and a technique with these maps need.
+    /// Checks the frame's images against the description and the maps of its technique.
+    ///
+    /// # Errors
+    /// [`Error::Frame`] for the first image that does not fit.
     pub(super) fn check_images(
         &self,
         description: &Description,
@@ -99,7 +102,7 @@ impl Frame<'_> {
         }
     }
 
-    /// Whether the image that is written is none of those that are read.
+    /// Checks that the image that the node writes is none of those that it reads.
     fn check_alone(&self, written: &HostImage) -> Result<(), Error> {
         let maps = self.occluder_maps.as_ref();
         let read = [
@@ -161,7 +164,8 @@ fn check_image(image: &HostImage, wanted: &Wanted) -> Result<(), Error> {
     check_scopes(name, [&image.before, &image.after], image.usage, is_depth_format(format))
 }
 
-/// Whether an image can be left and taken back so: layouts that an image of this usage can be in, and stages.
+/// Checks the host's scopes before and after the node: an image of this usage must be able to be in their layouts, and
+/// each must name a stage.
 fn check_scopes(
     name: &str,
     [before, after]: [&Scope; 2],
@@ -192,7 +196,7 @@ fn check_scopes(
     Ok(())
 }
 
-/// The usages of which an image must have one to be in a layout; none where any will do.
+/// The usages of which an image needs at least one to be in a layout; empty where any usage will do.
 fn usages_of(layout: Layout) -> Usage {
     match layout {
         Layout::COLOR_ATTACHMENT_OPTIMAL => Usage::COLOR_ATTACHMENT,
@@ -210,7 +214,7 @@ fn usages_of(layout: Layout) -> Usage {
     }
 }
 
-/// What kind of image a layout is for, where that is another than this one.
+/// The kind of image that a layout is for, where this image is of another kind.
 fn foreign(layout: Layout, depth: bool) -> Option<&'static str> {
     match layout {
         Layout::COLOR_ATTACHMENT_OPTIMAL if depth => Some("color attachments"),

@@ -1,4 +1,5 @@
-//! What a frame's boxes and its camera tell: what of the technique is needed.
+//! The numbers of a frame's passes and the effects it needs, made from a fit and the camera; and the situation of a light
+//! before a technique is chosen.
 
 use super::boxes::MeshBoxes;
 use super::check::bad;
@@ -10,7 +11,11 @@ use crate::effects::{Camera, Situation, Verdicts};
 use crate::stages::views::Views;
 use crate::techniques::room::{Maps, Takes};
 
-/// What is needed of a frame whose meshes are fitted, and the views of the passes that run.
+/// The inputs of a frame's passes, and the verdict on each effect.
+///
+/// # Errors
+/// [`Error::Frame`] for a camera that 32-bit floats cannot hold in light space; [`Error::Setting`] where the technique
+/// allows fewer views than the light takes.
 pub(super) fn frame_inputs<'a>(
     description: &Description,
     frame: &Frame,
@@ -51,7 +56,7 @@ pub(super) fn frame_inputs<'a>(
     Ok((inputs, verdicts))
 }
 
-/// A fit's situation with what the frame's pixels are to it; none where nothing can be shadowed.
+/// A fit's situation with the sizes of the frame's pixels added; `None` where nothing can be shadowed.
 fn situation_seen(fit: &Fit, frame: &Frame, extent: [u32; 2]) -> Option<Situation> {
     let (Some(centre), Some(shadowed)) = (&fit.centre, &fit.shadowed) else { return None };
     let camera = Camera {
@@ -63,30 +68,31 @@ fn situation_seen(fit: &Fit, frame: &Frame, extent: [u32; 2]) -> Option<Situatio
     Some(fit.situation?.seen_by(&camera, shadowed, map))
 }
 
-/// The side of the map that a situation is told by, texels.
+/// The side of the map, in texels, for which a situation is described before a technique is chosen.
 const SITUATION_MAP: u32 = 256;
 
-/// What a refusal calls the technique where none is chosen yet.
+/// The technique's name in errors while none is chosen.
 const ANY: &str = "auto";
 
-/// FrameInputs at a light's frames for what no technique changes, in the same memory from frame to frame.
+/// Describes the situation of a light's frames before a technique is chosen; keeps the fit of the meshes while their
+/// revision stays.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SituationCache {
     fit: Fit,
 }
 
 impl SituationCache {
-    /// What a frame's boxes tell of it, as a soft shadow map would see it; none where nothing can be shadowed.
+    /// The situation of a frame, seen from the light's centre; `None` where nothing can be shadowed.
     ///
     /// # Errors
-    /// As [`super::plan`], for what no technique takes.
+    /// [`Error::Frame`] for a frame that every technique refuses; see [`super::plan`].
     pub fn situation(
         &mut self,
         description: &Description,
         frame: &Frame,
         mesh_boxes: &mut MeshBoxes,
     ) -> Result<Option<Situation>, Error> {
-        // What a technique takes is checked once it is chosen; the situation is seen from the light's centre.
+        // What the technique accepts is checked once it is chosen.
         let takes = Takes { line: true, outline: true, ..Takes::RECTANGLES };
         let side = match frame.occluder_maps {
             Some(_) => description.technique.map(),
@@ -100,10 +106,10 @@ impl SituationCache {
     }
 }
 
-/// As [`SituationCache::situation`], of one frame alone.
+/// The situation of a single frame; see [`SituationCache::situation`].
 ///
 /// # Errors
-/// As that.
+/// See [`SituationCache::situation`].
 #[cfg(test)]
 pub(crate) fn situation(
     description: &Description,

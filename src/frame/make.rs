@@ -1,4 +1,4 @@
-//! From one frame to what it records.
+//! Makes the plan of one frame.
 
 use super::accesses::{HostAccess, NodeUse};
 use super::boxes::MeshBoxes;
@@ -16,7 +16,7 @@ use ash::vk;
 use glam::DMat4;
 use smallvec::{SmallVec, smallvec};
 
-/// Memory that planning uses again from frame to frame, for all lights.
+/// Memory that planning uses again from frame to frame and from light to light.
 #[derive(Debug, Default)]
 pub(crate) struct Workspace {
     graph: Graph,
@@ -25,43 +25,46 @@ pub(crate) struct Workspace {
     pub mesh_boxes: MeshBoxes,
 }
 
-/// What is remembered of a light from frame to frame.
+/// What planning a light's frame reuses from the light's last one.
 #[derive(Debug, Default)]
 pub(crate) struct Memory {
     fit: Fit,
     camera: CameraDependence,
-    /// What the rows of its last plan came of.
+    /// The description and shape that the last plan's passes were made for.
     built: Option<(Description, Shape)>,
-    /// What its last draws came of: of which look at the meshes, from where.
+    /// The number of the fit and the views that the last lists of draws were made for.
     drawn: Option<(u64, Clips, Clips)>,
 }
 
-/// Matrices from the world into views: few techniques have more than one.
+/// Matrices from light space to the clip space of views: few techniques have more than one.
 type Clips = SmallVec<[DMat4; 1]>;
 
-/// What decides which rows a description has in a frame, and which of them run.
+/// What decides which passes a description has in a frame, and which of them run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Shape {
+    /// The bits of the passes that are needed.
     needs: u8,
+    /// How many views the technique has.
     views: usize,
+    /// What the plan reuses, as [`reuse::Reuse::uses`] lists it.
     reuses: [bool; 3],
 }
 
 /// Plans one frame: fits the maps, decides what runs, derives the barriers. Pure: no Vulkan calls.
 ///
 /// # Errors
-/// [`Error::Frame`] for numbers that are not finite, a line or an outline that the technique does not
-/// take, an image of another size, format,
-/// usage or layout than the description and the passes need, images or strides that the description
-/// does not have, a reach that is not above 0, or a light, settings or a frame slot beyond those of the description.
+/// [`Error::Frame`] for numbers that are not finite, a line or an outline that the technique does not accept, an image of
+/// another size, format, usage or layout than the description and the passes need, images or strides that the description
+/// does not have, a reach that is not above 0, or a light, a technique or a frame slot beyond those of the description.
 pub fn plan(description: &Description, limits: Limits, frame: &Frame) -> Result<FramePlan, Error> {
     plan_with(description, limits, frame, &Cached::default())
 }
 
-/// As [`plan`], of several lights, in memory that is kept: see [`ShadowNode::plan_all`](crate::ShadowNode::plan_all).
+/// Plans the frames of several lights, in order, into memory that is kept from frame to frame; see
+/// [`ShadowNode::plan_all`](crate::ShadowNode::plan_all).
 ///
 /// # Errors
-/// As [`plan`]; the plans are then those of the frames before the one that is refused.
+/// See [`plan`]; `plans` then holds those of the frames before the refused one.
 pub fn plan_all(
     description: &Description,
     limits: Limits,
@@ -78,7 +81,7 @@ pub fn plan_all(
     })
 }
 
-/// As [`plan`], for a node in which earlier frames have left something.
+/// Plans one frame for a node whose cache holds `cached` for it; see [`plan`].
 pub(crate) fn plan_with(
     description: &Description,
     limits: Limits,
@@ -92,8 +95,8 @@ pub(crate) fn plan_with(
     Ok(plan)
 }
 
-/// As [`plan_with`], by a description that has the frame's settings alone, and in the memory of earlier frames of the
-/// light. After an error the plan is of no frame.
+/// Plans one frame into the memory of the light's earlier frames. The description has the frame's technique alone. After
+/// an error no node records the plan.
 pub(crate) fn plan_into(
     description: &Description,
     limits: Limits,
@@ -103,7 +106,7 @@ pub(crate) fn plan_into(
     memory: &mut Memory,
     plan: &mut FramePlan,
 ) -> Result<(), Error> {
-    // Where it fails, nothing of the frame before is left to build on.
+    // An error must leave no stamp of the last frame, so that no node records a plan of both.
     plan.stamp = Stamp::default();
     let room = description.technique.room();
     frame.check(description, room)?;
@@ -119,7 +122,7 @@ pub(crate) fn plan_into(
     let (receiver_view, views, needs) =
         (inputs.receivers, inputs.views.count(), inputs.needs.bits());
     let lit = inputs.needs.unshadowed().is_some();
-    // Which rows there are is told by description and needs, before it is told what of them is kept.
+    // Description, needs and views decide which passes there are; only then can the cache leave some of them out.
     let before = built
         .take()
         .filter(|(of, shape)| of == description && (shape.needs, shape.views) == (needs, views));
@@ -135,7 +138,7 @@ pub(crate) fn plan_into(
     let place = frame.border_barriers == BorderBarriers::Node;
     let same = before.as_ref().is_some_and(|(_, before)| *before == shape);
     compiler.compile(graph, borders, place, same, &mut plan.plan)?;
-    // The next frame's rows are built where this one's have been.
+    // The compiler has exchanged graphs with the plan: make room for the next frame's passes now.
     graph.clear();
     graph.reserve_for(&plan.plan.graph);
     let of = before.map_or_else(|| description.clone(), |(of, _)| of);
@@ -165,7 +168,7 @@ pub(crate) fn plan_into(
     Ok(())
 }
 
-/// The lists of what is drawn; what no row draws needs no matrices.
+/// Fills the plan's lists of draws; a list that no pass draws stays empty.
 fn fill_draws(
     plan: &mut FramePlan,
     description: &Description,
@@ -186,7 +189,7 @@ fn fill_draws(
     Ok(())
 }
 
-/// How the host's resources and the result are left and taken back.
+/// Collects the host's scopes before and after the node for each shared image.
 fn fill_borders(
     borders: &mut Vec<Border>,
     imports: &[(ResourceId, HostImage)],
@@ -204,7 +207,7 @@ fn fill_borders(
     }
 }
 
-/// The host's images by resource.
+/// The graph's resources that stand for the host's images, with these images.
 fn imports(ids: &Ids, frame: &Frame) -> impl Iterator<Item = (ResourceId, HostImage)> {
     let lent = |id: Option<ResourceId>, image: Option<HostImage>| id.zip(image);
     let maps = frame.occluder_maps;
@@ -224,7 +227,7 @@ fn imports(ids: &Ids, frame: &Frame) -> impl Iterator<Item = (ResourceId, HostIm
     .flatten()
 }
 
-/// Whether some row that runs draws the meshes of a list.
+/// Whether a pass that runs draws the meshes of a list.
 fn is_drawn(plan: &graph::Plan, list: MeshList) -> bool {
     plan.steps.iter().any(|step| match plan.graph.passes()[step.pass].work {
         Work::Raster { draw: Draw::Layer { layer, .. }, .. } => layer.meshes() == list,
@@ -232,7 +235,7 @@ fn is_drawn(plan: &graph::Plan, list: MeshList) -> bool {
     })
 }
 
-/// What a host must know of one image of the border.
+/// The accesses to one image that node and host share.
 fn access_of(
     plan: &graph::Plan,
     border: &Border,

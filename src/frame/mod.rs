@@ -1,4 +1,4 @@
-//! What the host says each frame, and the plan that follows from it. No Vulkan calls.
+//! A node's description, the host's input for each frame, and the plan made from both. No Vulkan calls.
 
 mod accesses;
 mod boxes;
@@ -54,7 +54,7 @@ use std::borrow::Cow;
 /// The most techniques that a node may have: [`Description::technique`] and the others.
 pub(crate) const MOST_TECHNIQUES: usize = 8;
 
-/// What stays the same from frame to frame.
+/// What a node is made for: everything that stays the same from frame to frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Description {
     /// The G-buffer's width and height in pixels, 1 to 16384.
@@ -63,46 +63,44 @@ pub struct Description {
     pub technique: Technique,
     /// Which effects may be left out where they hardly matter; those that add less than 1/256 by default.
     pub omit: Omit,
-    /// Further techniques that a frame may choose ([`Frame::technique_index`]), up to 7: for some of the lights another
-    /// one, or the same with other settings. Each has pipelines, maps and buffers of its own, which its lights share.
+    /// Up to 7 further techniques that a frame may choose ([`Frame::technique_index`]), for lights that need another one
+    /// or other settings. Each has its own pipelines, maps and buffers, which the lights that choose it share.
     pub other_techniques: Vec<Technique>,
-    /// How many lights there are, 1 to 64: each has its frames ([`Frame::light_index`]), and a layer of
-    /// the node's own visibility image, which is an array where there are several.
+    /// The number of lights, 1 to 64. Each light has its own frames ([`Frame::light_index`]) and its own layer of the
+    /// node's visibility image, which is an array image where there are several lights.
     pub lights: u32,
-    /// How many frames may be recorded before the first of them is done, 1 to 8.
+    /// How many frames may be recorded before the device has completed the first of them, 1 to 8.
     pub frames_in_flight: u32,
     /// The format of the G-buffer's depth image.
     pub depth_format: vk::Format,
-    /// The format of the mask, where there is one.
+    /// The format of the mask ([`Frame::mask`]); `None` where the host lends no mask.
     pub mask_format: Option<vk::Format>,
-    /// Lets the node's own images be copied out, for tests and debuggers; off by default.
+    /// Whether the node's own images can be copied out, for tests and debuggers; off by default.
     pub inspect: bool,
-    /// Every distance between positions, in bytes, that a mesh may have; 12 is tightly packed.
+    /// The strides of vertex positions, in bytes, that the meshes have: multiples of 4 from 12, tightly packed, to 2048.
     pub position_strides: Vec<u32>,
-    /// The host lends the visibility image each frame ([`Visibility::Lent`]); otherwise the node has
-    /// one of its own.
+    /// Whether the host lends the visibility image each frame ([`Visibility::Lent`]); otherwise the node owns one.
     pub lent_visibility: bool,
-    /// The format of the occluder maps that the host draws itself and lends each frame
-    /// ([`Frame::occluder_maps`]); without, the node draws meshes.
+    /// The format of the occluder maps that the host draws itself and lends each frame ([`Frame::occluder_maps`]);
+    /// `None` where the node draws meshes.
     pub occluder_maps: Option<vk::Format>,
-    /// What the light's emission looks like, lent each frame ([`Frame::light_texture`]); without, it is
-    /// the same all over the light. `ray-march` alone weighs it.
+    /// The texture of the light's emission, which the host lends each frame ([`Frame::light_texture`]); `None` for a light
+    /// of uniform emission. Only `ray-march` accepts a texture.
     pub light_texture: Option<LightTexture>,
 }
 
-/// An image of what a light emits over its surface.
+/// The description of an image of a light's emission over its surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LightTexture {
-    /// The image's format: one whose components a shader reads as numbers from 0 up. Red, green and blue
-    /// are linear.
+    /// The image's format: a color format that a shader reads as floats of 0 and more. Red, green and blue are linear.
     pub format: vk::Format,
-    /// Whether the visible fraction is one of red, green and blue each, in an image of
-    /// R32G32B32A32_SFLOAT; otherwise it is one of luminance.
+    /// Whether the result has a visible fraction for each of red, green and blue, in an image of R32G32B32A32_SFLOAT;
+    /// otherwise it has one, of luminance.
     pub color: bool,
 }
 
 impl Description {
-    /// Whether the visible fraction is one of each color.
+    /// Whether the result has a visible fraction for each color.
     pub(crate) fn has_color(&self) -> bool {
         self.light_texture.is_some_and(|t| t.color)
     }
@@ -112,7 +110,10 @@ impl Description {
         std::iter::once(&self.technique).chain(&self.other_techniques)
     }
 
-    /// The description with one of its techniques alone.
+    /// The description with only one of its techniques.
+    ///
+    /// # Errors
+    /// [`Error::Frame`] for an index beyond the last technique.
     pub(crate) fn choosing(
         &self,
         TechniqueIndex(index): TechniqueIndex,
@@ -129,8 +130,8 @@ impl Description {
         Ok(Cow::Owned(Self { technique, other_techniques: Vec::new(), ..self.clone() }))
     }
 
-    /// The default technique for one light, a D32_SFLOAT G-buffer without a mask, two frames in flight
-    /// and tightly packed positions.
+    /// A description with the default technique, one light, a D32_SFLOAT G-buffer of `extent` pixels without a mask, two
+    /// frames in flight and tightly packed positions.
     pub fn new(extent: [u32; 2]) -> Self {
         Self {
             extent,
@@ -149,8 +150,10 @@ impl Description {
         }
     }
 
+    /// Checks that a node can be made for the description.
+    ///
     /// # Errors
-    /// [`Error::Setting`] or [`Error::Frame`] for the first thing out of its range.
+    /// [`Error::Setting`] or [`Error::Frame`] for the first value out of its range.
     pub fn check(&self) -> Result<(), Error> {
         if self.other_techniques.len() >= MOST_TECHNIQUES {
             return Err(Error::Frame(format!(
@@ -207,7 +210,10 @@ impl Description {
         }
     }
 
-    /// Whether one of the techniques works, alone and with the rest.
+    /// Checks one of the techniques, by itself and with the rest of the description.
+    ///
+    /// # Errors
+    /// See [`Self::check`].
     fn check_technique(&self, technique: &Technique) -> Result<(), Error> {
         technique.check()?;
         let (room, name) = (technique.room(), technique.name());
@@ -228,7 +234,7 @@ impl Description {
     }
 }
 
-/// One frame, as the host sees it; [`Frame::new`] fills in what most frames leave out.
+/// The host's input for one frame of one light; [`Frame::new`] fills in the usual values.
 ///
 /// | convention | |
 /// |---|---|
@@ -246,15 +252,13 @@ impl Description {
 pub struct Frame<'a> {
     /// The light.
     pub light: Light,
-    /// Which of the description's lights it is, 0 and up. Each has frames of its own, recorded in the
-    /// order in which they were planned; where a light casts no shadow in them they cost nothing.
+    /// Which of the description's lights it is. Frames of several lights are recorded in the order in which they were
+    /// planned; a frame in which the light casts no shadow costs nothing.
     pub light_index: LightIndex,
-    /// Which of the description's techniques this frame uses: 0 is [`Description::technique`], n the nth of
-    /// [`Description::other_techniques`].
+    /// Which of the description's techniques the frame uses.
     pub technique_index: TechniqueIndex,
-    /// How far the light reaches from its centre, metres above 0: the host takes nothing of it for what is further away.
-    /// Receivers beyond that need no shadow and occluders beyond cast none, so that neither is looked at. None:
-    /// everywhere.
+    /// How far the light reaches from its centre, in metres above 0: the host lights nothing further away. Receivers and
+    /// occluders beyond it are left out. `None` for a light without limit.
     pub reach: Option<f64>,
     /// Normalized device coordinates and depth to world space, for column vectors: `inverse(projection * view)`.
     ///
@@ -263,44 +267,42 @@ pub struct Frame<'a> {
     /// and the meshes' transforms are in: a host that keeps its numbers relative to the camera gives
     /// all of them so.
     pub world_from_ndc: DMat4,
-    /// The depth of pixels that show no surface: 0 with reversed depth, else 1. None: the end of depth that lies further
-    /// from the eye, as [`Self::world_from_ndc`] has it. An orthographic camera has no eye, so it must be given there.
+    /// The depth of pixels that show no surface: 0 with reversed depth, 1 otherwise. `None` derives it from
+    /// [`Self::world_from_ndc`]: the end of depth that lies further from the eye. An orthographic camera has no eye, so
+    /// that it must be given there.
     pub background: Option<f32>,
-    /// Everything that blocks light or shows shadows.
+    /// The meshes that block light or show shadows.
     pub meshes: &'a [MeshInstance],
-    /// The G-buffer's depth, with SAMPLED usage.
+    /// The G-buffer's depth image, with SAMPLED usage.
     pub depth: HostImage,
-    /// Roles by pixel: red 1 blocks and receives, ½ receives only, 0 receives nothing. With SAMPLED
-    /// usage.
+    /// The role of each pixel's mesh, with SAMPLED usage: red 1 blocks and receives, ½ receives only, 0 receives nothing.
     pub mask: Option<HostImage>,
-    /// Where the result goes.
+    /// The image that the result is written to.
     pub visibility: Visibility,
-    /// The host's own depth images of the occluders, exactly where the description has a format for
-    /// them. [`Self::meshes`] then only says where receivers are.
+    /// The host's own depth images of the occluders, exactly where [`Description::occluder_maps`] has a format for them.
+    /// [`Self::meshes`] then only says where receivers are.
     pub occluder_maps: Option<OccluderMaps>,
-    /// What the light emits over its surface, exactly where the description has a texture: of any size,
-    /// its first row where the light's second half-axis points, its last column where the first one does.
-    /// With SAMPLED usage.
+    /// The light's emission over its surface, exactly where [`Description::light_texture`] is given: an image of any size
+    /// with SAMPLED usage. The light's first half-axis points to its last column, the second half-axis to its first row.
     pub light_texture: Option<HostImage>,
-    /// Least and largest tangent (u, v) of the occluder map; none fits it to the occluders. The
-    /// technique `many-lights` fits each of its maps, and `ray-march` its map unless `projection=centre`,
-    /// whatever this says.
+    /// The occluder map's window: its least and largest tangents (u, v). `None` fits the map to the occluders.
+    /// `many-lights` always fits its maps, and so does `ray-march` unless `projection=centre`.
     pub window: Option<[[f64; 2]; 2]>,
-    /// Moves the noise of `ray-march`: added to the technique's seed. A number that is another one each
-    /// frame lets what is behind average over frames; 0 keeps the noise where it is.
+    /// Is added to the seed of `ray-march`'s noise. A number that changes each frame lets later passes average the noise
+    /// over frames; 0 keeps the noise as it is.
     pub noise: u32,
-    /// The host's number for the light and the meshes as they stand to each other: geometry, transforms, roles, what
-    /// it lends of them, [`Self::reach`] and [`Self::window`]. As long as it gives the same one, what the node has made
-    /// of them is kept. None: everything may have changed. What a frame makes counts as made once it is recorded: it
-    /// must be submitted, and before what is recorded after it.
+    /// The revision of light and meshes relative to each other: geometry, transforms, roles, lent occluder maps,
+    /// [`Self::reach`] and [`Self::window`]. While the host gives the same number, the node reuses the maps that it has
+    /// drawn. `None` where anything may have changed. A recorded frame counts as drawn: submit it, and before the frames
+    /// recorded after it.
     pub revision: Option<u64>,
-    /// The same for what the pixels show: camera and G-buffer, [`Self::noise`], and who uses the result how. With both
-    /// numbers as they were in the frame before, a visibility image of the node's own stays as it is and no pass runs.
+    /// The revision of what the pixels show: camera, G-buffer, [`Self::noise`], and how the host uses the result. Where both
+    /// revisions are those of the last frame, the node's own visibility image stays as it is and no pass runs.
     pub view_revision: Option<u64>,
-    /// Which of the frames in flight this is, 0 and up. The frame that last had the same number
-    /// must be done before this one is recorded.
+    /// Which of the frames in flight this is. The device must have completed the last frame of the same slot before this
+    /// one is recorded.
     pub slot: Slot,
-    /// Who places the barriers at the border.
+    /// Whether node or host records the barriers before and after the node.
     pub border_barriers: BorderBarriers,
 }
 

@@ -1,4 +1,4 @@
-//! The passes that a description calls for, with one frame's numbers in them.
+//! The passes of a description, with one frame's numbers in them.
 
 use super::Description;
 use crate::RectangleLight;
@@ -12,10 +12,10 @@ use crate::techniques::room::PassInputs;
 use glam::DMat4;
 use smallvec::{SmallVec, smallvec};
 
-/// What a device's limits mean to a plan.
+/// The device's limits that a plan depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// 2^−(sub-pixel bits): how far rasters move a vertex, in texels.
+    /// The step of the grid that the rasterizer rounds vertices to, in texels: 2^−(sub-pixel bits), above 0.
     pub subpixel_step: f32,
 }
 
@@ -36,7 +36,7 @@ pub(super) struct Ids {
 }
 
 impl Ids {
-    /// What the camera sees.
+    /// The G-buffer's images, which depend on the camera.
     pub fn pixels(&self) -> impl Iterator<Item = ResourceId> {
         std::iter::once(self.depth).chain(self.mask)
     }
@@ -46,11 +46,11 @@ impl Ids {
 pub(super) const PLACEHOLDER: MapView =
     MapView { eye: Eye::Behind(0.0), min: [-1.0; 2], max: [1.0; 2], near: 1.0, far: 2.0, side: 16 };
 
-/// What the passes depend on, beyond the description.
+/// One frame's numbers for its passes.
 pub(super) struct FrameInputs<'a> {
-    /// How the occluder map looks at the scene.
+    /// The view of the occluder map.
     pub occluders: MapView,
-    /// The technique's own views; none where nothing can be shadowed.
+    /// The technique's own views; there are none where nothing can be shadowed.
     pub views: &'a Views,
     pub host_maps: Option<HostMapView>,
     pub receivers: MapView,
@@ -64,38 +64,38 @@ pub(super) struct FrameInputs<'a> {
 /// Which passes a frame needs.
 #[derive(Clone, Debug)]
 pub(super) struct Needs {
-    /// Those of the technique.
+    /// The technique's passes.
     pub technique: Need<Why>,
-    /// A hard shadow in its place.
+    /// The passes of a hard shadow in its place.
     pub hard: Need<Why>,
-    /// The occluders' nearest faces, as the light's centre sees them.
+    /// The depth layer of the occluders' nearest faces, as the light's centre sees them.
     pub front: Need<Why>,
-    /// Their furthest back faces.
+    /// The depth layer of their furthest back faces.
     pub back: Need<Why>,
-    /// Their nearest back faces and their furthest front faces.
+    /// The depth layers of their nearest back faces and their furthest front faces.
     pub inner: Need<Why>,
     /// The noise filter.
     pub filter: Need<Why>,
 }
 
-/// Whether a hard shadow can stand for what a technique makes: its image holds one visible fraction a pixel.
+/// Whether a hard shadow may replace the technique's penumbra. It cannot where the image holds a fraction for each color.
 fn hardens(description: &Description) -> bool {
     description.technique.room().shows().penumbra && !description.has_color()
 }
 
 impl Needs {
-    /// Everything but what stands for something else.
+    /// One need for all passes.
     fn all(need: &Need<Why>) -> Self {
         let need = *need;
         Self { technique: need, hard: need, front: need, back: need, inner: need, filter: need }
     }
 
-    /// Each of them, in the order of the fields.
+    /// All needs, in the order of the fields.
     fn each(&self) -> [&Need<Why>; 6] {
         [&self.technique, &self.hard, &self.front, &self.back, &self.inner, &self.filter]
     }
 
-    /// A bit for each that is needed.
+    /// A bit for each field that is needed, the first field in bit 0.
     pub fn bits(&self) -> u8 {
         let each = self.each().into_iter().enumerate();
         each.fold(0, |bits, (i, need)| bits | u8::from(need.is_yes()) << i)
@@ -109,7 +109,7 @@ impl Needs {
         }
     }
 
-    /// By whether anything can be shadowed, and what of it matters.
+    /// What a frame needs, from whether anything can be shadowed and the verdict on each effect.
     pub fn of(description: &Description, need: Need<Why>, verdicts: &Verdicts) -> Self {
         let mut needs = Self::all(&need);
         let Need::Yes(_) = &need else { return needs };
@@ -141,7 +141,7 @@ impl Needs {
 }
 
 impl FrameInputs<'_> {
-    /// Light space to the clip space of each view of the occluders.
+    /// Matrices from light space to the clip space of each view of the occluders.
     pub fn occluder_clips(&self) -> SmallVec<[DMat4; 1]> {
         match self.views.count() {
             0 => smallvec![self.occluders.clip_from_light()],
@@ -150,7 +150,7 @@ impl FrameInputs<'_> {
     }
 }
 
-/// Every pass that any frame of this description may run; a node makes its objects for them.
+/// The graph of every pass that any frame of this description may run; a node makes its objects for them.
 pub(crate) fn all_passes(description: &Description, limits: Limits) -> Graph {
     let room = description.technique.room();
     let view = MapView { side: room.maps().side, ..PLACEHOLDER };
@@ -178,8 +178,8 @@ pub(crate) fn all_passes(description: &Description, limits: Limits) -> Graph {
     graph
 }
 
-/// The graph of a description with every pass that any of its frames may run; the numbers in its
-/// push constants mean nothing.
+/// The graph of every pass that any frame of this description may run, on a device with the least sub-pixel precision
+/// that Vulkan guarantees. The numbers in its push constants are placeholders.
 pub fn full_graph(description: &Description) -> Graph {
     all_passes(description, Limits::default())
 }
@@ -245,7 +245,7 @@ pub(super) fn build(
     ids
 }
 
-/// Declares the images of the border: what the host lends, and where the result goes.
+/// Declares the images that node and host share: those the host lends, and the visibility image.
 fn declare_host_images(graph: &mut Graph, description: &Description) -> Ids {
     let Description { extent, .. } = *description;
     let lent = Owner::Imported;
@@ -259,7 +259,7 @@ fn declare_host_images(graph: &mut Graph, description: &Description) -> Ids {
     };
     let front = map("occluder_maps.front");
     let back = if maps.layers.back { map("occluder_maps.back") } else { None };
-    // Its size is the frame's to say; nothing is made from it.
+    // Its size may change from frame to frame, and no object depends on it.
     let light_texture =
         description.light_texture.map(|t| graph.image("light.texture", t.format, [1, 1], lent));
     let visibility =

@@ -1,4 +1,4 @@
-//! What one frame records.
+//! The plan of one frame.
 
 use super::accesses::{self, BufferAccess, HostAccess, ImageBarrier, NodeUse};
 use super::cache::CacheKey;
@@ -11,11 +11,11 @@ use crate::lent::{Geometry, HostImage, LightIndex, Slot, TechniqueIndex};
 use crate::technique::Technique;
 use ash::vk;
 
-/// Which node a plan was made by, and since which resize; none for a plan made without a node.
+/// Identifies the node, and its size, that a plan was made for; 0 for a plan that no node made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Stamp(pub u64);
 
-/// What one frame records.
+/// The plan of one frame of one light: which passes run behind which barriers, and why; with which images and meshes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FramePlan {
     pub(crate) plan: graph::Plan,
@@ -35,7 +35,7 @@ pub struct FramePlan {
 }
 
 impl Default for FramePlan {
-    /// Of no frame: no node records it.
+    /// A plan of no frame, which no node records.
     fn default() -> Self {
         Self {
             plan: graph::Plan::default(),
@@ -92,13 +92,13 @@ impl FramePlan {
         self.technique_index
     }
 
-    /// Every image that crosses the node's border: how the host leaves it, how the node uses it, if
-    /// this frame does, and how the host takes it back.
+    /// The accesses to every image that node and host share: the host's last use before the node, the node's uses, if
+    /// this frame has any, and the host's first use after it.
     pub fn accesses(&self) -> &[HostAccess] {
         &self.accesses
     }
 
-    /// How the node uses one of the images of the border; none where this frame leaves it alone.
+    /// How the node uses an image that it shares with the host; `None` where this frame does not use it.
     pub fn use_of(&self, image: vk::Image) -> Option<NodeUse> {
         self.accesses.iter().find(|a| a.image == image)?.node
     }
@@ -110,26 +110,26 @@ impl FramePlan {
         self.sight.doubts()
     }
 
-    /// For people: what is doubtful, what runs and why, what does not and why not, how the camera is understood, and
-    /// what of the effects that the node can simulate is simulated or left out, with the bound on the error of that.
+    /// A report for people: the doubts, which passes run and why, which do not and why not, how the camera is understood,
+    /// and which effects are simulated or left out, with a bound on the error of each that is left out.
     pub fn explain(&self) -> String {
         let doubts: String =
             self.doubts().iter().map(|doubt| format!("doubt: {doubt}\n")).collect();
         format!("{doubts}{}\n{}\n{}", self.plan.table(), self.sight, self.verdicts)
     }
 
-    /// The barriers to place before the node, for a host that asked for [`BorderBarriers::Host`](super::BorderBarriers::Host).
+    /// The barriers to record before the node, for a host that chose [`BorderBarriers::Host`](super::BorderBarriers::Host).
     pub fn entry_barriers(&self) -> impl Iterator<Item = ImageBarrier> + '_ {
         self.accesses.iter().filter_map(HostAccess::entry_barrier)
     }
 
-    /// The barriers to place behind the node, for a host that asked for [`BorderBarriers::Host`](super::BorderBarriers::Host).
+    /// The barriers to record after the node, for a host that chose [`BorderBarriers::Host`](super::BorderBarriers::Host).
     pub fn exit_barriers(&self) -> impl Iterator<Item = ImageBarrier> + '_ {
         self.accesses.iter().filter_map(HostAccess::exit_barrier)
     }
 
-    /// The vertex and index buffers that this frame reads, each once. The node places no barrier for
-    /// them: what was written to them must be visible to these scopes.
+    /// The vertex and index buffers that this frame reads, each once. The node records no barrier for them: the host must
+    /// make what it wrote to them visible to these scopes.
     pub fn buffer_accesses(&self) -> Vec<BufferAccess> {
         accesses::of_buffers(self.occluders.meshes.iter().chain(&self.receivers.meshes))
     }
@@ -139,8 +139,8 @@ impl FramePlan {
         &self.list(list).meshes
     }
 
-    /// The meshes of a list with their matrices in one of its views: mesh space to clip space, by
-    /// column.
+    /// The meshes of a list with their matrices from mesh space to the clip space of one of the list's views,
+    /// column-major. Empty for a view that does not exist.
     pub fn draws(
         &self,
         list: MeshList,
@@ -157,7 +157,7 @@ impl FramePlan {
         }
     }
 
-    /// Whether some of its meshes are the host's to draw.
+    /// Whether the host has to draw some of the plan's meshes.
     pub fn has_host_draws(&self) -> bool {
         let mut all = self.occluders.meshes.iter().chain(&self.receivers.meshes);
         all.any(|d| matches!(d.mesh.geometry, Geometry::HostDrawn(_)))
@@ -168,10 +168,10 @@ impl FramePlan {
         CacheKey { light: self.light_index, technique: self.technique_index }
     }
 
-    /// Puts the node's mark on it, and the image that the node owns.
+    /// Marks the plan as made for a node, and fills in the node's own visibility image.
     pub(crate) fn stamp(&mut self, stamp: Stamp, own_visibility: vk::Image) {
         self.stamp = stamp;
-        // Every image of the host's was checked to be none of these.
+        // Null handles stand for the node's own image: those of lent images were refused.
         for access in self.accesses.iter_mut().filter(|a| a.image == vk::Image::null()) {
             access.image = own_visibility;
         }

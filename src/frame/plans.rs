@@ -1,41 +1,41 @@
-//! The plans of all lights of a frame, in memory that stays.
+//! The plans of all lights of a frame, in memory that is kept.
 
 use super::FramePlan;
 use super::make::{Memory, Workspace};
 use crate::Error;
 
-/// The plans of a frame's lights: a host keeps them from frame to frame, so that planning needs no new memory, and
-/// looks again only at what has changed.
+/// The plans of a frame's lights. A host keeps this value from frame to frame, so that planning allocates no memory and
+/// visits the meshes only of frames whose revision has changed.
 ///
 /// [`ShadowNode::plan_all`](crate::ShadowNode::plan_all) fills them.
 #[derive(Debug, Default)]
 pub struct FramePlans {
     plans: Vec<FramePlan>,
-    /// Of each plan.
+    /// The memory of each plan's light.
     memories: Vec<Memory>,
     workspace: Workspace,
-    /// How many of them are this frame's.
+    /// How many of the plans are this frame's.
     count: usize,
 }
 
 impl FramePlans {
-    /// Of no frame yet.
+    /// No plans yet.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// The plans, in the order of the frames that they were made of.
+    /// The plans, in the order of their frames.
     pub fn all(&self) -> &[FramePlan] {
         &self.plans[..self.count]
     }
 
-    /// Forgets the frame before, but not what was learnt from it.
+    /// Drops the last frame's plans and keeps their memory.
     pub(crate) fn begin(&mut self) {
         self.count = 0;
         self.workspace.mesh_boxes.forget();
     }
 
-    /// Adds a plan that `make` fills.
+    /// Adds a plan that `make` fills; after an error it is not added.
     pub(crate) fn add(
         &mut self,
         make: impl FnOnce(&mut Workspace, &mut Memory, &mut FramePlan) -> Result<(), Error>,

@@ -75,7 +75,7 @@ fn make(description: &Description, frame: &Frame) -> FramePlan {
 }
 
 #[test]
-fn the_rows_that_settings_call_for_run_in_order() {
+fn the_passes_that_settings_call_for_run_in_order() {
     let meshes = meshes();
     let pixels = make(&description(&[]), &frame(&meshes));
     assert_eq!(
@@ -111,7 +111,7 @@ fn a_ground_that_shadows_nothing_takes_no_texels() {
 }
 
 #[test]
-fn without_anything_to_shadow_only_the_lit_row_runs_and_says_why() {
+fn without_anything_to_shadow_only_the_lit_pass_runs_and_says_why() {
     let ground = [mesh(GROUND, DVec3::ZERO, Role::Receiver)];
     let above = [ground[0], mesh(CUBE, DVec3::new(0.0, 9.0, 0.0), Role::Occluder)];
     let aside = [mesh(GROUND, DVec3::ZERO, Role::Both)];
@@ -173,7 +173,7 @@ fn every_bad_description_is_one_sentence() {
     assert!(refuse(tiny).contains("1 to 4096"));
 }
 
-/// What a host may get wrong of an image, each named by the image, what it is and what it should be.
+/// Each fault of an image gets an error that names the image, what it is and what it should be.
 #[test]
 fn every_bad_image_is_one_sentence() {
     let meshes = meshes();
@@ -346,13 +346,13 @@ fn every_point_of_many_lights_has_a_view_of_its_own() {
     let meshes = meshes();
     let description = of_technique("many-lights samples=9");
     let plan = make(&description, &frame(&meshes));
-    let rows = ran(&plan);
-    assert_eq!(rows.len(), 2 + 2 * 9);
+    let passes = ran(&plan);
+    assert_eq!(passes.len(), 2 + 2 * 9);
     assert_eq!(
-        rows[..4],
-        ["many_lights.receivers", "many_lights.point_depth", "many_lights.add_point", rows[1]]
+        passes[..4],
+        ["many_lights.receivers", "many_lights.point_depth", "many_lights.add_point", passes[1]]
     );
-    assert_eq!(rows.last(), Some(&"many_lights.average"));
+    assert_eq!(passes.last(), Some(&"many_lights.average"));
     let matrices: Vec<_> =
         (0..9).flat_map(|view| plan.draws(MeshList::Occluders, view)).map(|d| d.1).collect();
     assert_eq!(matrices.len(), 9, "one occluder, nine views");
@@ -376,8 +376,8 @@ fn many_lights_take_no_ready_made_maps() {
 fn slices_take_no_host_draws_and_no_ready_made_maps() {
     let mut meshes = meshes();
     let mut description = of_technique("occlusion-textures");
-    let rows = ran(&make(&description, &frame(&meshes)));
-    assert!(rows.contains(&"occlusion_textures.front_slices"), "{rows:?}");
+    let passes = ran(&make(&description, &frame(&meshes)));
+    assert!(passes.contains(&"occlusion_textures.front_slices"), "{passes:?}");
     for mesh in &mut meshes {
         mesh.geometry = Geometry::HostDrawn(7);
     }

@@ -1,32 +1,32 @@
-//! What a node shows of its insides.
+//! What a node shows of its Vulkan objects.
 
 use crate::stages::depth_layers;
 use ash::vk;
 
-/// What a host's own pipeline must fit to draw into a depth layer.
+/// The render pass and raster state that a host's own pipeline needs to draw into a depth layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LayerPass {
     /// The render pass: one depth attachment of [`depth_layers::FORMAT`], no color, one sample. It
     /// stays compatible over every resize and reconfiguration.
     pub render_pass: vk::RenderPass,
-    /// The layer's size: viewport and scissor.
+    /// The layer's size in texels: use it as viewport and scissor.
     pub extent: vk::Extent2D,
-    /// Culling, clear value and depth test; depth is tested and written.
+    /// The cull mode, clear value and depth comparison; the pipeline tests and writes depth.
     pub raster: depth_layers::Raster,
 }
 
-/// The image that holds the result.
+/// The image that holds the visible fraction of each pixel, 0 to 1, in a layer for each light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct VisibilityImage {
     /// R32_SFLOAT, or R32G32B32A32_SFLOAT where the description asks for color; usage STORAGE | SAMPLED |
     /// TRANSFER_SRC.
     pub image: vk::Image,
-    /// A view of it: 2D with one light, with several a 2D array of a layer a light, whose own view
-    /// [`crate::ShadowNode::visibility_layer`] gives.
+    /// A view of the whole image: 2D with one light, a 2D array with several. [`crate::ShadowNode::visibility_layer`] has
+    /// a view of each layer.
     pub view: vk::ImageView,
-    /// Width and height, those of the G-buffer.
+    /// The image's width and height in pixels: those of the G-buffer.
     pub extent: [u32; 2],
-    /// How many layers it has: the description's lights.
+    /// The number of array layers: that of the description's lights.
     pub layers: u32,
 }
 
@@ -42,22 +42,22 @@ pub struct PassTime {
 /// One of the node's own images, for tests and debuggers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Inspected {
-    /// `room.thing`.
+    /// The image's name, as `room.thing`.
     pub name: &'static str,
     /// The image.
     pub image: vk::Image,
     /// Its format.
     pub format: vk::Format,
-    /// Width and height in texels.
+    /// The image's width and height in texels.
     pub extent: [u32; 2],
-    /// The layout it is in behind the plan.
+    /// The layout that the image is in after the plan.
     pub layout: vk::ImageLayout,
 }
 
-/// The Vulkan object behind a resource of a plan, which stays the node's.
+/// The Vulkan object of a resource of a plan. The node still owns it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PlanObject {
-    /// An image and a view of all of it.
+    /// An image with a view of the whole of it.
     Image {
         /// The image.
         image: vk::Image,

@@ -7,7 +7,7 @@ use crate::report::csv_of;
 use crate::store::{Row, Store};
 use crate::studies;
 use antumbra::Technique;
-use antumbra::auto::{Auto, Budget, CANDIDATES, COLUMNS, Costs, Likeness, Measured, PROBE};
+use antumbra::auto::{Auto, Budget, CANDIDATES, COLUMNS, Costs, Features, Measured, PROBE};
 use antumbra::effects::Situation;
 use antumbra::scene::Instance;
 use antumbra_harness::{HeadlessDevice, HeadlessOptions, Stage, probe, technique};
@@ -49,7 +49,7 @@ pub fn write(options: &Options) -> Result<(), Problem> {
             continue;
         }
         let situation = situation(&device, &group)?;
-        let parts = Likeness::of(&situation).parts().map(|p| format!("{p:.3}"));
+        let parts = Features::of(&situation).values().map(|p| format!("{p:.3}"));
         for row in own {
             let Some((errors, times)) = row.measured() else { continue };
             let is_map = |name: &str| MAPS.iter().any(|m| name.starts_with(m));

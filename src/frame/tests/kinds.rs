@@ -1,8 +1,8 @@
-//! What a node makes its objects from is the same kinds of row as any frame of it has.
+//! A node makes its objects for the kinds of pass that each of its frames has.
 
 use super::*;
 
-/// Every technique, and those settings that have rows of their own.
+/// Every technique, and every setting with passes of its own.
 pub(super) const WAYS: [&str; 14] = [
     "hard",
     "pcss",

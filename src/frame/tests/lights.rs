@@ -1,9 +1,9 @@
-//! Lights that a technique cannot work with.
+//! Lights that a technique refuses.
 
 use super::*;
 use crate::lent::*;
 
-/// Those that work in both of a light's half-extents say so of a line; the others plan a whole frame.
+/// Techniques that need both half-extents of a light refuse a line; the others plan a whole frame.
 #[test]
 fn a_line_is_refused_by_what_needs_an_area() {
     let meshes = meshes();
@@ -21,7 +21,7 @@ fn a_line_is_refused_by_what_needs_an_area() {
     }
 }
 
-/// A light of no size that a float could tell is none, and nor are occluders as far away as galaxies.
+/// Lights whose squared size single precision cannot hold are refused, and so are occluders as far away.
 #[test]
 fn lengths_that_single_precision_does_not_hold_are_refused() {
     let meshes = meshes();
@@ -50,7 +50,7 @@ fn lengths_that_single_precision_does_not_hold_are_refused() {
     assert!(sentence.starts_with("mesh 1 blocks up to"), "{sentence}");
 }
 
-/// Of the techniques two look at an outline; the others say which.
+/// Two techniques accept an outline; the others name those two.
 #[test]
 fn an_outline_is_refused_by_what_knows_rectangles_alone() {
     let meshes = meshes();
@@ -70,7 +70,7 @@ fn an_outline_is_refused_by_what_knows_rectangles_alone() {
     }
 }
 
-/// A host cannot draw what only the device knows the place of, receivers included.
+/// The host cannot draw linear-light's maps, receivers included: only the device knows where their samples lie.
 #[test]
 fn lines_take_no_host_draws() {
     let description = of_technique("linear-light");

@@ -85,7 +85,7 @@ fn a_frame_that_is_refused_leaves_the_plans_before_it() {
     }
 }
 
-/// What cannot lie between the light and a receiver is not drawn, and says so.
+/// Occluders that cannot lie between the light and a receiver are not drawn, and the plan's report counts them.
 #[test]
 fn only_what_lies_between_light_and_receivers_is_drawn() {
     let light = generate::square_light(0.5).unwrap();

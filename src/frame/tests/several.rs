@@ -1,15 +1,15 @@
-//! Several lights of one node: what each plan counts on and leaves, and which layer it names.
+//! Several lights of one node: what each plan reuses and leaves, and which layer it names.
 
 use super::*;
 use crate::frame::Cache;
 use crate::frame::make::plan_with;
 use crate::lent::{LightIndex, TechniqueIndex};
 
-/// Rows of a soft shadow map, and those of them that look at pixels.
+/// How many passes a soft shadow map has, and how many of them run over pixels.
 const ALL: usize = 7;
 const PIXELS: usize = 3;
 
-/// What a node does with its plans, without a device.
+/// A node's cache and its plans, without a device.
 struct Node {
     description: Description,
     cache: Cache,
@@ -31,7 +31,7 @@ impl Node {
         plan
     }
 
-    /// Whether the node takes it.
+    /// Whether the node accepts the plan.
     fn record(&mut self, plan: &FramePlan) -> bool {
         let agrees = self.cache.agrees(plan.cache_key(), &plan.reuse);
         if agrees {
@@ -40,7 +40,7 @@ impl Node {
         agrees
     }
 
-    /// Plans every frame, records them in that order, and says how many rows each ran.
+    /// Plans every frame, records them in that order, and returns how many passes each ran.
     fn all(&mut self, frames: &[Frame]) -> Vec<usize> {
         let plans: Vec<_> = frames.iter().map(|f| self.plan(f)).collect();
         for plan in &plans {
@@ -50,7 +50,7 @@ impl Node {
     }
 }
 
-/// Frames of so many lights at a scene and a view revision.
+/// Frames of a number of lights at a scene and a view revision.
 fn frames(meshes: &[MeshInstance], lights: u32, scene: u64, view: u64) -> Vec<Frame<'_>> {
     let of = |light| Frame {
         light_index: LightIndex(light),
@@ -140,7 +140,7 @@ fn a_frame_has_the_passes_of_the_technique_that_it_chooses() {
     }
 }
 
-/// Whatever is planned before anything is recorded, nothing is refused that is recorded in that order.
+/// Plans that are all made before the first is recorded are accepted in the order in which they were made.
 #[test]
 fn all_lights_may_be_planned_before_the_first_is_recorded() {
     let meshes = meshes();
@@ -160,7 +160,7 @@ fn all_lights_may_be_planned_before_the_first_is_recorded() {
 }
 
 #[test]
-fn maps_are_kept_for_a_light_that_has_settings_to_itself() {
+fn maps_are_kept_for_a_light_that_has_a_technique_to_itself() {
     let meshes = meshes();
     let hard = "hard".parse().unwrap();
     let mut node = Node::new(2, vec![hard]);
@@ -171,7 +171,7 @@ fn maps_are_kept_for_a_light_that_has_settings_to_itself() {
     };
     assert_eq!(node.all(&both(1)), [ALL, 2]);
     assert_eq!(node.all(&both(2)), [PIXELS, 1]);
-    // The same numbers by other settings are other pixels.
+    // Another technique makes other pixels of the same revisions.
     assert_eq!(node.all(&frames(&meshes, 2, 1, 2)), [0, ALL]);
 }
 
@@ -195,7 +195,7 @@ fn maps_of_one_light_are_never_anothers() {
     assert!(!node.record(&counts_on_maps), "stale");
     let again = node.plan(&a);
     assert_eq!(again.plan.steps.len(), ALL);
-    // While that is not recorded, the other light does not count on its maps either.
+    // While that is not recorded, the other light does not reuse its maps either.
     assert_eq!(node.plan(&moved(b)).plan.steps.len(), ALL);
     assert_eq!(node.all(&[b]), [0]);
     assert_eq!(node.plan(&Frame { view_revision: Some(3), ..a }).plan.steps.len(), ALL);
@@ -210,7 +210,7 @@ fn maps_of_one_light_are_never_anothers() {
 }
 
 #[test]
-fn what_is_lit_stays_lit_whatever_the_numbers_say() {
+fn lit_pixels_stay_lit_whatever_the_revisions_are() {
     let shadowed = meshes();
     for lights in [1, 2] {
         let mut node = Node::new(lights, vec![Technique::default()]);
@@ -220,7 +220,7 @@ fn what_is_lit_stays_lit_whatever_the_numbers_say() {
         let again = node.plan(&lit);
         assert!(again.plan.steps.is_empty());
         assert!(again.plan.reasons().any(|(_, why)| why == "every pixel is lit already".into()));
-        // Other numbers and other settings leave every pixel lit as well.
+        // Other revisions and another technique leave every pixel lit as well.
         let other = Frame {
             technique_index: TechniqueIndex(1),
             revision: Some(3),
@@ -229,7 +229,7 @@ fn what_is_lit_stays_lit_whatever_the_numbers_say() {
         };
         assert_eq!(node.all(&[other]), [0]);
         assert_eq!(node.all(&[lit, other]), [0, 0]);
-        // What forgets or writes the image leaves nothing to count on.
+        // After the host discards or writes the image, nothing can be reused.
         for before in [Scope::UNUSED, Scope::COMPUTE_WRITTEN] {
             let visibility = Visibility::Own { before, after: Scope::FRAGMENT_SAMPLED };
             assert_eq!(node.all(&[Frame { visibility, ..lit }]), [1]);
@@ -240,7 +240,7 @@ fn what_is_lit_stays_lit_whatever_the_numbers_say() {
         assert_eq!(node.all(&[lit, lit]), [1, 1]);
         assert!(node.record(&again), "lit again");
     }
-    // An image of the host's is another one each frame.
+    // A lent image may be another one each frame.
     let mut node = Node::new(1, Vec::new());
     node.description.lent_visibility = true;
     let visibility = Visibility::Lent(target());
@@ -248,7 +248,7 @@ fn what_is_lit_stays_lit_whatever_the_numbers_say() {
     assert_eq!(node.all(&[Frame { visibility, ..frame(&[]) }]), [1]);
 }
 
-/// Idle frames of pixels that are lit keep that they are.
+/// After an idle frame of lit pixels, the node still knows that every pixel is lit.
 #[test]
 fn idle_pixels_stay_lit_too() {
     let mut node = Node::new(1, Vec::new());
