@@ -1,8 +1,8 @@
-//! Knobs: what a technique lets a user turn, each stated once.
+//! Knobs: the settings of a technique that a user can change, each stated once.
 //!
-//! A room lists its knobs as [`Field`]s of its settings: key, unit, legal values, what the knob does, and how it is
-//! read and written. Ranges, defaults, help texts, errors and `docs/settings.md` follow from that. This file knows no
-//! technique.
+//! A room lists its knobs as [`Field`]s of its settings: key, unit, legal values, a text that says what the knob does,
+//! and the functions that get and set it. Ranges, defaults, help texts, errors and `docs/settings.md` follow from
+//! that. This file names no technique.
 
 use crate::Error;
 use std::fmt;
@@ -10,17 +10,17 @@ use std::fmt;
 /// The values that a knob may have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Values {
-    /// Whole numbers from the first to the second.
+    /// A whole number from the first to the second, both included.
     Whole(u32, u32),
-    /// Real numbers from the first to the second.
+    /// A real number from the first to the second, both included.
     Real(f32, f32),
-    /// One of a few names.
+    /// One of these names.
     Choice(&'static [&'static str]),
-    /// `on` or `off`.
+    /// The names `on` and `off`.
     Switch,
 }
 
-/// A range or the names, as part of a sentence.
+/// Prints the range or the names as part of a sentence.
 impl fmt::Display for Values {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -32,20 +32,20 @@ impl fmt::Display for Values {
     }
 }
 
-/// A knob as a reader sees it.
+/// A knob in a technique's list, without its technique's type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Knob {
     /// The key, as in `--set key=value`.
     pub key: &'static str,
-    /// The unit of the value; `choice` and `switch` have none.
+    /// The unit of the value, or `choice` or `switch`.
     pub unit: &'static str,
     /// The values that are legal.
     pub values: Values,
-    /// What the knob does, and what 0 means where 0 is legal.
+    /// A text that says what the knob does, and what 0 means where 0 is legal.
     pub about: &'static str,
 }
 
-/// How one knob of the settings `S` is read and written.
+/// One knob of the settings `S`, with the functions that read and write it.
 #[derive(Debug)]
 pub struct Field<S> {
     knob: Knob,
@@ -56,13 +56,13 @@ pub struct Field<S> {
 enum Access<S> {
     Whole(fn(&S) -> u32, fn(&mut S, u32)),
     Real(fn(&S) -> f32, fn(&mut S, f32)),
-    /// Writing says whether the name is one of the choices.
+    /// Reads the choice's name; writing returns whether the name is one of the choices.
     Choice(fn(&S) -> &'static str, fn(&mut S, &str) -> bool),
     Switch(fn(&S) -> bool, fn(&mut S, bool)),
 }
 
 impl<S> Field<S> {
-    /// A whole number within a range, both ends legal.
+    /// A knob with whole numbers in a range, both ends included.
     pub const fn whole(
         key: &'static str,
         unit: &'static str,
@@ -75,7 +75,7 @@ impl<S> Field<S> {
         Self { knob, access: Access::Whole(get, set) }
     }
 
-    /// A real number within a range, both ends legal.
+    /// A knob with real numbers in a range, both ends included.
     pub const fn real(
         key: &'static str,
         unit: &'static str,
@@ -88,7 +88,7 @@ impl<S> Field<S> {
         Self { knob, access: Access::Real(get, set) }
     }
 
-    /// One of a few names; `set` says whether a name is one of them.
+    /// A knob with one of a few names; `set` returns whether a name is one of them.
     pub const fn choice(
         key: &'static str,
         names: &'static [&'static str],
@@ -100,7 +100,7 @@ impl<S> Field<S> {
         Self { knob, access: Access::Choice(get, set) }
     }
 
-    /// Something that is on or off.
+    /// A knob that is on or off.
     pub const fn switch(
         key: &'static str,
         about: &'static str,
@@ -111,7 +111,7 @@ impl<S> Field<S> {
         Self { knob, access: Access::Switch(get, set) }
     }
 
-    /// The side of the light-space maps, which every technique has.
+    /// The knob for the side of the light-space maps, which every technique has.
     pub const fn map(get: fn(&S) -> u32, set: fn(&mut S, u32)) -> Self {
         const ABOUT: &str = "side of the occluder map, or of each of several; any whole number";
         Self::whole("map", "texels", [1, 4096], ABOUT, get, set)
@@ -158,7 +158,7 @@ impl<S> Field<S> {
         self.check(settings)
     }
 
-    /// Whether the value lies within the range; choices and switches always do.
+    /// Checks that the value lies within the range; choices and switches always do.
     fn check(&self, settings: &S) -> Result<(), Error> {
         let good = match (&self.access, self.knob.values) {
             (Access::Whole(get, _), Values::Whole(least, most)) => {
@@ -189,16 +189,16 @@ impl<S> Field<S> {
 pub trait Knobs: Default + 'static {
     /// The technique's name, as on a command line.
     const NAME: &'static str;
-    /// Every knob, in the order in which a reader wants them.
+    /// The knobs, in the order in which a reader wants them.
     const FIELDS: &'static [Field<Self>];
 }
 
-/// What [`Knobs`] give settings whose type is not known.
+/// The methods of settings with [`Knobs`], for settings whose type is not known.
 pub trait Tune {
     /// The technique's name, as on a command line.
     fn name(&self) -> &'static str;
 
-    /// Every knob.
+    /// The technique's knobs.
     fn knobs(&self) -> Vec<Knob>;
 
     /// The value of a knob as text; none for a key that the technique does not have.
@@ -217,7 +217,7 @@ pub trait Tune {
     /// Checks every knob against its range.
     ///
     /// # Errors
-    /// [`Error::Setting`] for the first that is outside.
+    /// [`Error::Setting`] for the first knob whose value is outside its range.
     fn check_ranges(&self) -> Result<(), Error>;
 }
 
@@ -256,23 +256,23 @@ impl<S: Knobs> Tune for S {
     }
 }
 
-/// Names of an enum's choices, and the way between them and values.
+/// Declares the names of an enum's variants, and the conversions between both.
 macro_rules! choices {
     ($type:ty: $($name:literal => $variant:ident),+ $(,)?) => {
         impl $type {
-            /// Every choice, in the order of [`Self::NAMES`].
+            /// The variants, in the order of [`Self::NAMES`].
             pub const ALL: &'static [Self] = &[$(Self::$variant),+];
-            /// The choices' names, in order.
+            /// The variants' names, in order.
             pub const NAMES: &'static [&'static str] = &[$($name),+];
 
-            /// The choice's name.
+            /// The variant's name.
             pub fn name(self) -> &'static str {
                 match self {
                     $(Self::$variant => $name),+
                 }
             }
 
-            /// The choice of a name; none where there is no such choice.
+            /// The variant with a name; none where there is no such variant.
             pub fn named(name: &str) -> Option<Self> {
                 match name {
                     $($name => Some(Self::$variant),)+
@@ -283,7 +283,7 @@ macro_rules! choices {
     };
 }
 
-/// The field of a choice: its key, its type, what it does, and the member of the settings that holds it.
+/// Declares the field of a choice: its key, its type, its text, and the member of the settings that holds it.
 macro_rules! choice {
     ($key:literal, $type:ty, $about:expr, $($member:ident).+) => {
         $crate::knob::Field::choice(

@@ -1,15 +1,14 @@
-//! The shaders, embedded, each stated once, room by room.
+//! The SPIR-V modules of the node's shaders, embedded in the crate and listed by room.
 //!
-//! The words come from `spirv/`, which is compiled from `glsl/` and committed; a test recompiles
-//! every module and compares the bytes. A file that is compiled more than once has its modules in
-//! `glsl/permutations.txt`.
+//! The words come from `spirv/`, which is compiled from `glsl/` and committed; a test recompiles every module and
+//! compares the bytes. `glsl/permutations.txt` lists the modules of a file that is compiled more than once.
 
 /// One SPIR-V module with the entry point `main`.
 #[derive(Clone, Copy)]
 pub struct Module {
-    /// Its path under `spirv/`, without `.spv`.
+    /// The module's path under `spirv/`, without `.spv`.
     pub path: &'static str,
-    /// SPIR-V 1.0, little-endian words.
+    /// The module's SPIR-V 1.0, as little-endian words.
     pub spirv: &'static [u8],
 }
 
@@ -39,7 +38,7 @@ macro_rules! module {
     };
 }
 
-/// Constants of the modules, and [`ALL`] of them.
+/// Declares a constant for each module, and [`ALL`] of them.
 macro_rules! modules {
     ($($(#[$doc:meta])* $name:ident = $path:literal;)*) => {
         $($(#[$doc])* pub const $name: Module = module!($path);)*
@@ -50,170 +49,170 @@ macro_rules! modules {
 }
 
 modules! {
-    /// Vertices to clip space, for depth alone.
+    /// Transforms vertices to clip space, for depth alone.
     DEPTH_VERT = "depth_layers/depth.vert";
-    /// A host's occluder map to a layer.
+    /// Copies a host's occluder map to a depth layer.
     COPY_MAP = "depth_layers/copy_map.comp";
 
-    /// The largest w of squares of texels.
+    /// Writes the largest w of squares of a map's texels.
     NEAREST = "common/nearest.comp";
 
-    /// A hard shadow map, 3×3 filtered.
+    /// Computes the visible fraction by a hard shadow map with a 3×3 filter.
     HARD = "hard/hard.comp";
 
-    /// Percentage-closer soft shadows.
+    /// Computes the visible fraction by percentage-closer soft shadows.
     PCSS = "pcss/pcss.comp";
-    /// Percentage-closer soft shadows at the pixels of listed tiles.
+    /// Computes percentage-closer soft shadows at the pixels of listed tiles.
     PCSS_TILES = "pcss/pcss_listed.comp";
-    /// Lists the tiles of pixels that find a blocker.
+    /// Lists the tiles of pixels that may find a blocker, for percentage-closer soft shadows.
     PCSS_SORT = "pcss/tiles.comp";
 
-    /// The least and largest w of 2×2 texels.
+    /// Writes the least and largest w of 2×2 texels, for back-projection.
     FINEST_LEVEL = "back_projection/finest_level.comp";
-    /// A level of least and largest w from the level before.
+    /// Writes a level of least and largest w from the level before it, for back-projection.
     NEXT_LEVEL = "back_projection/next_level.comp";
-    /// Texels projected back onto the light.
+    /// Computes the visible fraction by projecting occluder texels back onto the light.
     BACK_PROJECTION = "back_projection/back_projection.comp";
 
-    /// The G-buffer in light space.
+    /// Writes the G-buffer in light space, for many lights.
     RECEIVERS = "many_lights/receivers.comp";
-    /// Whether each pixel sees one point of the light.
+    /// Counts, for each pixel, whether one point of the light is hidden from it.
     ADD_POINT = "many_lights/add_point.comp";
-    /// The share of the points that each pixel sees.
+    /// Writes the share of the light's points that each pixel sees.
     AVERAGE = "many_lights/average.comp";
 
-    /// Occluder map to blocks of texels with their moments.
+    /// Converts an occluder map to blocks of texels with their moments, for soft shadow maps.
     BLOCKS = "soft_shadow_map/blocks.comp";
-    /// Blocks to superblocks.
+    /// Combines blocks of texels to superblocks, for soft shadow maps.
     SUPERBLOCKS = "soft_shadow_map/superblocks.comp";
-    /// The hierarchical gather at the receiver map's texels.
+    /// Gathers a soft shadow map hierarchically at the receiver map's texels.
     GATHER_MAP = "soft_shadow_map/gather_map.comp";
-    /// The hierarchical gather at the G-buffer's pixels.
+    /// Gathers the visible fraction hierarchically at the G-buffer's pixels.
     GATHER_PIXELS = "soft_shadow_map/gather_pixels.comp";
-    /// The hierarchical gather at the pixels of listed tiles.
+    /// Gathers the visible fraction hierarchically at the pixels of listed tiles.
     GATHER_TILES = "soft_shadow_map/gather_pixels_listed.comp";
-    /// Lists the tiles of pixels that an occluder affects, by blocks of the map.
+    /// Lists the tiles of pixels that an occluder may shadow, by the blocks of a soft shadow map's occluders.
     TILES = "soft_shadow_map/tiles.comp";
-    /// Occupied texels of each group of blocks.
+    /// Counts the occupied texels of each group of blocks, to blend micro-patches.
     PATCH_COUNT = "soft_shadow_map/patch_count.comp";
-    /// Group counts to offsets, and the draw's arguments.
+    /// Turns the groups' counts into offsets, and writes the arguments of the micro-patches' draw.
     PATCH_SCAN = "soft_shadow_map/patch_scan.comp";
-    /// Blocks to a buffer of micro-patches.
+    /// Writes a buffer of micro-patches from blocks of texels.
     PATCH_EMIT = "soft_shadow_map/patch_emit.comp";
-    /// A micro-patch to its penumbra rectangle.
+    /// Expands a micro-patch to its penumbra rectangle.
     PATCH_VERT = "soft_shadow_map/patch.vert";
-    /// A micro-patch's occlusion at a receiver texel.
+    /// Computes a micro-patch's occlusion at a receiver texel.
     PATCH_FRAG = "soft_shadow_map/patch.frag";
 
-    /// Depth layers to columns of what is solid.
+    /// Converts depth layers to columns of solid matter, for ray marching.
     COLUMNS = "ray_march/columns.comp";
-    /// The bounds of a level's windows.
+    /// Writes the bounds of an N-buffer level's windows, for ray marching.
     LEVEL = "ray_march/level.comp";
-    /// The bounds of a level's windows, for any kind of windows.
+    /// Writes the bounds of a level's windows, for windows of any kind.
     LEVEL_ANY = "ray_march/level_any.comp";
-    /// An empty list of pixels.
+    /// Empties the list of pixels that need rays.
     START = "ray_march/start.comp";
-    /// Which pixels need rays.
+    /// Lists the pixels that need rays, for the usual settings.
     CLASSIFY = "ray_march/classify.comp";
-    /// Which pixels need rays, with any settings.
+    /// Lists the pixels that need rays, for any settings.
     CLASSIFY_ANY = "ray_march/classify_any.comp";
-    /// Which pixels need rays, in color.
+    /// Lists the pixels that need rays, with visible fractions in color.
     CLASSIFY_COLOR = "ray_march/classify_color.comp";
-    /// The rays of the listed pixels.
+    /// Traces the rays of the listed pixels, for the usual settings.
     TRACE = "ray_march/trace.comp";
-    /// The rays of the listed pixels, with any settings.
+    /// Traces the rays of the listed pixels, for any settings.
     TRACE_ANY = "ray_march/trace_any.comp";
-    /// The rays of the listed pixels, weighed by what the light emits.
+    /// Traces the rays of the listed pixels, weighed by the light's emission.
     TRACE_TEXTURED = "ray_march/trace_textured.comp";
-    /// The rays of the listed pixels, weighed by what the light emits, in color.
+    /// Traces the rays of the listed pixels, weighed by the light's emission, in color.
     TRACE_COLOR = "ray_march/trace_color.comp";
-    /// The listed pixels, filtered along rows.
+    /// Filters the noise of the listed pixels along rows of pixels.
     FILTER_ROWS = "ray_march/filter_rows.comp";
-    /// The listed pixels, filtered along rows, in color.
+    /// Filters the noise of the listed pixels along rows of pixels, in color.
     FILTER_ROWS_COLOR = "ray_march/filter_rows_color.comp";
-    /// The listed pixels, filtered along columns.
+    /// Filters the noise of the listed pixels along columns of pixels.
     FILTER_COLUMNS = "ray_march/filter_columns.comp";
-    /// The listed pixels, filtered along columns, in color.
+    /// Filters the noise of the listed pixels along columns of pixels, in color.
     FILTER_COLUMNS_COLOR = "ray_march/filter_columns_color.comp";
 
-    /// Where slices begin and end.
+    /// Places slices of equal thickness, for occlusion textures.
     PLACE = "occlusion_textures/place.comp";
-    /// An empty histogram of distances.
+    /// Clears the histogram of the occluders' distances, for occlusion textures.
     HISTOGRAM_START = "occlusion_textures/histogram_start.comp";
-    /// How many texels have a face in each bin of distances.
+    /// Counts the texels that have a face in each bin of distances, for occlusion textures.
     HISTOGRAM = "occlusion_textures/histogram.comp";
-    /// Where slices begin and end, by a histogram of distances.
+    /// Places slices by the histogram of the occluders' distances.
     PLACE_FITTED = "occlusion_textures/place_fitted.comp";
-    /// Faces counted in the first sixteen slices.
+    /// Counts faces in the first sixteen slices.
     SLICE = "occlusion_textures/slice.frag";
-    /// Faces counted in the slices from the seventeenth on.
+    /// Counts faces in the slices from the seventeenth on.
     SLICE_LOWER = "occlusion_textures/slice_lower.frag";
-    /// Counted faces to a bit a slice.
+    /// Converts counted faces to a mask of a bit a slice.
     MASK = "occlusion_textures/mask.comp";
-    /// Summed-area tables along rows.
+    /// Sums slices along rows of texels, for summed-area tables.
     SUM_ROWS = "occlusion_textures/sum_rows.comp";
-    /// Summed-area tables along columns.
+    /// Sums slices along columns of texels, for summed-area tables.
     SUM_COLUMNS = "occlusion_textures/sum_columns.comp";
-    /// Means of the smallest windows of slices.
+    /// Writes the means of the smallest windows of slices.
     MEANS_FIRST_LEVEL = "occlusion_textures/first_level.comp";
-    /// Means of a level's windows.
+    /// Writes the means of a level's windows of slices.
     MEANS_NEXT_LEVEL = "occlusion_textures/next_level.comp";
-    /// What blocks in squares of the mask.
+    /// Finds the slices that block in each square of the mask.
     SQUARES = "occlusion_textures/squares.comp";
-    /// Lists the tiles of pixels that meet something in a slice, by summed-area tables.
+    /// Lists the tiles of pixels that may meet an occluder in a slice, by summed-area tables.
     SLICE_TILES_SAT = "occlusion_textures/tiles_sat.comp";
-    /// Lists the tiles of pixels that meet something, by tables of correlated slices.
+    /// Lists the tiles of pixels that may meet an occluder in a slice, by summed-area tables of correlated slices.
     SLICE_TILES_SAT_CORRELATED = "occlusion_textures/tiles_sat_correlated.comp";
-    /// Lists the tiles of pixels that meet something in a slice, by squares of the mask.
+    /// Lists the tiles of pixels that may meet an occluder in a slice, by squares of the mask.
     SLICE_TILES_LEVELS = "occlusion_textures/tiles_levels.comp";
-    /// The visible fraction from summed-area tables of slices.
+    /// Computes the visible fraction from summed-area tables of slices.
     VISIBILITY_SAT = "occlusion_textures/visibility_sat.comp";
-    /// The visible fraction from summed-area tables, by what slices have in common.
+    /// Computes the visible fraction from summed-area tables of slices, combined by their measured overlap.
     VISIBILITY_SAT_CORRELATED = "occlusion_textures/visibility_sat_correlated.comp";
-    /// The visible fraction from levels of means of slices.
+    /// Computes the visible fraction from levels of means of slices.
     VISIBILITY_LEVELS = "occlusion_textures/visibility_levels.comp";
-    /// The visible fraction from levels of means, by what slices have in common.
+    /// Computes the visible fraction from levels of means of slices, combined by their measured overlap.
     VISIBILITY_LEVELS_CORRELATED = "occlusion_textures/visibility_levels_correlated.comp";
-    /// The visible fraction at the pixels of listed tiles, from summed-area tables.
+    /// Computes the visible fraction at the pixels of listed tiles, from summed-area tables of slices.
     LISTED_SAT = "occlusion_textures/visibility_listed_sat.comp";
-    /// The visible fraction at the pixels of listed tiles, from tables of correlated slices.
+    /// Computes the visible fraction at the pixels of listed tiles, from summed-area tables of correlated slices.
     LISTED_SAT_CORRELATED = "occlusion_textures/visibility_listed_sat_correlated.comp";
-    /// The visible fraction at the pixels of listed tiles, from levels of means.
+    /// Computes the visible fraction at the pixels of listed tiles, from levels of means of slices.
     LISTED_LEVELS = "occlusion_textures/visibility_listed_levels.comp";
-    /// The visible fraction at the pixels of listed tiles, from levels of correlated slices.
+    /// Computes the visible fraction at the pixels of listed tiles, from levels of means of correlated slices.
     LISTED_LEVELS_CORRELATED = "occlusion_textures/visibility_listed_levels_correlated.comp";
 
-    /// Samples evenly along a line.
+    /// Places samples evenly along a line, for linear lights.
     LINE_SPREAD = "linear_light/spread.comp";
-    /// Vertices as a line's middle sees them.
+    /// Transforms vertices to clip space, as the middle of a linear light's line sees them.
     MIDDLE_VERT = "linear_light/middle.vert";
-    /// Vertices as a sample sees them.
+    /// Transforms vertices to clip space, as a sample of a linear light's line sees them.
     SAMPLE_VERT = "linear_light/sample.vert";
-    /// What a sample sees, into a layer.
+    /// Copies the depths that a sample of a line sees into its layer.
     LINE_COPY = "linear_light/copy_depth.comp";
-    /// What receivers see of a line.
+    /// Estimates the parts of a line that a grid of receivers sees.
     LINE_MASK = "linear_light/mask.comp";
-    /// Samples where light is lost.
+    /// Places a line's samples where light is lost.
     LINE_PLACE = "linear_light/place.comp";
-    /// A sample and the segment before it.
+    /// Begins a sample of a line and the segment before it.
     SKIN_START = "linear_light/start.comp";
-    /// Where occluders end, to skins.
+    /// Finds where occluders end in a sample's map, and writes skins.
     EDGES = "linear_light/edges.comp";
-    /// A skin as the neighbouring sample sees it.
+    /// Expands a skin to its strip in the neighbouring sample's map.
     SKINS_VERT = "linear_light/skins.vert";
-    /// What lies behind a skin sees of the segment.
+    /// Computes the part of a segment that a surface behind a skin sees.
     SKINS_FRAG = "linear_light/skins.frag";
-    /// A sample's map as pixels read it.
+    /// Writes a sample's map in the form that pixels read.
     KEEP = "linear_light/keep.comp";
-    /// The samples' parts of each pixel, summed.
+    /// Computes the visible fraction by summing the parts of all segments that each pixel sees.
     LINE_VISIBILITY = "linear_light/visibility.comp";
 
-    /// The soft shadow map projected onto the G-buffer.
+    /// Projects a soft shadow map onto the G-buffer's pixels.
     RESOLVE = "visibility/resolve.comp";
-    /// An empty list of tiles.
+    /// Empties the list of tiles.
     TILES_START = "visibility/tiles_start.comp";
-    /// Every pixel fully lit.
+    /// Writes a visible fraction of 1 to every pixel.
     LIT = "visibility/lit.comp";
-    /// Every pixel fully lit, in color.
+    /// Writes a visible fraction of 1 to every pixel, in color.
     LIT_COLOR = "visibility/lit_color.comp";
 }

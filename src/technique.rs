@@ -1,4 +1,4 @@
-//! The techniques, and the one place that knows all of them.
+//! The techniques, in the one file that names all of them.
 
 use crate::Error;
 use crate::knob::{Knob, Knobs};
@@ -31,7 +31,7 @@ macro_rules! techniques {
                 vec![$(Self::$variant($room::Settings::default()),)+]
             }
 
-            /// The settings, as what answers for the technique.
+            /// The settings as the trait that answers for the technique.
             pub fn room(&self) -> &dyn Room {
                 match self {
                     $(Self::$variant(settings) => settings,)+
@@ -54,13 +54,13 @@ macro_rules! techniques {
 }
 
 techniques! {
-    /// A shadow map from the light's centre, 3×3 percentage-closer filtered.
+    /// A shadow map from the light's centre with a 3×3 percentage-closer filter.
     Hard(hard),
     /// Percentage-closer soft shadows (Fernando 2005).
     Pcss(pcss),
     /// The mean of hard shadow maps from points all over the light.
     ManyLights(many_lights),
-    /// Occluder texels projected back onto the light, gaps filled (Guennebaud 2006).
+    /// Occluder texels projected back onto the light, with gaps filled (Guennebaud 2006).
     BackProjection(back_projection),
     /// Micro-patches back-projected onto the light (Atty 2006).
     SoftShadowMap(soft_shadow_map),
@@ -120,13 +120,13 @@ impl Technique {
     /// Checks every knob, and those that must agree with each other.
     ///
     /// # Errors
-    /// [`Error::Setting`] for the first that is wrong.
+    /// [`Error::Setting`] for the first wrong knob.
     pub fn check(&self) -> Result<(), Error> {
         check(self.room())
     }
 
-    /// The technique for lines and polygons, which places its samples by an error itself: a visible fraction that may
-    /// be missed, the most samples on a line, and the most lines.
+    /// The technique for line and polygon lights, which places its samples by itself: `error` is the visible fraction
+    /// that may be missed, `samples` the most samples on a line, `lines` the most lines.
     pub(crate) fn along_lines(error: f32, samples: u32, lines: u32) -> Self {
         linear_light::Settings { error, samples, lines, ..Default::default() }.into()
     }
@@ -200,8 +200,8 @@ mod tests {
         }
     }
 
-    /// Both ends of every range are taken, what lies just beyond is refused with what would be right, and no knob
-    /// writes where another one reads.
+    /// Both ends of every range are accepted, values just beyond are refused with the legal range, and no knob writes
+    /// where another one reads.
     #[test]
     fn every_knob_takes_its_range_and_nothing_else() {
         for plain in Technique::all() {
@@ -294,7 +294,7 @@ mod tests {
         assert!(sentence.contains("samples") && sentence.contains("2 to 16"), "{sentence}");
     }
 
-    /// `docs/settings.md` is what the knobs say; `ANTUMBRA_WRITE_DOCS=1 cargo test --workspace --lib` writes it.
+    /// `docs/settings.md` agrees with the knobs; `ANTUMBRA_WRITE_DOCS=1 cargo test --workspace --lib` writes it.
     #[test]
     fn the_page_of_settings_is_what_the_knobs_say() {
         let page = page();

@@ -5,7 +5,7 @@
 #include "occlusion_textures/tile.glsl"
 #include "occlusion_textures/levels.glsl"
 
-// Means of windows of 2 x 2 texels, from the mask. One tile each z.
+// Writes the means of windows of 2 x 2 texels, from the mask. Each z is one tile.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -14,13 +14,13 @@ layout(set = 0, binding = 1, rgba16f) writeonly uniform image2DArray levels;
 
 layout(push_constant) uniform Push {
     int map;  // the map's side in texels
-    int kind; // of levels
+    int kind; // the kind of the levels' windows
     int correlated;
 } push;
 
 uvec4 bits_at(ivec2 p, int tile)
 {
-    // Behind the map's end there is nothing.
+    // The mask is empty behind the map's end.
     bool outside = any(greaterThanEqual(p, ivec2(push.map)));
     uint texel = outside ? 0u : texelFetch(mask, p, 0).x;
     return tile_means(texel, tile, push.correlated != 0);

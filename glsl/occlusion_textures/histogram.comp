@@ -4,7 +4,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "occlusion_textures/slices.glsl"
 
-// How many texels have their nearest or their furthest face in each bin of distances.
+// Counts the texels that have their nearest or their furthest face in each bin of distances.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -15,7 +15,7 @@ layout(set = 0, binding = 2, std430) buffer Histogram { uint histogram[]; };
 layout(push_constant) uniform Push {
     int map;    // the layers' side in texels
     float near; // distance of the near plane from the projection point, m
-    float span; // of the occluders, m
+    float span; // distance of the furthest occluder from the nearest, m
 } push;
 
 void main()
@@ -29,7 +29,7 @@ void main()
         return;
     }
     atomicAdd(histogram[bin_of(nearest, push.near, push.span)], 1u);
-    // An open mesh has no furthest back face.
+    // A texel of an open mesh may have no back face.
     float furthest = texelFetch(back, p, 0).x;
     if (furthest < 1.0) {
         atomicAdd(histogram[bin_of(furthest, push.near, push.span)], 1u);

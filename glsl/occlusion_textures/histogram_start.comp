@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "occlusion_textures/slices.glsl"
 
-// An empty histogram.
+// Clears the histogram of distances.
 
 layout(local_size_x = 64) in;
 

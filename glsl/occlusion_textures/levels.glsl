@@ -1,7 +1,7 @@
 // Entered from first_level.comp, next_level.comp and visibility.comp.
 //
-// Where the levels of a tile are kept: from the first one on, as those of any map, in the layers of an image
-// array, tile behind tile. The map itself is in the mask.
+// The image array that keeps the levels of all tiles: a tile's levels from the first one on lie in consecutive layers,
+// tile after tile. Level 0 is the mask.
 
 #ifndef OCCLUSION_TEXTURES_LEVELS_GLSL
 #define OCCLUSION_TEXTURES_LEVELS_GLSL
@@ -15,10 +15,10 @@ ivec3 place_of_tile(Levels l, int tile, int level, ivec2 node)
 }
 
 #ifdef RECTANGLES
-// Means of any rectangle from levels: windows of 2^k x 2^k texels, between which is interpolated
-// (Eisemann and Decoret 2008, section 3.2).
+// Means of any rectangle from levels of windows of 2^k x 2^k texels, interpolated between windows and levels (Eisemann
+// and Decoret 2008, section 3.2).
 
-// A rectangle is covered by no more windows side by side than this; a longer one is sampled.
+// The most windows side by side that cover a rectangle; a longer one is sampled.
 const int MOST_WINDOWS = 8;
 
 vec4 node_value(Levels l, int tile, int level, ivec2 node)
@@ -30,7 +30,7 @@ vec4 node_value(Levels l, int tile, int level, ivec2 node)
     return texelFetch(filtered, place_of_tile(l, tile, level, n), 0);
 }
 
-// The mean over a window of a level round a place, from the four nodes nearest to it.
+// The mean over a window of a level around a place, interpolated between the four nearest nodes.
 vec4 window_mean(Levels l, int tile, int level, vec2 centre)
 {
     float window = float(1 << level);
@@ -43,14 +43,14 @@ vec4 window_mean(Levels l, int tile, int level, vec2 centre)
     return mix(upper, lower, f.y);
 }
 
-// Means do not tell nothing from little.
+// Means cannot distinguish an empty rectangle from one with little in it, so none counts as empty.
 bool is_empty(vec2 lo, vec2 hi)
 {
     return false;
 }
 
-// The share of a part of the map, `lo` to `hi` in texels, that a slice blocks, those above it, and both: windows as
-// wide as its shorter side, side by side along the longer one.
+// The shares of a rectangle, `lo` to `hi` in texels, that a slice blocks, that those above it block, and that both
+// block: the mean over windows as wide as its shorter side, side by side along the longer one.
 vec3 mean_of(int slice, vec2 lo, vec2 hi)
 {
     int tile = IS_CORRELATED ? slice : slice >> 2;
@@ -69,7 +69,7 @@ vec3 mean_of(int slice, vec2 lo, vec2 hi)
         vec2 centre = middle + along * ((float(i) + 0.5) / float(count));
         sum += mix(window_mean(l, tile, level, centre), window_mean(l, tile, next, centre), f);
     }
-    // What is covered all over may come out as 1 + 2^-23 where drivers interpolate as x + y a - x a.
+    // A full window may come out as 1 + 2^-23 where drivers interpolate as x + y a - x a.
     sum = min(sum / float(count), 1.0);
     return IS_CORRELATED ? sum.xyz : vec3(sum[slice & 3]);
 }

@@ -4,7 +4,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "occlusion_textures/solid.glsl"
 
-// Counted faces to one number a texel, whose bit k says that slice k blocks there.
+// Converts counted faces to one number a texel; its bit k means that slice k blocks there.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -33,7 +33,7 @@ layout(push_constant) uniform Push {
     int fill;   // 1: a slice blocks in the next one too
 } push;
 
-// Counted faces of four slices at a texel.
+// The counted faces of four slices at a texel.
 ivec4 counts(texture2D faces, ivec2 p)
 {
     return ivec4(texelFetch(faces, p, 0) * 255.0 + 0.5);
@@ -67,7 +67,7 @@ void main()
     c = four(c, 24, fronts_6, backs_6, p);
     c = four(c, 28, fronts_7, backs_7, p);
     uint solid = solid_of(c);
-    // Section 3.4: closes the leaks of thin occluders that go on from slice to slice.
+    // Filling (section 3.4) closes the leaks of thin occluders that go on from slice to slice.
     solid |= push.fill != 0 ? solid << 1 : 0u;
     // The last slice has none below it.
     uint all = push.slices == 32 ? 0xffffffffu : (1u << uint(push.slices)) - 1u;

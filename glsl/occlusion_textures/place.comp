@@ -3,17 +3,17 @@
 #extension GL_GOOGLE_include_directive : require
 #include "occlusion_textures/slices.glsl"
 
-// Slices of equal thickness (Eisemann and Decoret 2008, section 3.4).
+// Places slices of equal thickness (Eisemann and Decoret 2008, section 3.4).
 
 layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0, rgba32f) writeonly uniform image2D placement;
 
 layout(push_constant) uniform Push {
-    float near; // of the occluders from the light's plane, m
+    float near; // distance of the nearest occluder from the light's plane, m
     float far;
     float eye;  // how far behind the light the projection point is, m
-    float plane; // where in a slice its texture lies: 0 above, 1 below
+    float plane; // where in a slice its texture lies: 0 at the top, 1 at the bottom
     int slices;
 } push;
 

@@ -3,12 +3,12 @@
 #extension GL_GOOGLE_include_directive : require
 #include "occlusion_textures/slices.glsl"
 
-// Slices that are thin where there is much in them, and a texture where most of a slice is: placement by
-// the scene's depth histogram, which the authors leave to be done (Eisemann and Decoret 2008, section 5).
+// Places slices by a histogram of the faces' distances: slices are thin where there are many faces, and a slice's
+// texture lies at their mean distance. The authors leave this to be done (Eisemann and Decoret 2008, section 5).
 //
-// Half of a slice's share is its share of the faces, half of the distance, so that what the histogram does
-// not tell of, as the walls of a box seen from above, is not left to one slice. One invocation: a running
-// sum over so few bins is shorter than what it takes to share it.
+// Half of a slice's share is its share of the faces, half its share of the distance, so that surfaces the histogram
+// misses, such as the walls of a box seen from above, are not left to one slice. A single invocation does it: a running
+// sum over so few bins is shorter than sharing it out.
 
 layout(local_size_x = 1) in;
 
@@ -16,10 +16,10 @@ layout(set = 0, binding = 0, rgba32f) writeonly uniform image2D placement;
 layout(set = 0, binding = 1, std430) readonly buffer Histogram { uint histogram[]; };
 
 layout(push_constant) uniform Push {
-    float near; // of the occluders from the light's plane, m
+    float near; // distance of the nearest occluder from the light's plane, m
     float far;
     float eye;  // how far behind the light the projection point is, m
-    float plane; // where in a slice without faces its texture lies: 0 above, 1 below
+    float plane; // where in a slice without faces its texture lies: 0 at the top, 1 at the bottom
     int slices;
 } push;
 
@@ -28,7 +28,7 @@ float distance_of_bin(float bin)
     return mix(push.near, push.far, bin / float(BINS));
 }
 
-// A slice from bin `begin` to before bin `end`, with `mass` faces at a mean of `sum`/`mass` bins.
+// Writes a slice from bin `begin` to before bin `end`, with `mass` faces at a mean of `sum`/`mass` bins.
 void put(int slice, int begin, int end, float mass, float sum)
 {
     float plane = mass > 0.0 ? sum / mass + 0.5 : mix(float(begin), float(end), push.plane);

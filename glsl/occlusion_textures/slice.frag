@@ -3,9 +3,9 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// Counts faces in the channel of their slice, up to 255; blending adds. No order of the faces and no
-// optional feature is needed: every device blends into four images of four times eight bits at once. `FIRST` is the
-// slice of the first channel.
+// Counts faces in the channel of their slice, up to 255; blending adds. It needs no order of the faces and no optional
+// feature: every device blends into four images of four times eight bits at once. `FIRST` is the slice of the first
+// channel.
 
 #include "occlusion_textures/slices.glsl"
 
@@ -16,7 +16,7 @@ layout(location = 1) out vec4 slices_1;
 layout(location = 2) out vec4 slices_2;
 layout(location = 3) out vec4 slices_3;
 
-// One step of eight bits.
+// One step of an eight-bit channel.
 const float ONE = 1.0 / 255.0;
 
 void main()

@@ -12,7 +12,7 @@ struct Column {
     int depth;   // solids entered and not yet left
 };
 
-// The next slice, with as many faces that look at the light and that look away from it.
+// Walks on to the next slice, which has `fronts` faces that look at the light and `backs` that look away from it.
 Column walk(Column c, int slice, int fronts, int backs)
 {
     c.depth += fronts - backs;
@@ -21,8 +21,8 @@ Column walk(Column c, int slice, int fronts, int backs)
     return c;
 }
 
-// The slices that block, with a bit each. What is entered must be left again: otherwise the column goes
-// through an open mesh, which has no inside, and only its faces are known.
+// The slices that block, with a bit each. A column in which not everything entered is left again goes through an open
+// mesh, which has no inside, and only its faces are known.
 uint solid_of(Column c)
 {
     return c.depth == 0 ? c.faces | c.inside | c.inside << 1 : c.faces;

@@ -4,7 +4,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "common/nearest.glsl"
 
-// What blocks in any texel of each square of the mask. One invocation a square.
+// Writes for each square of the mask the slices that block in any of its texels. One invocation handles one square.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

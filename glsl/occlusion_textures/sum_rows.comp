@@ -4,8 +4,8 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "occlusion_textures/tile.glsl"
 
-// Summed-area tables, first half: every texel with those before it in its row. One invocation a row of a
-// tile.
+// Summed-area tables, first half: adds to every texel those before it in its row of texels. One invocation handles one
+// row of a tile.
 
 layout(local_size_x = 64) in;
 

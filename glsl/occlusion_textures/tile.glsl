@@ -1,17 +1,17 @@
 // Entered from sum_rows.comp, sum_columns.comp, first_level.comp, visibility.comp and tiles.comp.
 //
-// What is filtered: tiles of numbers that are 0 or 1 at a texel, made from its mask.
+// The numbers that are prefiltered: tiles of values that are 0 or 1 at a texel, made from the mask.
 //
-// Independent slices are packed by four (section 3.6). Correlated ones come in pairs, 2t and 2t + 1, with three
-// numbers more: whether any slice above the pair blocks; any above its second; any above what follows it.
+// Independent slices are packed by four (section 3.6). Correlated slices come in pairs, 2t and 2t + 1, with three more
+// numbers: whether any slice blocks above the pair, above its second, and above the slice that follows the pair.
 //
-// With `#define SUMMED` also means of any rectangle, from summed-area tables.
+// With `#define SUMMED` it also declares means of any rectangle from summed-area tables.
 
 #ifndef OCCLUSION_TEXTURES_TILE_GLSL
 #define OCCLUSION_TEXTURES_TILE_GLSL
 
-// A texel of a summed-area table. 4096 x 4096 ones are 2^24: a sum takes 25 bits, and so there is room for a
-// fifth one in what the other four leave of 128.
+// A texel of a summed-area table. 4096 x 4096 ones are 2^24, so a sum takes 25 bits, and a fifth sum fits into what the
+// other four leave of 128.
 struct Sums {
     uvec4 four;
     uint fifth;
@@ -30,7 +30,7 @@ Sums unpacked(uvec4 words)
     return Sums(words & ((1u << SUM_BITS) - 1u), high.x | high.y << 7 | high.z << 14 | high.w << 21);
 }
 
-// Bits of slices up to `slice`, without it.
+// The mask's bits below bit `slice`.
 uint above(uint mask, int slice)
 {
     return mask & ((1u << uint(slice)) - 1u);
@@ -47,8 +47,8 @@ Sums tile_sums(uint mask, int tile, bool correlated)
     return Sums(uvec4(own, covered, covered | own.x), covered | own.x | own.y);
 }
 
-// The numbers for levels of means, whose texels hold four numbers: of a correlated slice whether it blocks,
-// whether any slice nearer the light does, and whether both do.
+// The four numbers of a texel for levels of means; for a correlated slice whether it blocks, whether any slice nearer
+// to the light does, and whether both do.
 uvec4 tile_means(uint mask, int tile, bool correlated)
 {
     if (!correlated) {
@@ -59,7 +59,7 @@ uvec4 tile_means(uint mask, int tile, bool correlated)
     return uvec4(own, covered, own & covered, 0u);
 }
 
-// Summed-area tables lie in one image, row behind row, as in memory: its width is the largest that every
+// Summed-area tables lie in one image, their texels row after row as in memory: its width is the largest that every
 // device has, and tiles of any side fill it.
 const int IMAGE_WIDTH = 4096;
 
@@ -72,7 +72,7 @@ ivec2 place_in_image(int index)
 // Means of any rectangle from summed-area tables (Crow 1984), exact for every part of a texel.
 // The including shader declares `filtered` and `push`.
 
-// Texels before (x, y) in both directions, summed.
+// The packed sums over the texels before (x, y) in both directions.
 uvec4 words_at(int tile, ivec2 p)
 {
     bool none = p.x <= 0 || p.y <= 0;
@@ -81,7 +81,7 @@ uvec4 words_at(int tile, ivec2 p)
     return none ? uvec4(0u) : words;
 }
 
-// The sums of a slice; correlated also those of all above it, and of all above the next one.
+// The sums of a slice; for correlated slices also those of all slices above it, and of all above the next one.
 uvec3 sum_at(int slice, ivec2 p)
 {
 #ifdef CORRELATED
@@ -92,19 +92,19 @@ uvec3 sum_at(int slice, ivec2 p)
 #endif
 }
 
-// Part of a rectangle of texels, from the sums at its corners.
+// The sums over a rectangle of texels, from those at its corners.
 uvec3 inside(uvec3 upper_left, uvec3 upper_right, uvec3 lower_left, uvec3 lower_right)
 {
     return lower_right - lower_left - upper_right + upper_left;
 }
 
-// Whether no slice has anything in any texel that a part of the map touches.
+// Whether no slice blocks in any texel that the rectangle from `lo` to `hi` touches.
 bool is_empty(vec2 lo, vec2 hi)
 {
     ivec2 a = ivec2(floor(lo));
     ivec2 b = ivec2(ceil(hi));
 #ifdef CORRELATED
-    // What the last slice and those above it block is what any does.
+    // The last slice and those above it are all slices.
     int last = slices() - 1;
     return inside(sum_at(last, a), sum_at(last, ivec2(b.x, a.y)), sum_at(last, ivec2(a.x, b.y)),
                   sum_at(last, b)).z == 0u;
@@ -118,16 +118,17 @@ bool is_empty(vec2 lo, vec2 hi)
 #endif
 }
 
-// The share of a part of the map, `lo` to `hi` in texels, that a slice blocks, those above it, and both; the first
-// alone where it is nothing or everything. Of the texels at the rim the rectangle has a part, so the columns a, a + 1,
-// b, b + 1 and as many rows cut it into nine pieces, of which each counts in proportion. Sums are taken apart before
-// they become real numbers, so that small rectangles far from the map's first texel are exact as well.
+// The shares of a rectangle, `lo` to `hi` in texels, that a slice blocks, that those above it block, and that both
+// block; only the first is valid where it is 0 or 1. The rectangle holds parts of the texels at its rim, so the
+// columns a, a + 1, b, b + 1 and as many rows of texels cut it into nine pieces, each of which counts in proportion.
+// Sums are subtracted before they become real numbers, so that small rectangles far from the map's first texel are
+// exact too.
 vec3 mean_of(int slice, vec2 lo, vec2 hi)
 {
     ivec2 a = ivec2(floor(lo));
     ivec2 b = ivec2(ceil(hi)) - 1;
-    // The outermost corners hold all: where that is nothing or everything of the slice, as it mostly is, the
-    // rest is not needed.
+    // The outermost corners give the whole rectangle. The rest is not needed where the slice blocks none or all of it,
+    // which is the usual case.
     uvec3 s00 = sum_at(slice, a);
     uvec3 s30 = sum_at(slice, ivec2(b.x + 1, a.y));
     uvec3 s03 = sum_at(slice, ivec2(a.x, b.y + 1));
@@ -149,7 +150,7 @@ vec3 mean_of(int slice, vec2 lo, vec2 hi)
     uvec3 s32 = sum_at(slice, ivec2(b.x + 1, b.y));
     uvec3 s13 = sum_at(slice, ivec2(a.x + 1, b.y + 1));
     uvec3 s23 = sum_at(slice, ivec2(b.x, b.y + 1));
-    // What is left out of the first and of the last row and column.
+    // The shares of the first and last row and column of texels that lie outside the rectangle.
     vec2 before = lo - vec2(a);
     vec2 after = vec2(b + 1) - hi;
     vec3 left = vec3(inside(s00, s10, s03, s13));
@@ -164,7 +165,7 @@ vec3 mean_of(int slice, vec2 lo, vec2 hi)
                corners;
     vec2 size = hi - lo;
     vec3 mean = clamp(sum / (size.x * size.y), 0.0, 1.0);
-    // The next slice is covered by this one and by those above it, and by what both block once.
+    // The share blocked above the next slice: this slice and those above it, with their overlap counted once.
     return vec3(mean.xy, max(mean.x + mean.y - mean.z, 0.0));
 }
 #endif

@@ -3,8 +3,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// Which tiles of pixels meet nothing: what their pixels' kernels touch is empty in every slice that counts for any
-// of them. One invocation a tile.
+// Lists the tiles whose pixels may meet an occluder. In the others all that the pixels' kernels touch is empty in every
+// slice that counts for them. One invocation handles one tile.
 
 #define TILES_A_GROUP 1u
 
@@ -21,7 +21,7 @@ layout(set = 0, binding = 7, std430) buffer Met { uint met[]; }; // slices, a bi
 #define PIXELS
 #include "occlusion_textures/slices.glsl"
 
-// No limit: which slices a point is behind is tested slice by slice.
+// There is no limit here: each slice is tested against the tile's points.
 float nearest_w()
 {
     return 3.0e38;
@@ -32,7 +32,7 @@ vec2 place_of(vec3 position, float w)
     return centred(map_window(), position, w);
 }
 
-// The planes of a slice; it counts for none of a tile's points where they are all above it.
+// The planes of a slice. The slice counts for none of a tile's points where they are all above it.
 vec4 planes_of(int slice)
 {
     return texelFetch(placement, ivec2(BINS + slice, 0), 0);
@@ -43,10 +43,9 @@ bool is_below(vec4 planes, Tile tile)
     return planes.x * tile.w.x >= 1.0;
 }
 
-// Slices that something in a tile may meet, with a bit each.
+// The slices in which a tile may meet an occluder, with a bit each.
 #ifdef LEVELS
-// The squares of the mask say so, where means come from levels: windows that are larger than the kernels, and those
-// beside them.
+// Means from levels read windows larger than the kernels, and those beside them, so the squares of the mask are tested.
 #include "common/nearest.glsl"
 
 layout(set = 0, binding = 2) uniform utexture2D squares;
@@ -55,7 +54,7 @@ uint met_by(Tile tile)
 {
     MapWindow m = map_window();
     vec4 all = vec4(3.0e38, 3.0e38, -3.0e38, -3.0e38);
-    uint counts = 0u; // a bit a slice
+    uint counts = 0u; // one bit for each slice that counts
     for (int slice = 0; slice < slices(); ++slice) {
         vec4 planes = planes_of(slice);
         if (is_below(planes, tile)) {
@@ -77,7 +76,7 @@ uint met_by(Tile tile)
     return found & counts;
 }
 #else
-// Summed-area tables say so, slice by slice.
+// Summed-area tables are tested slice by slice.
 layout(set = 0, binding = 2) uniform utexture2D filtered;
 
 #define SUMMED

@@ -3,9 +3,9 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// The visible fraction: kernels of slices from summed-area tables, combined (Eisemann and Decoret 2008,
-// sections 3.3 and 3.5); with `#define LEVELS` from levels of means. With `#define LISTED` the pixels of the listed
-// tiles alone.
+// Writes the visible fraction: the means of slices over a pixel's kernels, combined (Eisemann and Decoret 2008,
+// sections 3.3 and 3.5). Means come from summed-area tables, or with `#define LEVELS` from levels. `#define LISTED`
+// runs it for the pixels of listed tiles alone.
 
 #ifdef CORRELATED
 const bool IS_CORRELATED = true;
@@ -43,10 +43,10 @@ layout(set = 0, binding = 3) uniform utexture2D filtered;
 #include "occlusion_textures/tile.glsl"
 #endif
 
-// What is hidden only grows: from here on the slices that are left change nothing that an eye sees.
+// The hidden part only grows; from here on the remaining slices change nothing that an eye sees.
 const float OPAQUE = 1.0 - 1.0 / 1024.0;
 
-// The parts of a kernel that a slice blocks, those above it, and both. Outside the map nothing does.
+// The shares of a kernel that a slice blocks, that the slices above it block, and that both block; 0 outside the map.
 vec3 window_of(int slice, vec4 kernel)
 {
     vec2 lo = max(kernel.xy, vec2(0.0));
@@ -58,7 +58,7 @@ vec3 window_of(int slice, vec4 kernel)
     return inside.x * inside.y * mean_of(slice, lo, hi);
 }
 
-// Whether none of the kernels of a point meets anything. Their rims go one way from slice to slice, so they
+// Whether no kernel of a point meets an occluder. The kernels' rims move one way from slice to slice, so all of them
 // lie between the first one and the last.
 bool is_lit(MapWindow m, vec3 position)
 {
@@ -71,7 +71,7 @@ bool is_lit(MapWindow m, vec3 position)
     return any(lessThanEqual(hi, lo)) || is_empty(lo, hi);
 }
 
-// `left`: slices that may block anything, with a bit each.
+// The part of the light that slices hide; `left` has a bit for each slice that may block anything.
 float hidden_at(Receiver r, uint left)
 {
     MapWindow m = map_window();
@@ -90,7 +90,7 @@ float hidden_at(Receiver r, uint left)
             break;
         }
         vec3 window = window_of(slice, kernel_of(m, r.position, planes.z, push.half_light));
-        // What blocks nothing hides nothing more.
+        // A slice that blocks nothing of its window hides nothing more.
         if (window.x == 0.0) {
             continue;
         }

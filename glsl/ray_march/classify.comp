@@ -3,8 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// Which pixels are lit or in umbra for sure, and a list of the others: no ray is spent on the first, and no
-// invocation.
+// Finds the pixels that are surely lit or in umbra, and lists the others: the former take no ray and no invocation.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -41,7 +40,7 @@ void main()
     } else {
         imageStore(visibility, p, stored_fraction(FRACTION(v)));
         if (filters()) {
-            // What is known for sure is not filtered, but neighbours are with it.
+            // An exact fraction is not filtered, but its neighbours are filtered with it.
             float known = r.receives && r.position.z > 0.0 ? v : NO_RECEIVER;
             put_known(p, known);
             imageStore(halfway, p, vec4(known));

@@ -1,18 +1,18 @@
 // Entered from columns.comp, level.comp and pixel.glsl; at first skip what is behind SEARCH.
 //
-// What the layers say is solid over a texel, and whether a ray meets it.
+// The columns of solid matter that the layers give over each texel, and the test whether a ray meets one.
 //
-// A column is (top, bottom, second top, second bottom): heights above the furthest, growing towards the
-// light, between which there is matter; the second is below the first, 0 where there is none. A column of
-// nothing is 0. Height is w = 1/distance from the projection point, or what is left to the far plane where
-// the projection is orthographic: either way a straight line in space is one in (texels, height).
+// A column is (top, bottom, second top, second bottom): heights, growing towards the light, between which there is
+// matter. The second interval is below the first, and 0 where there is none; an empty column is 0. Height is
+// w = 1/distance from the projection point, or the distance from the far plane where the projection is orthographic:
+// either way a straight line in space is a straight line in (texels, height).
 
 #ifndef RAY_MARCH_COLUMN_GLSL
 #define RAY_MARCH_COLUMN_GLSL
 
 const float FAR_OFF = 3.0e38;
 
-// What a window's columns have in common, each the larger of two:
+// The bounds of a window's columns; each component is the maximum over the columns:
 //     x   the highest top                   y   minus the lowest bottom
 //     z   minus the lowest first top        w   the highest first bottom
 // No ray is stopped above x or below -y; between w and -z, where that is an interval, every ray is.
@@ -24,9 +24,9 @@ vec4 bounds_of(vec4 column)
     return vec4(column.x, -(column.z > 0.0 ? column.w : column.y), -column.x, column.y);
 }
 
-// How far a surface goes down from a texel at height h towards a neighbour: not at all where a step that
-// is more than twice the one on the other side (or behind the neighbour, where there is none) says that
-// the neighbour shows another surface. Heights of 0 are nothing.
+// How far a surface goes down from a texel at height h towards a neighbour. It does not where the step is more than
+// twice the one on the other side (or the one behind the neighbour, where there is none): the neighbour then shows
+// another surface. Heights of 0 mean no surface.
 float step_down(float h, float neighbour, float behind_it, float opposite)
 {
     float drop = h - neighbour;
@@ -34,30 +34,29 @@ float step_down(float h, float neighbour, float behind_it, float opposite)
     return neighbour > 0.0 && drop <= 2.0 * slope ? max(drop, 0.0) : 0.0;
 }
 
-// What is left of a piece of matter over a texel, with surfaces that go so far up or down within half a
-// texel at its top and its bottom. A column is as high all over its texel as at its centre; rays that graze a
-// solid meet the corners that stick out of it, and no more than these are cut off: half the piece at most
-// from either side, and nothing of a sheet.
+// Cuts off the ends of a piece of matter over a texel, whose surfaces go so far up or down within half a texel at its
+// top and its bottom. A column is as high all over its texel as at its centre, and rays that graze a solid meet the
+// corners that stick out. At most half the piece is cut off from either side, and nothing of a sheet.
 vec2 beveled(vec2 piece, float above, float below)
 {
     float most = 0.5 * max(piece.x - piece.y, 0.0);
     return vec2(piece.x - min(above, most), piece.y + min(below, most));
 }
 
-// The column of a solid between its nearest faces (top) and its furthest back faces, 0 where it has none.
+// The column of a solid between its nearest faces (top) and its furthest back faces; 0 where it has none.
 vec4 one_interval(float top, float far_back)
 {
     return vec4(top, far_back > 0.0 ? min(far_back, top) : top, 0.0, 0.0);
 }
 
-// The column of what has nearest faces, nearest back faces, furthest front faces and furthest back faces,
-// each 0 where there are none. Matter reaches from a front face to the next back face; a face without its
-// other side is a sheet.
+// The column of the matter between nearest faces, nearest back faces, furthest front faces and furthest back faces,
+// each 0 where there are none. Matter reaches from a front face to the next back face; a face without its other side
+// is a sheet.
 vec4 two_intervals(float top, float near_back, float far_front, float far_back)
 {
     float bottom = near_back > 0.0 ? near_back : top;
     if (far_front <= 0.0 || far_front >= bottom) {
-        // No matter begins below the first that ends: one piece, or several that overlap.
+        // No front face lies below the first back face: the matter is one piece, or several that overlap.
         return one_interval(top, far_back);
     }
     float second = far_back > 0.0 ? min(far_back, far_front) : far_front;
@@ -75,9 +74,9 @@ vec4 two_intervals(float top, float near_back, float far_front, float far_back)
 // s = 0, over `t + s g` of the map at height `w + s`. It enters and leaves texels in that order, so that
 // the heights over one texel are an interval.
 //
-// The including shader says what the map's windows hold, and what the eye sees, if anything.
+// The including shader declares the bounds of the map's windows, and the test for what the eye sees, if there is one.
 
-// Bounds; at level 0 the texel's column.
+// The bounds of a window; at level 0 the texel's column.
 vec4 held_at(Levels l, int level, ivec2 node);
 
 // Whether a point of (texels, height) is known to be empty.
@@ -94,9 +93,9 @@ vec4 value_at(Levels l, int level, ivec2 node)
     return level == 0 ? bounds_of(held) : held;
 }
 
-// A receiver in the map, and its own plane: a point (x, y) texels at height h lies n.x x + n.y y + n_0 - c h
-// above it (see light_space.glsl). No surface that is less than `margin` above the plane at a texel's centre
-// stops the receiver's rays: it may be the receiver's own.
+// A receiver in the map, and its own plane: a point (x, y) texels at height h lies n.x x + n.y y + n_0 - c h above it
+// (see light_space.glsl). A surface that is less than `margin` above the plane at a texel's centre stops no ray of the
+// receiver: it may be the receiver's own.
 struct Place {
     vec2 t;
     float w;
@@ -108,23 +107,23 @@ struct Place {
 
 struct Ray {
     vec2 g;      // texels a unit of height
-    float start; // s where it begins and ends
+    float start; // the s at which it begins and ends
     float end;
 };
 
-// Turns that a search takes at most; a ray that is not done by then is stopped by nothing further. Mesa's
-// CPU driver cuts an invocation off, silently, after 65535 turns of all its loops together: 256 rays with
-// their searches stay below, as no loop is within a turn.
+// The most turns of a search; a ray that is not done by then passes. Mesa's CPU driver cuts an invocation off,
+// silently, after 65535 turns of all its loops together: 256 rays with their searches stay below, as no loop is within
+// a turn.
 const int TURNS = 250;
 
-// Steps of a linear search, with room for halvings; a pixel of 256 rays that often halve in vain may still
+// The most steps of a linear search, with room for halvings; a pixel of 256 rays that often halve in vain may still
 // come to Mesa's limit.
 const int STEPS = 200;
 
 // Heights are compared with what they were made of by one addition; this is more than its rounding.
 const float SLACK = 1.0e-6;
 
-// What rays are cut to reaches further than what is compared, so that no cut changes what a ray meets.
+// Rays are cut with more slack than heights are compared with, so that no cut changes what a ray meets.
 const float CUT_SLACK = 4.0 * SLACK;
 
 bool is_clear(Place p, vec2 centre, float top)
@@ -132,10 +131,10 @@ bool is_clear(Place p, vec2 centre, float top)
     return dot(centre, p.n) + p.n_0 - p.c * top > p.margin;
 }
 
-// Whether all columns of a window, of these bounds, stop a ray that is within it from height w0 to w1.
+// Whether all columns of a window with bounds b stop a ray that is within it from height w0 to w1.
 bool stops_all(Place p, vec2 lo, float window, vec4 b, float w0, float w1)
 {
-    // The first top that is least clear of the plane, where the plane is highest.
+    // The first top that is least clear of the plane lies where the plane is highest.
     vec2 highest = mix(lo + 0.5, lo + window - 0.5, lessThan(p.n, vec2(0.0)));
     float top = p.c > 0.0 ? b.x : -b.z;
     return max(w0, b.w) <= min(w1, -b.z) && is_clear(p, highest, top);
@@ -149,8 +148,8 @@ bool meets_interval(Place p, Ray ray, vec2 centre, vec2 interval, float s0, floa
     if (interval.x <= 0.0 || lo > hi || !is_clear(p, centre, interval.x)) {
         return false;
     }
-    // The nearest and the furthest faces are there, whoever looks; in between, what the layers take for
-    // solid may be what the eye looks through.
+    // The nearest and the furthest faces exist, whether or not the eye sees them; matter between them may be what the
+    // eye looks through.
     bool crosses = p.w + s0 < interval.y || p.w + s1 > interval.x;
     float s = 0.5 * (lo + hi) - p.w;
     return crosses || !seen(p.t + s * ray.g, p.w + s);
@@ -164,7 +163,7 @@ bool meets(Place p, Ray ray, ivec2 texel, vec4 column, float s0, float s1)
            meets_interval(p, ray, centre, column.zw, s0, s1);
 }
 
-// The heights above a receiver between which bounds have matter.
+// The heights above a receiver between which a window with bounds b has matter.
 vec2 matter_above(Place p, vec4 b)
 {
     return vec2(-b.y * (1.0 - CUT_SLACK), b.x * (1.0 + CUT_SLACK)) - p.w;
@@ -172,11 +171,11 @@ vec2 matter_above(Place p, vec4 b)
 
 vec2 inverse_of(vec2 g)
 {
-    // A ray that stays over one row never leaves it.
+    // A ray along a row or a column of texels never leaves it.
     return vec2(abs(g.x) < 1.0e-30 ? 1.0e30 : 1.0 / g.x, abs(g.y) < 1.0e-30 ? 1.0e30 : 1.0 / g.y);
 }
 
-// Cuts a ray to what lies over the map.
+// Cuts a ray to the part over the map.
 Ray over_map(Place p, Ray ray, int map)
 {
     vec2 inverse = inverse_of(ray.g);
@@ -187,7 +186,7 @@ Ray over_map(Place p, Ray ray, int map)
     return Ray(ray.g, max(ray.start, max(from.x, from.y)), min(ray.end, min(to.x, to.y)));
 }
 
-// Where rays cross the lines between texels: at (line - t) * inverse, for every x and y.
+// The lines between texels that a ray crosses: at s = (line - t) * inverse, for every x and y.
 struct Lines {
     vec2 t;
     vec2 g;
@@ -200,14 +199,14 @@ Lines lines_of(Place p, Ray ray)
     return Lines(p.t, ray.g, inverse_of(ray.g), greaterThanEqual(ray.g, vec2(0.0)));
 }
 
-// Where a ray crosses the lines at which it leaves a square window.
+// The s at which a ray crosses the lines where it leaves a square window.
 vec2 leaves_at(Lines l, vec2 lo, float window)
 {
     return (mix(lo, lo + window, l.up) - l.t) * l.inverse;
 }
 
-// The texel that a ray is over at s: beyond each line that it has crossed by then, and no other. Rounding
-// alone might say otherwise, and which texels a ray visits would depend on the windows that it came through.
+// The texel that a ray is over at s: behind each line that it has crossed by then, and before every other line. Rounded
+// coordinates could give another texel, and which texels a ray visits would depend on the windows that it came through.
 ivec2 texel_under(Lines l, float s)
 {
     vec2 at = floor(l.t + s * l.g);
@@ -219,10 +218,10 @@ ivec2 texel_under(Lines l, float s)
     return ivec2(at);
 }
 
-// Algorithm 2 of Curtis 2009: windows that cannot stop the ray are passed at once, and larger ones tried;
-// in others smaller ones. Two departures: the window lies ahead of the ray instead of around it, and one
-// whose columns have a height in common that the ray passes stops it, whatever is in its texels.
-// `s` is where the ray is stopped.
+// Hierarchical search (Curtis 2009, algorithm 2): windows that cannot stop the ray are passed at once, and larger ones
+// tried next; otherwise smaller ones are. Two departures: the window lies ahead of the ray instead of around it, and a
+// window whose columns have a common height that the ray passes stops it without a look at its texels. `s` is where the
+// ray is stopped.
 bool search_hierarchical(Place p, Ray ray, Levels l, bool eye, out float s)
 {
     Lines lines = lines_of(p, ray);
@@ -246,7 +245,7 @@ bool search_hierarchical(Place p, Ray ray, Levels l, bool eye, out float s)
             if (!eye && stops_all(p, lo, float(window), b, p.w + s, p.w + next)) {
                 return true;
             }
-            // Below everything in the window there is nothing to meet.
+            // Below all matter of the window the ray meets nothing.
             s = max(s, matter.x);
             --level;
         } else {
@@ -263,7 +262,7 @@ bool search_hierarchical(Place p, Ray ray, Levels l, bool eye, out float s)
     return false;
 }
 
-// The column over which a ray is.
+// The column of the texel that a ray is over at s.
 vec4 column_under(Place p, Ray ray, float s, Levels l, out ivec2 texel)
 {
     texel = clamp(ivec2(floor(p.t + s * ray.g)), ivec2(0), ivec2(l.map - 1));
@@ -281,10 +280,9 @@ bool meets_either(Place p, Ray ray, float s0, float s1, Levels l)
     return meets(p, ray, texel, column, s0, s1);
 }
 
-// Linear search with binary refinement (section 3.3). A step covers a texel at most, unless the ray is
-// longer than STEPS texels, and is looked at from both its ends over all the heights between them, so that
-// nothing between two steps is lost, however thin; halving the step then says whether what was found is
-// really where the ray is.
+// Linear search with binary refinement (section 3.3). A step covers a texel at most, unless the ray is longer than
+// STEPS texels. It is tested from both its ends over all the heights between them, so that nothing between two steps
+// is lost, however thin; halving the step then finds whether the ray really meets what was found.
 bool search_linear(Place p, Ray ray, Levels l, out float s)
 {
     s = ray.start;

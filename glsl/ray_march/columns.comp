@@ -4,9 +4,9 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "ray_march/column.glsl"
 
-// Depth layers to columns. A surface that is steeper than its matter is thick would let rays through
-// between texels; each interval reaches down to where its top goes on in the neighbours. Corners of solids
-// that slope are cut off.
+// Converts depth layers to columns. A surface that is steeper than its matter is thick would let rays through between
+// texels, so each interval reaches down to where its top goes on in the neighbouring texels. Corners of sloping solids
+// are cut off.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -19,7 +19,7 @@ layout(set = 0, binding = 4, rgba32f) writeonly uniform image2DArray windows;
 layout(push_constant) uniform Push {
     int map;      // the map's side in texels
     int layers;   // 2, or 4 where there are the nearest back and the furthest front faces too
-    float height; // of what is stored as 1
+    float height; // the height of a stored 1
 } push;
 
 const int FRONT = 0;
@@ -46,8 +46,8 @@ float height_at(int layer, ivec2 p)
     return depth < 1.0 || nearest ? depth * push.height : 0.0;
 }
 
-// How far a layer's surface at height h goes up or down within half a texel: along each axis by the
-// neighbour that it goes on to more likely.
+// How far a layer's surface at height h goes up or down within half a texel: along each axis towards the neighbour in
+// which it more likely goes on.
 float half_slope(int layer, ivec2 p, float h)
 {
     float most = 0.0;
@@ -61,7 +61,7 @@ float half_slope(int layer, ivec2 p, float h)
     return most;
 }
 
-// How far the surface of a layer goes down from a texel within its neighbours.
+// How far the surface of a layer goes down from a texel towards its neighbours.
 float drop_of(int layer, ivec2 p, float h)
 {
     float most = 0.0;

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// The listed pixels, filtered along their rows, or with `#define COLUMNS` along their columns.
+// Filters the listed pixels along their rows, or with `#define COLUMNS` along their columns.
 
 layout(local_size_x = 64) in;
 
@@ -30,7 +30,7 @@ layout(set = 0, binding = 5) uniform texture2D surfaces;
 
 layout(push_constant) uniform Push {
     mat4 light_from_ndc;
-    ivec2 extent; // of the G-buffer
+    ivec2 extent; // the G-buffer's width and height
 } push;
 
 vec3 position_at(ivec2 p)
@@ -38,7 +38,7 @@ vec3 position_at(ivec2 p)
     return position_of(push.light_from_ndc, vec2(p), push.extent, texelFetch(gbuffer_depth, p, 0).x);
 }
 
-// What is filtered, below 0 where nothing receives.
+// The value to filter, below 0 where the pixel receives nothing.
 FRACTION value_at(ivec2 p)
 {
 #ifdef COLUMNS
@@ -53,7 +53,8 @@ FRACTION value_at(ivec2 p)
 #endif
 }
 
-// A pixel's normal, and the width of its filter in metres: below 0 where it is known for sure, and has none.
+// A pixel's normal, and the width of its filter in metres; the width is below 0 where the visible fraction is exact and
+// there is no normal.
 vec4 surface_at(ivec2 p)
 {
     vec4 value = texelFetch(noisy, p, 0);
@@ -99,7 +100,7 @@ void main()
 #endif
             if (receives) {
                 vec4 its = surface_at(q);
-                // What is known for sure has no normal; its place says enough.
+                // A pixel whose fraction is exact has no normal; its place is enough.
                 vec3 its_normal = its.w < 0.0 ? own.xyz : its.xyz;
                 float weight = filter_weight(position_at(q) - position, own.xyz, its_normal, width);
                 sum += weight * value;

@@ -2,8 +2,8 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 
-// The bounds of a level's windows, from those of the level before it, the first from the columns.
-// With `#define USUAL` they are an N-buffer's.
+// Writes the bounds of a level's windows from those of the level before it; the first level is made from the columns.
+// With `#define USUAL` the windows are an N-buffer's.
 
 #include "ray_march/column.glsl"
 
@@ -13,15 +13,15 @@ layout(set = 0, binding = 0, rgba32f) uniform image2DArray windows;
 
 layout(push_constant) uniform Push {
     int map;   // the map's side in texels
-    int kind;  // of levels
-    int level; // the one to make
+    int kind;  // the kind of the levels' windows
+    int level; // the level to make
 } push;
 
 #define VALUE vec4
 #include "nbuffer/levels.glsl"
 
-// Lanes of a processor that stands in for a GPU run through the branches of every kind that there could be:
-// with `#define USUAL` a level takes half of the time.
+// A CPU that stands in for a GPU runs through the branches of every possible kind: with `#define USUAL` a level takes
+// half of the time.
 int level_kind()
 {
 #ifdef USUAL

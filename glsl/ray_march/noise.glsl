@@ -1,6 +1,7 @@
 // Entered from filter.comp and pixel.glsl; at first skip md5, pcg and sobol.
 //
-// Where a pixel's rays go, how noisy that makes its visible fraction, and how that is kept and filtered.
+// The points of the light that a pixel's rays go to, the noise of the visible fraction that results, and how it is
+// stored and filtered.
 
 #ifndef RAY_MARCH_NOISE_GLSL
 #define RAY_MARCH_NOISE_GLSL
@@ -8,7 +9,8 @@
 #include "common/light_space.glsl"
 
 // ---------------------------------------------------------------------------------------------
-// What a visible fraction is: of all the light, or with `#define COLOR` of its red, green and blue.
+// The type of a visible fraction: one number for all of the light, or with `#define COLOR` one each for red, green,
+// blue.
 
 #ifdef COLOR
 #define FRACTION vec3
@@ -18,7 +20,7 @@
 #define FRACTION_FORMAT r32f
 #endif
 
-// As an image holds it: alpha is 1, and so are green and blue where there is no color.
+// The texel of a fraction in an image: alpha is 1, and so are green and blue where there is no color.
 vec4 stored_fraction(FRACTION v)
 {
 #ifdef COLOR
@@ -29,11 +31,10 @@ vec4 stored_fraction(FRACTION v)
 }
 
 // ---------------------------------------------------------------------------------------------
-// Random numbers as hashes of where and which they are (Tzeng and Wei 2008): the same each time, in any
-// order.
+// Random numbers are hashes of the pixel and the number's index (Tzeng and Wei 2008): the same each time, in any order.
 
-// One of the rounds of `md5`: `chosen` is the round's function of the digest, `added` its word and its
-// constant. As published the turned word is added in two parts, and every round is added to the digest.
+// One round of `md5`: `chosen` is the round's function of the digest, `added` its word and its constant. In the
+// published form the turned word is added in two parts, and every round is added to the digest.
 void md5_round(inout uvec4 turned, inout uvec4 digest, uint chosen, uint added, uint by)
 {
     uint sum = turned.x + chosen + added;
@@ -47,8 +48,8 @@ uint md5_choose(uint if_set, uint b, uint c)
     return (if_set & b) | (~if_set & c);
 }
 
-// MD5 reduced to 16 rounds of 64, of a message of four words (Curtis 2009, appendix A). The words that the
-// rounds would take from beyond the message are 0.
+// MD5 reduced to 16 rounds of 64, for a message of four words (Curtis 2009, appendix A). The words that the rounds
+// would read beyond the message are 0.
 uvec4 md5(uvec4 message, uint key)
 {
     uvec4 m = message ^ key;
@@ -73,7 +74,7 @@ uvec4 md5(uvec4 message, uint key)
     return digest;
 }
 
-// Four words to four (Jarzynski and Olano 2020, pcg4d).
+// Hashes four words to four (Jarzynski and Olano 2020, pcg4d).
 uvec4 pcg(uvec4 v)
 {
     v = v * 1664525u + 1013904223u;
@@ -90,20 +91,20 @@ uvec4 pcg(uvec4 v)
 }
 
 // ---------------------------------------------------------------------------------------------
-// Where on the light the rays of a pixel go.
+// The points of the light that a pixel's rays go to.
 
 const int JITTERED = 0;
 const int RANDOM = 1;
 const int LOW_DISCREPANCY = 2;
 
-// [0, 1): no more bits than a float holds, so that it never rounds up to 1.
+// Maps a word to [0, 1) with no more bits than a float holds, so that it never rounds up to 1.
 vec2 unit(uvec2 word)
 {
     return vec2(word >> 8u) / 16777216.0;
 }
 
-// The first two dimensions of Sobol's sequence, as fractions of 2^32: any 2^k points that follow a multiple
-// of 2^k lie one each in 2^k boxes of one area, whatever their shape.
+// The first two dimensions of Sobol's sequence, as fractions of 2^32: among any 2^k points that follow a multiple of
+// 2^k, one lies in each of 2^k boxes of one area, whatever the boxes' shape.
 uvec2 sobol(uint n)
 {
     uint x = bitfieldReverse(n);
@@ -117,7 +118,7 @@ uvec2 sobol(uint n)
     return uvec2(x, bitfieldReverse(y));
 }
 
-// The cell of [0, 1]^2 that is the nth of `count`, of one area each in as many rows: corner and size.
+// The nth of `count` cells that divide [0, 1]^2 into equal areas in the given number of rows: corner and size.
 vec4 cell_of(int n, int count, int rows)
 {
     int row = ((n + 1) * rows - 1) / count;
@@ -128,11 +129,11 @@ vec4 cell_of(int n, int count, int rows)
                 float(end - start) / float(count));
 }
 
-// A pixel's nth point of `count`, on a light that is [0, 1]^2. `rows` is for JITTERED: how many rows of
-// cells make them square on the light.
+// A pixel's nth point of `count` on a light that is [0, 1]^2. `rows` is for JITTERED: the number of rows for which the
+// cells are square on the light.
 vec2 light_sample(int sampling, bool modern, int n, int count, int rows, uvec2 pixel, uint seed)
 {
-    // A sequence is scrambled once a pixel, by an exclusive or of all its points' digits with the same.
+    // A sequence is scrambled once a pixel: all of its points are combined with one word by exclusive or.
     uint which = sampling == LOW_DISCREPANCY ? 0u : uint(n);
     uvec4 message = uvec4(pixel, which, 0u);
     uvec4 random = modern ? pcg(uvec4(pixel, which, seed)) : md5(message, seed);
@@ -147,28 +148,28 @@ vec2 light_sample(int sampling, bool modern, int n, int count, int rows, uvec2 p
 }
 
 // ---------------------------------------------------------------------------------------------
-// How noisy pixels are filtered: a Gaussian over their own surface, along rows and then along columns
-// (Curtis 2009 section 3, with normals as proposed there).
+// The filter of noisy pixels: a Gaussian over their own surface, along rows and then along columns (Curtis 2009
+// section 3, with normals as proposed there).
 //
-// Its width is where what it takes from the noise is what it adds by blurring. The visible fraction goes from
-// 0 to 1 over the penumbra's width W; a Gaussian of standard deviation a spoils the two ends of the ramp,
-// by (a/W)^2 in the mean over the penumbra, and leaves 1/(2 a sqrt(pi)) of independent noise N a pixel, a in
-// pixels. Their sum is least at a^3 = N W^2 / (4 sqrt(pi)).
+// The width minimizes the sum of blur and noise. The visible fraction goes from 0 to 1 over the penumbra's width W; a
+// Gaussian of standard deviation a spoils the two ends of the ramp, by (a/W)^2 in the mean over the penumbra, and
+// leaves 1/(2 a sqrt(pi)) of independent noise N a pixel, a in pixels. Their sum is least at a^3 = N W^2 / (4
+// sqrt(pi)).
 
-// Pixels to either side, at most.
+// The most pixels that the filter reads to either side.
 const int REACH = 12;
 
-// The noise of this many rays in the mean over a penumbra: for one ray 2v(1 - v), whose mean is 1/3 where v
-// rises evenly; falling with the root of the rays where each goes anywhere, and with their 3/4th power where
-// each has a part of the light of its own and shadows have edges. (Measured on spheres: 0.30 for one ray,
-// exponents -0.51 for random, -0.73 for jittered and -0.77 for low-discrepancy points.)
+// The mean noise of this many rays over a penumbra. One ray has 2v(1 - v), whose mean is 1/3 where v rises evenly. It
+// falls with the root of the number of rays where each goes anywhere, and with its 3/4th power where each has a part of
+// the light of its own and shadows have edges. (Measured on spheres: 0.30 for one ray, exponents -0.51 for random,
+// -0.73 for jittered and -0.77 for low-discrepancy points.)
 float noise_of(int rays, bool random)
 {
     return 0.33 * pow(float(rays), random ? -0.5 : -0.75);
 }
 
-// The Gaussian's standard deviation in metres, by the penumbra's width and a pixel's; 0 where it is too
-// narrow to change anything.
+// The Gaussian's standard deviation in metres, from the widths in metres of the penumbra and of a pixel; 0 where it is
+// too narrow to change anything.
 float filter_width(float penumbra, float pixel, float noise)
 {
     float w = penumbra / pixel;
@@ -181,20 +182,20 @@ vec3 position_of(mat4 light_from_ndc, vec2 pixel, ivec2 extent, float depth)
     return dehomogenize(unproject(light_from_ndc, pixel, vec2(extent), depth));
 }
 
-// How wide a pixel is at its own depth, m.
+// A pixel's width at its own depth, m.
 float pixel_width(mat4 light_from_ndc, vec2 pixel, ivec2 extent, float depth)
 {
     return distance(position_of(light_from_ndc, pixel + vec2(1.0, 0.0), extent, depth),
                     position_of(light_from_ndc, pixel, extent, depth));
 }
 
-// How much a neighbour counts: by how far away it is, how far off the pixel's plane, and how its own surface
-// is turned. `width` is the Gaussian's.
+// A neighbour's weight in the filter: by its distance, its distance from the pixel's plane, and the angle between the
+// normals. `width` is the Gaussian's standard deviation.
 float filter_weight(vec3 apart, vec3 normal, vec3 its_normal, float width)
 {
     float off_plane = dot(apart, normal);
     float turned = max(dot(normal, its_normal), 0.0);
-    // Off the plane it falls four times as fast.
+    // A distance from the plane counts four times as much.
     float squares = dot(apart, apart) + 15.0 * off_plane * off_plane;
     return exp(-0.5 * squares / (width * width)) * pow(turned, 16.0);
 }
@@ -221,11 +222,11 @@ vec3 unfolded(vec2 flat_n)
 
 // ---------------------------------------------------------------------------------------------
 #ifdef NOISY_BINDING
-// The visible fraction by rays alone, how widely it is to be filtered, and the surface it is of. The including shader
-// says at which bindings the images are: NOISY_BINDING, and SURFACE_BINDING with COLOR.
+// The image of visible fractions by rays alone, with each pixel's filter width and normal. The including shader defines
+// the images' bindings: NOISY_BINDING, and SURFACE_BINDING with COLOR.
 
-// The fraction (NO_RECEIVER where there is nothing to filter), the filter's width in metres, the normal.
-// Where the fraction is known for sure the width is below 0, and there is no normal.
+// The fraction (NO_RECEIVER where there is nothing to filter), the filter's width in metres, the normal. Where the
+// fraction is exact the width is below 0, and there is no normal.
 layout(set = 0, binding = NOISY_BINDING, rgba32f) writeonly uniform image2D noisy;
 #ifdef COLOR
 layout(set = 0, binding = SURFACE_BINDING, rgba32f) writeonly uniform image2D surfaces;

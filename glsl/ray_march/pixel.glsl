@@ -1,9 +1,9 @@
 // Entered from classify.comp, trace.comp and headless/forward.frag.
 //
-// What the passes over the pixels have in common: their inputs, and where a pixel lies in the map.
+// The passes over the pixels share these inputs and the functions that find a pixel's place in the map.
 //
-// With `#define FORWARD` the pixels are fragments, whose place and plane the including shader knows without
-// a G-buffer: it defines `vec3 pixel_normal(ivec2 p, Receiver r)`.
+// With `#define FORWARD` the pixels are fragments, whose place and plane the including shader has without a G-buffer:
+// it defines `vec3 pixel_normal(ivec2 p, Receiver r)`.
 
 #ifndef RAY_MARCH_PIXEL_GLSL
 #define RAY_MARCH_PIXEL_GLSL
@@ -27,7 +27,7 @@ vec4 held_at(Levels l, int level, ivec2 node)
     return texelFetch(windows, place_of(l, level, node), 0);
 }
 
-// Nothing is known to be empty but where the shader says so.
+// No point is known to be empty, unless the including shader defines SEEN and a test of its own.
 #ifndef SEEN
 bool seen(vec2 t, float w)
 {
@@ -36,7 +36,7 @@ bool seen(vec2 t, float w)
 #endif
 
 #ifdef FORWARD
-// The push constants are the drawn mesh's.
+// A forward pass's push constants belong to the drawn mesh.
 layout(set = 0, binding = 0, std140) uniform Push {
 #else
 layout(push_constant) uniform Push {
@@ -45,7 +45,7 @@ layout(push_constant) uniform Push {
     vec2 texels_per_unit; // map texels a unit of u and v, or a metre where the projection is orthographic
     vec2 first;           // texel coordinates of u = v = 0
     vec2 half_light;      // half the light's width and height, m
-    ivec2 extent;         // of the G-buffer
+    ivec2 extent;         // the G-buffer's width and height
     float background;
     float eye;            // how far behind the light the projection point is, m; or the far plane's distance
     float top;            // the height of the near plane; no occluder is higher
@@ -56,9 +56,9 @@ layout(push_constant) uniform Push {
     uint seed;
 } push;
 
-// How many rays, from 1 to 256, and what is switched on.
+// Bits 0 to 7 of the flags: the number of rays, 1 to 256, less one.
 int rays() { return (push.flags & 255) + 1; }
-// Rows of cells of a jittered grid.
+// Bits 8 to 15 of the flags: the rows of cells of a jittered grid, less one.
 int cell_rows() { return (push.flags >> 8 & 255) + 1; }
 bool is_masked() { return (push.flags & 1 << 16) != 0; }
 bool is_orthographic() { return (push.flags & 1 << 17) != 0; }
@@ -67,7 +67,7 @@ bool classifies() { return (push.flags & 1 << 21) != 0; }
 bool filters() { return (push.flags & 1 << 22) != 0; }
 int sampling() { return push.flags >> 23 & 3; }
 
-// With `#define USUAL` what settings seldom ask for is left out: the rays take 0.4 of the time.
+// `#define USUAL` leaves out what only unusual settings need: the rays then take 0.4 of the time.
 #ifdef USUAL
 bool is_linear() { return false; }
 bool looks_from_eye() { return false; }
@@ -97,18 +97,18 @@ GBuffer gbuffer()
 vec3 pixel_normal(ivec2 p, Receiver r)
 {
     vec3 normal = facet_normal(gbuffer(), p, depth_at(p), r.position);
-    // A surface that does not block is seen from its other side as well.
+    // A surface that does not block light is lit through its other side as well.
     return !r.blocks && dot(normal, r.position) > 0.0 ? -normal : normal;
 }
 #endif
 
-// The part of the light above the pixel's own plane, all of it where that does not block.
+// The part of the light above the pixel's own plane; all of it where the pixel's surface does not block.
 float part_above(Receiver r)
 {
     return r.blocks ? fraction_above(r.normal.xy * push.half_light, dot(r.normal, r.position)) : 1.0;
 }
 
-// Without a normal its plane is the map's own, and means nothing.
+// The pixel's place in the map. For a receiver without a normal the plane is the map's own and must not be used.
 Place place_of(Receiver r)
 {
     vec3 position = r.position;
@@ -134,13 +134,13 @@ Place place_of(Receiver r)
     return p;
 }
 
-// The distance from the light's plane of what is at a height.
+// The distance in metres from the light's plane to a point at height w.
 float distance_of(float w)
 {
     return is_orthographic() ? push.eye - w : 1.0 / w - push.eye;
 }
 
-// Texels a unit of height along the ray to a point of the light, in metres from its centre.
+// Texels a unit of height along the ray to a point of the light, which is given in metres from the light's centre.
 vec2 slope_to(Place p, float distance_from_light, vec2 point)
 {
     vec2 across = push.texels_per_unit * point;
@@ -149,9 +149,8 @@ vec2 slope_to(Place p, float distance_from_light, vec2 point)
                : (across + push.eye * (push.first - p.t)) / (distance_from_light * p.w);
 }
 
-// The heights above a receiver between which a column could stop one of its rays, none where they end
-// before they start; and the window of columns that all of its rays come through there, if the map has all
-// of it.
+// The heights above a receiver between which a column could stop one of its rays, none where they end before they
+// start; and the bounds of a window of columns that contains all of its rays there, if the map holds that window.
 struct Reach {
     float start;
     float end;
@@ -161,13 +160,13 @@ struct Reach {
     vec4 bounds;
 };
 
-// Two are enough to close in on the penumbra (Curtis 2009 section 3.6), after the one with the whole map's
+// Two refinements are enough to close in on the penumbra (Curtis 2009 section 3.6), after the one with the whole map's
 // highest occluder.
 const int REFINEMENTS = 3;
 
-// Curtis 2009 section 3.6: the window of the map that rays below the highest occluder can come through says
-// how high the highest occluder within it is, and so on. As of there, the lowest one too. Of the place only
-// t and w are looked at.
+// Refines the reach (Curtis 2009 section 3.6): the window of the map that rays below the highest occluder can come
+// through bounds how high the highest occluder within it is, and so on. From the first window on, the lowest occluder
+// bounds it too. Only t and w of the place are read.
 Reach reach_of(Place p, float distance_from_light)
 {
     Reach reach = Reach(0.0, push.top * (1.0 + SLACK) - p.w, false, vec2(0.0), 0.0, vec4(0.0));
@@ -189,7 +188,7 @@ Reach reach_of(Place p, float distance_from_light)
         reach.whole = from == reach.from && to == to_inside;
         vec2 size = to_inside - reach.from + 1.0;
         reach.side = max(size.x, size.y);
-        // Exactly the window for the last one, up to twice as wide before.
+        // The last window is exact, earlier ones are up to twice as wide.
         reach.bounds = i + 1 < REFINEMENTS
                            ? wider_window_value(levels(), ivec2(reach.from), int(reach.side))
                            : window_value(levels(), ivec2(reach.from), int(reach.side));
@@ -201,8 +200,8 @@ Reach reach_of(Place p, float distance_from_light)
 }
 
 // ---------------------------------------------------------------------------------------------
-// Whether a pixel's visible fraction takes rays to tell. Where it does not, `v` is the fraction; where it does,
-// `reach` has the heights that its rays need look at. The receiver has a normal where that matters.
+// Whether rays must find a pixel's visible fraction. Where they need not, `v` is the fraction; where they must, `reach`
+// has the heights that the rays must search. The receiver gets a normal where one is needed.
 bool is_open(ivec2 p, inout Receiver r, out float v, out Reach reach)
 {
     v = 1.0;
@@ -213,11 +212,11 @@ bool is_open(ivec2 p, inout Receiver r, out float v, out Reach reach)
     }
     reach = reach_of(place_of(r), r.position.z);
     bool open = reach.start <= reach.end;
-    // Most pixels do without a normal.
+    // Most pixels need no normal.
     if (open || r.blocks) {
         r.normal = pixel_normal(p, r);
         v = part_above(r);
-        // Which part of a texture is above the plane only rays tell.
+        // With a texture, only rays find how much of the emission lies above the plane.
         open = v > 0.0 && (open || (is_textured() && v < 1.0));
     }
     if (open && v == 1.0 && reach.whole && !looks_from_eye()) {
@@ -234,8 +233,8 @@ bool is_open(ivec2 p, inout Receiver r, out float v, out Reach reach)
 #ifdef TEXTURED
 layout(set = 0, binding = 7) uniform texture2D light_texture;
 
-// What the light sends out at a point of [0, 1]^2. Light space has y against the light's second half-axis,
-// so that the texture's first row is where that points.
+// The light's emission at a point of [0, 1]^2. Light space has y against the light's second half-axis, so that the
+// texture's first row of texels is where that axis points.
 FRACTION emitted_at(vec2 s)
 {
     ivec2 size = textureSize(light_texture, 0);
@@ -252,11 +251,11 @@ FRACTION emitted_at(vec2 s)
 
 struct Found {
     FRACTION visible;
-    int hidden;    // how many rays are stopped
-    float heights; // the sum of where
+    int hidden;    // the number of rays that are stopped
+    float heights; // the sum of the heights at which they are stopped
 };
 
-// All rays of a receiver with its normal, between two heights above it.
+// Traces all rays of a receiver with a normal, between two heights above it.
 Found found_by_rays(ivec2 p, Receiver r, float start, float end)
 {
     Place place = place_of(r);
@@ -273,7 +272,7 @@ Found found_by_rays(ivec2 p, Receiver r, float start, float end)
         FRACTION weight = emitted_at(s);
         emitted += weight;
 #endif
-        // What the pixel's own surface hides is known without a ray.
+        // The pixel's own surface hides this point of the light; no ray is needed.
         if (r.blocks && dot(r.normal, vec3(point, 0.0) - r.position) <= 0.0) {
             continue;
         }
@@ -291,7 +290,7 @@ Found found_by_rays(ivec2 p, Receiver r, float start, float end)
 #endif
     }
 #ifdef TEXTURED
-    // The share of what the rays' points send out; all of it where that is nothing.
+    // The share of the emission at the rays' points; all of it where the points emit nothing.
     FRACTION nothing = FRACTION(1.0e-30);
     found.visible = (arrived + nothing) / (emitted + nothing);
 #else

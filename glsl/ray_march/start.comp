@@ -1,7 +1,7 @@
 // Entry of the pass ray_march.start (src/techniques/ray_march/passes.rs).
 #version 450
 
-// An empty list of pixels, and what the passes over it need to know that a push constant cannot hold.
+// Empties the list of pixels, and writes the matrix that the passes over the list need and have no push constants for.
 
 layout(local_size_x = 1) in;
 

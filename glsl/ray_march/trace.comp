@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// The rays of the listed pixels, with `#define TEXTURED` each weighed by what the light emits where it goes.
+// Traces the rays of the listed pixels; with `#define TEXTURED` each ray is weighed by the light's emission at its end.
 
 layout(local_size_x = 64) in;
 
@@ -20,7 +20,7 @@ layout(set = 0, binding = 4, std430) readonly buffer Pixels {
 #include "ray_march/pixel.glsl"
 #include "common/lists.glsl"
 
-// The eye layer (Curtis 2009 section 3.4): what the eye sees through is empty.
+// The eye layer (Curtis 2009 section 3.4): a point in front of the nearest surface that the eye sees is empty.
 bool seen(vec2 t, float w)
 {
     if (!looks_from_eye()) {
@@ -55,7 +55,7 @@ void main()
         imageStore(visibility, p, stored_fraction(found.visible));
         return;
     }
-    // The penumbra of an occluder at the mean of the heights where rays are stopped.
+    // The width of the penumbra of an occluder at the mean height at which rays are stopped.
     float s = found.hidden > 0 ? found.heights / float(found.hidden) : 0.5 * (start + end);
     float z = distance_of(place_of(r).w + s);
     float side = 2.0 * min(push.half_light.x, push.half_light.y);

@@ -1,4 +1,4 @@
-//! Stages that techniques share: depth layers, N-buffers, tiles of pixels, and the visibility image.
+//! Stages that techniques share: depth layers, N-buffers, tiles of pixels, views, and the visibility image.
 
 pub mod depth_layers;
 pub mod nbuffer;

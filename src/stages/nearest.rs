@@ -1,6 +1,6 @@
-//! Squares of a map's texels, few enough for every tile of pixels to ask those around it.
+//! Square nodes of a map's texels, few enough that every tile of pixels can test those around it.
 
-/// Nodes a side of the map, as in `nearest.glsl`.
+/// The number of nodes along a side of the map (`nearest.glsl`).
 pub(crate) fn nodes_a_row(map: u32) -> u32 {
     map.div_ceil(map.div_ceil(32).max(8))
 }

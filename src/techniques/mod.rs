@@ -1,4 +1,4 @@
-//! The techniques: a room each, from a frame's views to the visible fraction.
+//! The techniques, one room each: from a frame's views to the visible fraction.
 
 pub mod back_projection;
 pub mod common;

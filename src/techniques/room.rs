@@ -1,7 +1,7 @@
-//! What a technique answers for itself.
+//! The trait that each technique implements on its settings.
 //!
-//! Each room implements [`Room`] on its own settings; frames, effects, `auto` and the device's checks query the value
-//! and know no technique by name.
+//! Each room implements [`Room`] on its own settings; frames, effects, `auto` and the device's checks query that value
+//! and never match on a technique's name.
 
 use crate::graph::{Graph, Need, ResourceId};
 use crate::knob::Tune;
@@ -13,23 +13,23 @@ use crate::stages::visibility::GBuffer;
 use crate::{Error, graph};
 use glam::DMat4;
 
-/// What a host may give a light of these settings, beyond a rectangle and meshes in buffers.
+/// What a host may give a light with these settings, beyond a rectangle and meshes in buffers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Takes {
-    /// A light without a height.
+    /// Whether the light may be a line, without a height.
     pub line: bool,
-    /// A light whose outline is a polygon.
+    /// Whether the light may have a polygon as its outline.
     pub outline: bool,
-    /// Meshes that the host draws with its own pipelines.
+    /// Which meshes the host may draw with its own pipelines.
     pub host_draws: HostDraws,
-    /// Depth images of the occluders that the host drew, or why they are of no use.
+    /// Whether the host may lend its own depth images of the occluders; the error is the reason why not.
     pub lent_maps: Result<(), &'static str>,
-    /// A texture of the light's emission.
+    /// Whether the light's emission may be a texture.
     pub texture: bool,
 }
 
 impl Takes {
-    /// Rectangles, and whatever occluders the host has.
+    /// The capabilities of a technique for rectangles alone, with any occluders that the host has.
     pub const RECTANGLES: Self = Self {
         line: false,
         outline: false,
@@ -42,46 +42,48 @@ impl Takes {
 /// Which of a host's own draws a technique can use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HostDraws {
-    /// All of them.
+    /// The technique can use all of them.
     Any,
-    /// Receivers alone; the text ends a sentence that begins with "mesh n is drawn by the host, which".
+    /// The technique can use draws of receivers alone; the text ends a sentence that begins with "mesh n is drawn by
+    /// the host, which".
     Receivers(&'static str),
-    /// None; the text ends the same sentence.
+    /// The technique can use none; the text ends that sentence.
     None(&'static str),
 }
 
-/// Which effects the settings have means for; see [`crate::effects::Effect`].
+/// Which effects a technique shows with these settings; see [`crate::effects::Effect`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shows {
-    /// Soft shadows; without, every shadow is hard.
+    /// Whether shadows have a penumbra; without one every shadow is hard.
     pub penumbra: bool,
-    /// The occluders' back faces.
+    /// Whether the occluders' back faces cast shadows.
     pub back_side: bool,
-    /// Occluders behind other occluders.
+    /// Whether occluders behind other occluders cast shadows.
     pub fusion: bool,
-    /// Shadows of meshes on themselves.
+    /// Whether meshes cast shadows on themselves.
     pub self_shadowing: bool,
-    /// Slices of the occluders, and whether what ends within one is seen by the next; none without slices.
+    /// None without slices of the occluders; with slices, whether an occluder that ends within one is also seen by the
+    /// next.
     pub slices: Option<bool>,
-    /// A layer of what the eye sees, as a third depth map of the rays.
+    /// Whether the rays read a third depth map, of what the eye sees.
     pub eye_layer: bool,
-    /// A filter of noise.
+    /// What the technique does about noise.
     pub noise: Noise,
 }
 
 /// What a technique does about noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Noise {
-    /// It makes none.
+    /// The technique makes no noise.
     None,
-    /// Its filter is switched off.
+    /// The technique makes noise, and its filter is switched off.
     Unfiltered,
-    /// Its filter acts on penumbrae wider than this, in pixels.
+    /// The technique's filter acts on penumbrae wider than this, in pixels.
     FilteredFrom(f64),
 }
 
 impl Shows {
-    /// A soft shadow of the nearest faces, which falls on what casts it too.
+    /// Soft shadows of the nearest faces, which also fall on the casting mesh.
     pub const SOFT: Self = Self {
         penumbra: true,
         back_side: false,
@@ -93,12 +95,12 @@ impl Shows {
     };
 }
 
-/// The maps that settings have drawn.
+/// The maps that a technique needs with these settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Maps {
     /// The side of the technique's maps, texels.
     pub side: u32,
-    /// The depth layers, and their sides.
+    /// The depth layers to draw, and their sides.
     pub layers: Wanted,
     /// Where the occluders are seen from, unless the host lends maps.
     pub eye: Projection,
@@ -123,57 +125,57 @@ impl Maps {
         }
     }
 
-    /// No map from the light's centre: the technique has views of its own, of `side` texels.
+    /// The maps of a technique that has views of its own, of `side` texels, instead of a map from the light's centre.
     pub fn own_views(side: u32) -> Self {
         Self { front_is_whole: false, ..Self::front(side) }
     }
 }
 
-/// What views are fitted to.
+/// The scene as a technique's views are fitted to it.
 #[derive(Clone, Copy, Debug)]
 pub struct Seen<'a> {
     /// The light.
     pub light: &'a RectangleLight,
-    /// Its outline, where it is a polygon.
+    /// The light's outline, metres from its centre, where it is a polygon.
     pub outline: Option<&'a [[f64; 2]]>,
-    /// The occluders' boxes.
+    /// The occluders' boxes with their transforms to world space.
     pub occluders: &'a [(MeshBounds, DMat4)],
-    /// The receivers' boxes.
+    /// The receivers' boxes with their transforms to world space.
     pub receivers: &'a [(MeshBounds, DMat4)],
-    /// How the light's centre sees the occluders.
+    /// The view of the occluders from the light's centre.
     pub centre: &'a MapView,
     /// The w of the furthest receiver that may be shadowed, 1/m.
     pub w_far: f64,
 }
 
-/// What a frame gives a technique to declare its passes with.
+/// The inputs with which a technique declares a frame's passes.
 #[derive(Clone, Copy)]
 pub struct PassInputs<'a> {
     /// The light.
     pub light: &'a RectangleLight,
-    /// How the occluder map looks at the scene.
+    /// The occluder map's view.
     pub occluders: &'a MapView,
-    /// How the receiver map does.
+    /// The receiver map's view.
     pub receivers: &'a MapView,
     /// The technique's own views.
     pub views: &'a Views,
-    /// How the depth layers are made.
+    /// The sources and needs of the depth layers.
     pub layers: &'a LightLayers<'a>,
-    /// The host's pixels.
+    /// The host's G-buffer.
     pub gbuffer: &'a GBuffer,
-    /// Where the result goes.
+    /// The image that receives the visible fraction.
     pub visibility: ResourceId,
     /// Light space to the G-buffer's NDC, by column.
     pub ndc_from_light: [f32; 16],
-    /// Moves noise from frame to frame.
+    /// A number that changes the noise from frame to frame.
     pub noise: u32,
-    /// What the light emits over its surface; the same everywhere without.
+    /// The texture of the light's emission; without one the light emits evenly.
     pub light_texture: Option<ResourceId>,
-    /// Whether the visible fraction is one of red, green and blue each.
+    /// Whether the visible fraction has red, green and blue each.
     pub color: bool,
     /// 2^−(sub-pixel bits): how far the device's rasters move a vertex, in texels.
     pub snap: f32,
-    /// How far off the w of an occluder may be beyond its rounding, 1/m.
+    /// The error of an occluder's w beyond its rounding, 1/m.
     pub depth_error: f64,
     /// Whether anything can be shadowed.
     pub need: &'a Need,
@@ -188,35 +190,35 @@ impl PassInputs<'_> {
     }
 }
 
-/// A technique by its settings.
+/// A technique, by its settings.
 pub trait Room: Tune + std::fmt::Debug {
-    /// What a host may give a light.
+    /// Which lights, draws, maps and textures a host may give.
     fn takes(&self) -> Takes;
 
-    /// Which effects there are means for.
+    /// Which effects the technique shows.
     fn shows(&self) -> Shows;
 
-    /// The maps that are drawn.
+    /// The maps that must be drawn.
     fn maps(&self) -> Maps;
 
-    /// Adds the passes that write the visible fraction of a frame; the layer of the nearest faces, where
+    /// Adds the passes that write a frame's visible fraction. It returns the layer of the nearest faces, where
     /// [`Maps::front_is_whole`].
     fn declare(&self, graph: &mut Graph, inputs: &PassInputs) -> Option<ResourceId>;
 
-    /// The views beyond those from the light's centre and from behind it.
+    /// The technique's own views, beyond those from the light's centre and from behind it.
     ///
     /// # Errors
-    /// [`Error::Setting`] where a light takes more than there may be.
+    /// [`Error::Setting`] where a light needs more views than the settings allow.
     fn views(&self, _seen: &Seen) -> Result<Views, Error> {
         Ok(Views::Centre)
     }
 
-    /// As many views as a frame may have, for a node to make its objects by.
+    /// As many views as a frame may have; they size the node's objects.
     fn most_views(&self, _view: MapView) -> Views {
         Views::Centre
     }
 
-    /// The light with its axes as the technique wants them.
+    /// The light with its axes turned as the technique needs them.
     fn turned(&self, light: &Light) -> Light {
         *light
     }
@@ -224,33 +226,33 @@ pub trait Room: Tune + std::fmt::Debug {
     /// Checks the knobs that must agree with each other.
     ///
     /// # Errors
-    /// [`Error::Setting`] for the first that does not.
+    /// [`Error::Setting`] for the first knob that does not agree.
     fn check_agreement(&self) -> Result<(), Error> {
         Ok(())
     }
 
-    /// Bytes of the largest buffer at a G-buffer of this extent, and what it holds, for the check against
-    /// [`graph::STORAGE_BYTES`].
+    /// The bytes of the largest buffer for a G-buffer of this extent, and a name for its contents, which are checked
+    /// against [`graph::STORAGE_BYTES`].
     fn pixel_list(&self, _extent: [u32; 2]) -> Option<(u64, &'static str)> {
         None
     }
 
-    /// Whether the passes blend into 32-bit floats, which not every device can.
+    /// Whether the passes blend into 32-bit floats, which some devices cannot.
     fn blends_f32(&self) -> bool {
         false
     }
 }
 
-/// Checks a technique's ranges, and what must agree.
+/// Checks a technique's ranges, and the knobs that must agree.
 ///
 /// # Errors
-/// [`Error::Setting`] for the first that is wrong.
+/// [`Error::Setting`] for the first wrong knob.
 pub(crate) fn check(room: &dyn Room) -> Result<(), Error> {
     room.check_ranges()?;
     room.check_agreement()
 }
 
-/// Whether what a technique lists of the pixels can be bound on every device.
+/// Checks that the largest list of a technique's pixels can be bound on every device.
 ///
 /// # Errors
 /// [`Error::Frame`] where it is too large.

@@ -1,29 +1,29 @@
-//! Boxes as a light sees them.
+//! Bounding boxes in a light's space.
 
 use crate::RectangleLight;
 use crate::lent::MeshBounds;
 use glam::{DMat4, DVec3};
 
-/// Flat is an extent of no more than this share of a box's largest.
+/// A box is flat where its smallest extent is no more than this share of its largest.
 const FLAT: f64 = 1e-6;
 
 /// A mesh's box in light space, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LightBox {
-    /// Its corners: bit i of a corner's number tells the end of the mesh's axis i.
+    /// The corners; bit i of a corner's number selects the end of the mesh's axis i.
     pub corners: [DVec3; 8],
-    /// Their least coordinates.
+    /// The corners' least coordinates.
     pub min: DVec3,
-    /// Their largest.
+    /// The corners' largest coordinates.
     pub max: DVec3,
-    /// The largest sum that a corner's distance is the rounded result of.
+    /// The largest sum whose rounding a corner's distance carries, metres.
     pub summed: f64,
-    /// The axis along which it has no extent: what it holds is a flat sheet; none where it is thick.
+    /// The axis along which a flat box has no extent; none where the box is thick.
     pub thin_axis: Option<usize>,
 }
 
 impl LightBox {
-    /// Of bounds and what brings them to light space.
+    /// The box of a mesh's bounds under a transform to light space.
     pub fn new(bounds: &MeshBounds, light_from_mesh: &DMat4) -> Self {
         let [low, high] = bounds.map(|p| DVec3::from_array(p.map(f64::from)));
         let size = high - low;
@@ -49,18 +49,18 @@ impl LightBox {
         }
     }
 
-    /// Those of some meshes.
+    /// The boxes of some meshes.
     pub fn of_all(light: &RectangleLight, meshes: &[(MeshBounds, DMat4)]) -> Vec<Self> {
         let light_from_world = light.light_from_world();
         meshes.iter().map(|(bounds, m)| Self::new(bounds, &(light_from_world * *m))).collect()
     }
 
-    /// Its edge along one of the mesh's axes.
+    /// The box's edge along one of the mesh's axes.
     pub fn edge(&self, axis: usize) -> DVec3 {
         self.corners[1 << axis] - self.corners[0]
     }
 
-    /// Whether it is flat and has a light of these half-extents and every receiver on one side of its plane.
+    /// Whether the box is flat and both a light of these half-extents and every receiver lie on one side of its plane.
     pub fn is_aside<R: Iterator<Item = Self>>(
         &self,
         [a, b]: [f64; 2],

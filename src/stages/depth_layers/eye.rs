@@ -1,4 +1,4 @@
-//! Where a map of the occluders is seen from.
+//! The point from which a map of the occluders is seen.
 
 use super::{Eye, LightBox, MapView, fit_boxes, fit_boxes_from};
 use crate::RectangleLight;
@@ -6,26 +6,26 @@ use crate::knob::choices;
 use crate::lent::MeshBounds;
 use glam::DMat4;
 
-/// Where the layers are seen from.
+/// The projection of the depth layers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Projection {
-    /// A point behind the light (eq. 3.1).
+    /// From a point behind the light (Curtis 2009 eq. 3.1).
     #[default]
     Behind,
-    /// The light's centre.
+    /// From the light's centre.
     Centre,
-    /// Infinitely far (section 5.1).
+    /// From infinitely far away, orthographic (Curtis 2009 section 5.1).
     Orthographic,
 }
 
 choices! { Projection: "behind" => Behind, "centre" => Centre, "orthographic" => Orthographic }
 
-/// How far behind the light the projection point lies at most, over the distance of the furthest occluder.
-/// From there on rays of the map are parallel to within 1/64, and a height's rounding, 6e-8 of it, is that of
-/// a distance 65 times as large: 4e-6 of the furthest occluder's, a thousandth of a texel where 256 cover it.
+/// The most that the projection point lies behind the light, over the distance of the furthest occluder. At that
+/// distance rays of the map are parallel to within 1/64, and a height's rounding, 6e-8 of it, is that of a distance 65
+/// times as large: 4e-6 of the furthest occluder's, a thousandth of a texel where 256 cover it.
 const MOST_BEHIND: f64 = 64.0;
 
-/// How the layers look at the occluders; none where there are none in front of the light.
+/// The layers' view of the occluders; none where none lies in front of the light.
 ///
 /// The projection point lies so far behind the light that the light fills the angle under which its centre
 /// sees the occluders (Curtis 2009 eq. 3.1). Rays need no more than that: they are cut to what lies over
@@ -40,7 +40,7 @@ pub fn view(
     view_from(light.half_extents(), &LightBox::of_all(light, occluders), projection, side)
 }
 
-/// How a map of `side` texels looks at boxes of occluders, for a light of these half-extents; see [`view`].
+/// The view that a map of `side` texels has of boxes of occluders, for a light of these half-extents; see [`view`].
 pub(crate) fn view_from(
     half: [f64; 2],
     occluders: &[LightBox],

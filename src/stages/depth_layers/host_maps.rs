@@ -1,37 +1,37 @@
-//! Occluder maps that the host drew itself: what their matrix says of window and distances.
+//! Occluder maps that the host drew: their window and distances, from the camera's matrix.
 
 use super::{Eye, MapView};
 use crate::{Error, RectangleLight};
 use ash::vk;
 use glam::{DMat4, DVec4};
 
-/// How far the camera of ready-made maps may turn from the light's axes, as a tangent, and stand off
-/// its centre, in near planes: a fifth of a texel of the finest map, and far above what a matrix of
-/// 32-bit floats rounds to.
+/// How far the host's camera may turn from the light's axes, as a tangent, and how far it may stand from the light's
+/// centre, in near planes: a fifth of a texel of the finest map, and far above the rounding of a matrix of 32-bit
+/// floats.
 const OFF_AXIS: f64 = 1e-4;
 
-/// Ready-made maps, worked out from their camera.
+/// A host's occluder maps as their camera sees the occluders.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct HostMapView {
-    /// The window and near plane that the layers get.
+    /// The window and near plane of the layers.
     pub view: MapView,
     /// Whether u and v run against the image's x and y.
     pub flip: [bool; 2],
     /// w = scale · stored + offset, 1/m.
     pub scale: f64,
     pub offset: f64,
-    /// What is stored at the far plane, where there is nothing, and at the near plane.
+    /// The value that is stored at the far plane, where there is no occluder; and the value at the near plane.
     pub far_value: f32,
     pub near_value: f32,
-    /// How far off a stored w may be beyond its own rounding, 1/m.
+    /// The error of a stored w beyond its own rounding, 1/m.
     pub error: f64,
 }
 
 impl HostMapView {
-    /// Reads a camera.
+    /// Derives the window and the distances from a camera's matrix.
     ///
     /// # Errors
-    /// [`Error::Frame`] where it is no perspective from the light's centre along its axes.
+    /// [`Error::Frame`] where the camera is no perspective from the light's centre along its axes.
     pub fn new(
         light: &RectangleLight,
         clip_from_world: &DMat4,
@@ -55,7 +55,7 @@ impl HostMapView {
         let [x, y, z, w] = [x, y, z, w].map(|row| row / w.z);
         let (a, b) = (z.z, z.w);
         let reversed = b > 0.0;
-        // What is stored is a + b·w.
+        // The stored depth is a + b·w.
         let w_at = |stored: f64| (stored - a) / b;
         let (w_near, w_far) =
             if reversed { (w_at(1.0), w_at(0.0)) } else { (w_at(0.0), w_at(1.0)) };
@@ -97,9 +97,8 @@ impl HostMapView {
     }
 }
 
-/// How far off a stored depth may be beyond the rounding of w itself. Floats that hold near · w have
-/// nothing beyond that; other floats are as coarse as they are next to 1, where far things lie, and
-/// are given two bits more for the raster's own arithmetic.
+/// The error of a stored depth beyond the rounding of w itself. Floats that hold near · w have none; other floats are
+/// as coarse as they are next to 1, where far things lie, and get two more bits for the raster's own arithmetic.
 fn step_of(format: vk::Format, offset: bool) -> f64 {
     match format {
         vk::Format::D16_UNORM | vk::Format::D16_UNORM_S8_UINT => 2f64.powi(-16),
@@ -208,7 +207,7 @@ mod tests {
         refuse(camera([0.0, 0.0], [2.0, 0.0], 0.0, 0.1), "");
     }
 
-    /// What 32-bit matrices of hosts round to is let through.
+    /// A matrix that a host rounds to 32-bit floats is accepted.
     #[test]
     fn a_matrix_of_floats_is_good_enough() {
         let good = camera([2.0, 0.1], [-3.0, 0.0], 0.0, 0.1);

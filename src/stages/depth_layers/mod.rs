@@ -1,4 +1,4 @@
-//! Depth layers: what the light sees.
+//! Depth layers: depth images of the occluders and receivers, seen from the light.
 //!
 //! ```text
 //!        light's centre
@@ -13,13 +13,12 @@
 //! The projection is reversed with an infinite far plane, so w comes back by one multiplication and
 //! keeps its relative precision at every distance.
 //!
-//! Where we depart: the front layer takes faces of either orientation, because the nearest face of a
-//! closed solid is a front face anyway, and an open sheet must cast its shadow whichever way it is
-//! turned. The map's window is fitted to the occluders in u and v apart, so it need not have the
-//! light's aspect.
+//! Where we depart: the front layer draws faces of either orientation, because the nearest face of a closed solid is a
+//! front face anyway, and an open sheet must cast its shadow whichever way it is turned. The map's window is fitted to
+//! the occluders in u and v apart, so it need not have the light's aspect.
 //!
-//! A host that has depth images of the occluders already lends those instead of meshes; a pass a
-//! layer then brings them into the form above, whatever their depth convention and window.
+//! A host that already has depth images of the occluders lends those instead of meshes; one pass for each layer then
+//! copies them into the form above, whatever their depth convention and window.
 
 mod boxes;
 mod eye;
@@ -43,10 +42,10 @@ use smallvec::smallvec;
 /// The layers' format; the stored value is near · w.
 pub const FORMAT: vk::Format = vk::Format::D32_SFLOAT;
 
-/// The format of layers that are taken from the host's images: compute shaders write no depth.
+/// The format of layers that are copied from the host's images: compute shaders cannot write depth formats.
 const COPIED_FORMAT: vk::Format = vk::Format::R32_SFLOAT;
 
-/// The matrix that a mesh draw pushes, column by column.
+/// The push constants of a mesh draw: a matrix by columns.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct DepthPush {
@@ -54,27 +53,27 @@ pub struct DepthPush {
     pub clip_from_mesh: [f32; 16],
 }
 
-/// What `copy_map.comp` is given.
+/// The push constants of `copy_map.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct CopyPush {
     /// 1 where u or v run against the map's x or y.
     pub flip: [i32; 2],
-    /// Side of map and layer in texels.
+    /// The side of map and layer, texels.
     pub side: i32,
-    /// near · w = scale · stored + offset.
+    /// The factor in near · w = scale · stored + offset.
     pub scale: f32,
-    /// See [`Self::scale`].
+    /// The offset in the equation at [`Self::scale`].
     pub offset: f32,
-    /// What is stored where the map was cleared.
+    /// The map's value where it was cleared.
     pub empty: f32,
-    /// A layer's value there.
+    /// The layer's value where there is no occluder.
     pub nothing: f32,
-    /// The largest value of a surface.
+    /// The largest value that a surface may have in the layer.
     pub most: f32,
 }
 
-/// Which layers a technique reads, and at which size.
+/// The layers that a technique reads, and their sizes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wanted {
     /// The occluder maps' side in texels.
@@ -87,7 +86,7 @@ pub struct Wanted {
     pub receiver_map: Option<u32>,
 }
 
-/// The layers as resources.
+/// The layers as the graph's resources.
 #[derive(Clone, Copy, Debug)]
 pub struct DepthLayers {
     /// Occluders' nearest faces; 0 where there are none.
@@ -101,15 +100,15 @@ pub struct DepthLayers {
     pub receivers: Option<ResourceId>,
 }
 
-/// Where the occluders come from.
+/// The source of the occluders.
 pub(crate) enum Occluders<'a> {
     /// The frame's meshes.
     Meshes,
-    /// Depth images of the host's.
+    /// Depth images that the host lends.
     Maps { front: ResourceId, back: Option<ResourceId>, camera: &'a HostMapView },
 }
 
-/// How a frame makes the layers of a light.
+/// The source of a light's layers in a frame, and which of them it needs.
 pub struct LightLayers<'a> {
     pub(crate) occluders: Occluders<'a>,
     pub(crate) needs: Needs<'a>,
@@ -124,8 +123,8 @@ pub(crate) struct Needs<'a> {
     pub receivers: &'a Need,
 }
 
-/// Adds the layers and the passes that make them. Those that a frame does without are `None`, though their rows
-/// and images are there.
+/// Adds the layers and the passes that make them. A layer that this frame does not need is `None`, although its pass
+/// and image are declared.
 pub(crate) fn declare(graph: &mut Graph, wanted: Wanted, layers: &LightLayers) -> DepthLayers {
     let LightLayers { occluders, needs } = layers;
     let map = wanted.map;
@@ -161,23 +160,23 @@ pub(crate) fn declare(graph: &mut Graph, wanted: Wanted, layers: &LightLayers) -
     }
 }
 
-/// Adds the map of a hard shadow to a technique that has none from the light's centre.
+/// Adds the depth map of a hard shadow, for a technique that draws none from the light's centre.
 pub(crate) fn hard(graph: &mut Graph, side: u32, need: &Need) -> ResourceId {
     drawn(graph, Layer::Front, ["depth_layers.hard_depth", "depth_layers.hard"], side, need)
 }
 
-/// How a layer is drawn.
+/// The raster state of a layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Raster {
-    /// Faces left out.
+    /// The faces that are culled.
     pub cull: vk::CullModeFlags,
     /// What the layer is cleared to.
     pub clear: f32,
-    /// Which of two depths stays: the new one where new `compare` old.
+    /// The depth comparison: a new depth replaces an old one where new `compare` old.
     pub compare: vk::CompareOp,
 }
 
-/// How a layer is drawn.
+/// The raster state with which a layer is drawn.
 pub fn raster_of(layer: Layer) -> Raster {
     use vk::{CompareOp as Op, CullModeFlags as Cull};
     match layer {
@@ -187,7 +186,7 @@ pub fn raster_of(layer: Layer) -> Raster {
         Layer::Back => Raster { cull: Cull::FRONT, clear: 1.0, compare: Op::LESS },
         Layer::NearBack => Raster { cull: Cull::FRONT, clear: 0.0, compare: Op::GREATER },
         Layer::FarFront => Raster { cull: Cull::BACK, clear: 1.0, compare: Op::LESS },
-        // Without a depth test: every face counts.
+        // Every face counts, without a depth test.
         Layer::Slices => Raster { cull: Cull::NONE, clear: 0.0, compare: Op::ALWAYS },
         Layer::FrontSlices => Raster { cull: Cull::BACK, clear: 0.0, compare: Op::ALWAYS },
         Layer::BackSlices => Raster { cull: Cull::FRONT, clear: 0.0, compare: Op::ALWAYS },
@@ -197,7 +196,7 @@ pub fn raster_of(layer: Layer) -> Raster {
 const FRONT: &str = "depth_layers.front_depth";
 const BACK: &str = "depth_layers.back_depth";
 
-/// Adds a layer as the light's centre sees it, by the names of its image and of its pass.
+/// Adds a layer as the light's centre sees it; the names are those of its image and of its pass.
 fn drawn(
     graph: &mut Graph,
     layer: Layer,
@@ -210,7 +209,7 @@ fn drawn(
     image
 }
 
-/// Adds the row that draws a layer into a depth image, as one of the frame's views has it.
+/// Adds the pass that draws a layer into a depth image, through one of the frame's views.
 pub(crate) fn draw(
     graph: &mut Graph,
     name: &'static str,
@@ -261,7 +260,7 @@ fn copied(
             offset: (camera.offset * near) as f32,
             empty: if back { camera.near_value } else { camera.far_value },
             nothing: if back { 1.0 } else { 0.0 },
-            // A back face on the near plane itself must not read as none.
+            // A back face on the near plane must not read as an empty texel.
             most: if back { 1.0 - f32::EPSILON } else { 1.0 },
         }),
         work: Work::Dispatch {

@@ -5,35 +5,36 @@ use crate::RectangleLight;
 use crate::lent::MeshBounds;
 use glam::{DMat4, DVec3, DVec4};
 
-/// A map looks no further aside than this tangent (84°); occluders beyond it are not seen.
+/// The largest tangent of a map's window (84°); occluders further aside are not drawn.
 const MAX_TANGENT: f64 = 10.0;
 
-/// The near plane is no nearer than this share of the furthest distance seen.
+/// The least distance of the near plane, as a share of the furthest distance in the view.
 const MIN_NEAR: f64 = 1e-4;
 
-/// The near plane stands this share of what is seen before the nearest point of it, so that what is stored
-/// stays under 1.
+/// The margin between the near plane and the nearest point, as a share of the range of distances, so that stored depths
+/// stay under 1.
 const NEAR_MARGIN: f64 = 1e-3;
 
-/// What is seen is at least this share of the furthest distance deep: floats tell a thousand steps of it apart.
+/// The least range of distances in a view, as a share of the furthest: floats distinguish a thousand steps of it.
 const LEAST_SPAN: f64 = 1e-3;
 
-/// And what the roundings of a vertex may come to: 64 of f32, as a share of what is added up.
+/// The rounding of a vertex's distance, 64 roundings of f32, as a share of the largest summand; it bounds the range
+/// too.
 const ROUNDING: f64 = 64.0 * 5.960_464_477_539_063e-8;
 
-/// Where a map is seen from.
+/// The point that a map is seen from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Eye {
     /// A point this far behind the light's centre, metres; 0 is the centre.
     Behind(f64),
-    /// Infinitely far behind it: the projection is orthographic.
+    /// A point infinitely far behind the light: the projection is orthographic.
     Infinity,
 }
 
-/// A map parallel to the light.
+/// The view of a map that is parallel to the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapView {
-    /// Where it is seen from.
+    /// The point that the map is seen from.
     pub eye: Eye,
     /// Least u and v: tangents, or metres where the projection is orthographic.
     pub min: [f64; 2],
@@ -42,7 +43,8 @@ pub struct MapView {
     /// Distance of the near plane from the eye, or from the light's plane where the eye is infinitely
     /// far; metres.
     pub near: f64,
-    /// Distance of the furthest point of what is seen, metres.
+    /// The distance of the furthest point in the view, metres; counted from the eye or from the light's plane, as
+    /// `near` is.
     pub far: f64,
     /// The map's side in texels.
     pub side: u32,
@@ -57,8 +59,8 @@ impl MapView {
         }
     }
 
-    /// Light space to clip space, reversed: depth is near · w without a far plane, or falls from 1 at the
-    /// near plane to 0 at the far one where the projection is orthographic.
+    /// The matrix from light space to clip space, with reversed depth: near · w without a far plane; for an
+    /// orthographic projection it falls from 1 at the near plane to 0 at the far one.
     pub fn clip_from_light(&self) -> DMat4 {
         let [sx, sy] = [0, 1].map(|i| 2.0 / (self.max[i] - self.min[i]));
         let [cx, cy] = [0, 1].map(|i| -(self.max[i] + self.min[i]) / (self.max[i] - self.min[i]));
@@ -81,8 +83,8 @@ impl MapView {
         }
     }
 
-    /// The height of the near plane: w = 1/distance, or metres above the far plane where the projection
-    /// is orthographic. Heights are this times what is stored.
+    /// The height of the near plane: w = 1/distance, or metres above the far plane where the projection is
+    /// orthographic. A height is this times the stored depth.
     pub fn top(&self) -> f64 {
         match self.eye {
             Eye::Behind(_) => 1.0 / self.near,
@@ -101,7 +103,7 @@ impl MapView {
         [0, 1].map(|i| -self.min[i] * per[i])
     }
 
-    /// (Δu/Lx, Δv/Ly): the size of a texel over the light's, per metre.
+    /// The size of a texel over the light's, (Δu/Lx, Δv/Ly), per metre.
     pub fn scale(&self, light: &RectangleLight) -> [f64; 2] {
         let per = self.texels_per_uv();
         let half = light.half_extents();
@@ -114,8 +116,8 @@ fn tangents(boxes: &[LightBox], near: f64) -> Option<([f64; 2], [f64; 2])> {
     extents(boxes, near, |p| [p.x, p.y].map(|x| (x / p.z).clamp(-MAX_TANGENT, MAX_TANGENT)))
 }
 
-/// Least and largest u and v under which the light's centre sees what of some meshes is beyond `near`; none where
-/// nothing is.
+/// The least and largest u and v under which the light's centre sees the parts of meshes beyond `near`; none where no
+/// part is.
 pub(crate) fn tangents_of(
     light: &RectangleLight,
     meshes: &[(MeshBounds, DMat4)],
@@ -124,8 +126,8 @@ pub(crate) fn tangents_of(
     tangents(&LightBox::of_all(light, meshes), near)
 }
 
-/// Least and largest u and v under which an eye behind the light sees what of a box is beyond `near`, which is
-/// counted from the eye as in [`MapView::near`]; none where nothing is.
+/// The least and largest u and v under which an eye behind the light sees the part of a box beyond `near`, which is
+/// counted from the eye as in [`MapView::near`]; none where no part is.
 pub(crate) fn window_of(eye: Eye, occluder: &LightBox, near: f64) -> Option<([f64; 2], [f64; 2])> {
     let boxes = std::slice::from_ref(occluder);
     match eye {
@@ -136,7 +138,7 @@ pub(crate) fn window_of(eye: Eye, occluder: &LightBox, near: f64) -> Option<([f6
     }
 }
 
-/// The least and the largest of `uv_of` over the part of the boxes beyond `near`.
+/// The least and the largest value of `uv_of` over the parts of the boxes beyond `near`.
 fn extents(
     boxes: &[LightBox],
     near: f64,
@@ -155,7 +157,8 @@ fn extents(
     };
     for LightBox { corners, min: least, max: most, .. } in boxes {
         if least.z >= near {
-            // u and v are largest and least in these corners of the box around it: most lie where others do.
+            // The corners of the box around it hold the largest and least u and v: most boxes lie within the window of
+            // others.
             let outermost = [*least, *most, least.with_z(most.z), most.with_z(least.z)];
             if !outermost.into_iter().all(|p| holds(&window, p)) {
                 corners.iter().for_each(|&p| add(&mut window, p));
@@ -166,7 +169,7 @@ fn extents(
             if a.z >= near {
                 add(&mut window, a);
             }
-            // The three edges to the neighbours above, where they cross the near plane.
+            // The three edges to the corner's neighbours are cut at the near plane.
             for b in (0..3).filter(|axis| i >> axis & 1 == 0).map(|axis| corners[i | 1 << axis]) {
                 if (a.z < near) != (b.z < near) {
                     let t = (near - a.z) / (b.z - a.z);
@@ -178,8 +181,8 @@ fn extents(
     (window.0[0] <= window.1[0]).then_some(window)
 }
 
-/// Widens a window by one texel on each side, or by half of what it shows where a map has no three, and a window of
-/// no width to one that has some.
+/// Widens a window by one texel on each side, or by half of its width where a map has fewer than three texels; a window
+/// without width gets some.
 fn pad(min: &mut [f64; 2], max: &mut [f64; 2], side: u32) {
     let wider = if side > 2 { f64::from(side) / (f64::from(side) - 2.0) } else { 2.0 };
     for i in 0..2 {
@@ -192,9 +195,8 @@ fn pad(min: &mut [f64; 2], max: &mut [f64; 2], side: u32) {
     }
 }
 
-/// Whether a mesh is flat and has the whole light and every receiver on one side of its plane, as a
-/// ground has: no ray from the one to the other crosses it, so it blocks nothing, and a map need not
-/// spend its texels on it.
+/// Whether a mesh is flat and both the whole light and every receiver lie on one side of its plane, as for a ground:
+/// no ray from the light to a receiver crosses it, so it blocks nothing, and a map need not spend its texels on it.
 pub fn is_aside(
     light: &RectangleLight,
     mesh: &(MeshBounds, DMat4),
@@ -204,10 +206,10 @@ pub fn is_aside(
     own[0].is_aside(light.half_extents(), || LightBox::of_all(light, receivers).into_iter())
 }
 
-/// The view that just holds all occluders; none where there are none in front of the light.
+/// The view from the light's centre that just holds all occluders; none where none lies in front of the light.
 ///
-/// `window` fixes the tangents (least and largest u, v) instead of fitting them, as a host does that
-/// wants texels to stay where they are while occluders move.
+/// `window` fixes the tangents (least and largest u and v) instead of fitting them, for a host that wants texels to
+/// stay where they are while occluders move.
 pub fn fit_occluders(
     light: &RectangleLight,
     occluders: &[(MeshBounds, DMat4)],
@@ -217,7 +219,7 @@ pub fn fit_occluders(
     fit_boxes(&LightBox::of_all(light, occluders), window, side)
 }
 
-/// The same of boxes.
+/// The view of [`fit_occluders`] for boxes in light space.
 pub(crate) fn fit_boxes(
     occluders: &[LightBox],
     window: Option<[[f64; 2]; 2]>,
@@ -230,14 +232,14 @@ pub(crate) fn fit_boxes(
     Some(MapView { eye: Eye::Behind(0.0), min, max, near, far, side })
 }
 
-/// Least and largest distance of boxes; none where all lie behind the light.
+/// The least and largest distance of boxes; none where all lie behind the light.
 fn distances(boxes: &[LightBox]) -> Option<(f64, f64)> {
     let largest = boxes.iter().map(|b| b.max.z).fold(f64::NEG_INFINITY, f64::max);
     let least = boxes.iter().map(|b| b.min.z).fold(f64::INFINITY, f64::min);
     (largest > 0.0).then_some((least, largest))
 }
 
-/// The distances of the near plane and of the furthest occluder; none where all lie behind the light.
+/// The distances of the near plane and of the furthest occluder; none where all occluders lie behind the light.
 fn planes_of(occluders: &[LightBox]) -> Option<(f64, f64)> {
     let summed = occluders.iter().map(|b| b.summed).fold(0.0, f64::max);
     let (least, far) = distances(occluders)?;
@@ -247,7 +249,7 @@ fn planes_of(occluders: &[LightBox]) -> Option<(f64, f64)> {
     Some((near, far))
 }
 
-/// As [`fit_occluders`], from an eye behind the light; what is behind the light is not seen.
+/// The view of [`fit_occluders`] from an eye behind the light; occluders behind the light are left out.
 pub fn fit_from(
     eye: Eye,
     light: &RectangleLight,
@@ -257,7 +259,7 @@ pub fn fit_from(
     fit_boxes_from(eye, &LightBox::of_all(light, occluders), side)
 }
 
-/// The same of boxes.
+/// The view of [`fit_from`] for boxes in light space.
 pub(crate) fn fit_boxes_from(eye: Eye, occluders: &[LightBox], side: u32) -> Option<MapView> {
     let (near, far) = planes_of(occluders)?;
     let (mut window, near, far) = match eye {
@@ -268,7 +270,7 @@ pub(crate) fn fit_boxes_from(eye: Eye, occluders: &[LightBox], side: u32) -> Opt
             (extents(occluders, near, of)?, near + behind, far + behind)
         }
         Eye::Infinity => {
-            // What is furthest must not read as nothing.
+            // The furthest point must not read as an empty texel.
             let far = far + NEAR_MARGIN * (far - near).max(far * MIN_NEAR);
             (extents(occluders, near, |p| [p.x, p.y])?, near, far)
         }
@@ -277,7 +279,7 @@ pub(crate) fn fit_boxes_from(eye: Eye, occluders: &[LightBox], side: u32) -> Opt
     Some(MapView { eye, min: window.0, max: window.1, near, far, side })
 }
 
-/// The view that holds what of the receivers the occluders can shadow; none where that is nothing.
+/// The view that holds every receiver that an occluder can shadow; none where there is no such receiver.
 pub fn fit_receivers(
     light: &RectangleLight,
     receivers: &[(MeshBounds, DMat4)],
@@ -287,7 +289,7 @@ pub fn fit_receivers(
     fit_receiver_boxes(light.half_extents(), &LightBox::of_all(light, receivers), occluders, side)
 }
 
-/// The same of boxes, for a light of these half-extents.
+/// The view of [`fit_receivers`] for boxes in light space and a light of these half-extents.
 pub(crate) fn fit_receiver_boxes(
     light: [f64; 2],
     receivers: &[LightBox],
@@ -306,7 +308,7 @@ pub(crate) fn fit_receiver_boxes(
     for (i, half) in light.into_iter().enumerate() {
         min[i] = min[i].max(occluders.min[i] - half * spread);
         max[i] = max[i].min(occluders.max[i] + half * spread);
-        // Equal are those of receivers whose plane holds the light's centre.
+        // The bounds are equal for receivers whose plane holds the light's centre.
         if min[i] > max[i] {
             return None;
         }

@@ -1,19 +1,19 @@
-//! The CPU twin of `glsl/nbuffer/levels.glsl`, for any value and any way to combine two.
+//! The CPU twin of `glsl/nbuffer/levels.glsl`, for any type of value and any way to combine two.
 
 use super::{Kind, Levels};
 
-/// A map and its levels, each a list of rows.
+/// A map's values and those of its levels.
 #[derive(Clone, Debug)]
 pub struct Values<V> {
-    /// How they lie.
+    /// The layout of the levels.
     pub levels: Levels,
-    /// Level 0, row by row, and then each level's.
+    /// Level 0 and then each level's values, row by row.
     pub of_level: Vec<Vec<V>>,
 }
 
 impl<V: Copy> Values<V> {
-    /// Builds every level of a square map, row by row: `combine` makes one value of those of a window's
-    /// parts (fewer than all where the window sticks out of the map).
+    /// Builds every level of a square map, which is given row by row: `combine` makes one value of the values of a
+    /// window's parts (fewer than four where the window sticks out of the map).
     pub fn new(levels: Levels, map: Vec<V>, combine: impl Fn(&[V]) -> V) -> Self {
         let fan = if levels.kind == Kind::Thirds { 3 } else { 2 };
         let mut of_level = vec![map];
@@ -42,7 +42,7 @@ impl<V: Copy> Values<V> {
         Self { levels, of_level }
     }
 
-    /// The texels of the image array that holds them, layer by layer; `none` where there is no node.
+    /// The texels of the image array that holds the levels, layer by layer; `none` fills texels without a node.
     pub fn as_array(&self, none: V) -> Vec<V> {
         let mut texels = vec![none; self.levels.texels() as usize];
         for (level, values) in (0u32..).zip(&self.of_level) {

@@ -1,28 +1,28 @@
-//! Tiles of pixels that are done at once, and a list of the others.
+//! Skips the 8×8-pixel tiles that no occluder can shadow, and lists the others.
 //!
 //! ```text
-//!   pixels ──► tiles ──┬─► lit: nothing before any of its receivers, written there and then
-//!   occluders ──┘      └─► listed ──► the technique's own pass, as many workgroups as there are (indirect)
+//!   pixels ──► tiles ──┬─► lit: no occluder before any of its receivers; 1 is written at once
+//!   occluders ──┘      └─► listed ──► the technique's own pass, by an indirect dispatch
 //! ```
-//! A tile's receivers are bounded in light space, and the occluders' hierarchy is asked once for all of them
-//! whether anything lies within the light's window before the nearest to be felt. Where nothing does, each
-//! pixel would have found nothing either: it sees all of the light that its own surface leaves. So the image is
-//! the same to the bit, and what is saved is asking 64 times.
+//! A tile's receivers are bounded in light space, and one query of the occluders' hierarchy finds whether any occluder
+//! lies within the light's window before the nearest receiver that it could shadow. Where none does, every pixel of
+//! the tile would find none by itself and see all of the light that its own surface leaves. So the image is the same
+//! to the bit, and 63 of 64 queries are saved.
 //!
-//! Where pixels block light themselves, that part takes their normals, which are the technique's to make: such
-//! tiles are listed too, with a mark that no occluder need be asked for.
+//! Where pixels' own surfaces block light, their part needs normals, which the technique's own pass makes. Such tiles
+//! are listed too, with a mark that no occluder need be tested for them.
 //!
-//! Umbra is not told. A technique's sums reach all of the light or more for sure at none of its shortcuts: soft
-//! shadow maps sum to 0.89 and up in full umbra, and other techniques ask each pixel's own plane.
+//! Umbra tiles are not detected. No shortcut of a technique finds for certain that a sum reaches the whole light: soft
+//! shadow maps sum to 0.89 and up in full umbra, and other techniques test each pixel's own plane.
 //!
-//! **What it costs** a tile of 8×8 pixels: 64 depths and as many of the mask to bound it, the nodes of the
-//! hierarchy that the light's window touches, once, and 64 values written where it is lit. A pixel that finds
-//! for itself that it is lit fetches 13 depths for its normal, and four pixels the same nodes.
+//! **What it costs** a tile of 8×8 pixels: 64 depths and as many texels of the mask to bound it, one query of the
+//! hierarchy's nodes that the light's window touches, and 64 values written where it is lit. A pixel that finds by
+//! itself that it is lit fetches 13 depths for its normal, and four pixels share a query of the nodes.
 //!
-//! Measured in 640×480 (`benches/techniques`): 5 to 15 ms to sort, of 55 to 5000 that the passes take without; with tiles
-//! of 4×4 and of 16×16 pixels the sums are within a tenth of each other.
+//! Measured in 640×480 (`benches/techniques`): sorting takes 5 to 15 ms, where the passes without it take 55 to 5000; with
+//! tiles of 4×4 and of 16×16 pixels the sums are within a tenth of each other.
 //!
-//! The order of the list is up to the device; each tile writes its own pixels alone, so the image is not.
+//! The order of the list is up to the device, but the image is not: each tile writes only its own pixels.
 
 pub mod twin;
 
@@ -31,27 +31,27 @@ use crate::graph::{Access, Graph, Need, Pass, Push, ResourceId, Use, Uses, Work}
 use crate::shaders::{self, Module};
 use smallvec::smallvec;
 
-/// Pixels a side of a tile, as in `lists.glsl`.
+/// A tile's side in pixels (`lists.glsl`).
 pub(crate) const TILE: u32 = 8;
-/// A word a tile behind their number.
+/// The list holds the number of tiles, and then one word a tile.
 const HEAD: u64 = 4;
 
-/// The tiles that a technique's pass over the pixels runs for.
+/// The list of tiles that a technique's pass over the pixels runs for.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tiles {
-    /// Workgroups, as an indirect dispatch takes them.
+    /// The numbers of workgroups for an indirect dispatch.
     arguments: ResourceId,
-    /// How many, and where they are.
+    /// The number of listed tiles, and their words.
     list: ResourceId,
 }
 
 impl Tiles {
-    /// How many there are of an image.
+    /// The number of tiles in an image.
     pub fn in_image(extent: [u32; 2]) -> u64 {
         extent.map(|e| u64::from(e.div_ceil(TILE))).iter().product()
     }
 
-    /// Adds the row that begins an empty list.
+    /// Adds the pass that empties the list.
     pub fn start(graph: &mut Graph, extent: [u32; 2], need: &Need) -> Self {
         let tiles = Self::in_image(extent);
         let arguments = graph.buffer("visibility.tile_arguments", 16);
@@ -70,7 +70,8 @@ impl Tiles {
         Self { arguments, list }
     }
 
-    /// Adds the row that sorts tiles by a technique's shader: `occluders` is what it asks, at binding 2 and from 6 on.
+    /// Adds the pass that sorts the tiles by a technique's shader; `occluders` are its inputs, bound at 2 and from 6
+    /// on.
     pub fn sort(
         &self,
         graph: &mut Graph,
@@ -80,7 +81,7 @@ impl Tiles {
         gbuffer: &GBuffer,
         need: &Need,
     ) {
-        // 8×8 invocations of a tile.
+        // One workgroup of 8×8 invocations sorts 8×8 tiles.
         let [x, y] = gbuffer.extent.map(|e| e.div_ceil(8 * TILE));
         let mut uses = smallvec![
             Use::bound(0, gbuffer.depth, Access::SampledCompute),
@@ -93,7 +94,7 @@ impl Tiles {
         graph.push(Pass::compute("visibility.tiles", shader, [x, y, 1], push, uses, need));
     }
 
-    /// Adds a technique's row for what is listed; the list is bound at `binding`.
+    /// Adds a technique's pass for the listed tiles; the list is bound at `binding`.
     pub fn run(
         &self,
         graph: &mut Graph,

@@ -1,19 +1,19 @@
-//! The CPU twins of how tiles of pixels are bounded and listed, in any float type.
+//! The CPU twins of the bounds and the words of tiles (`common/lists.glsl`), in any float type.
 
 use num_traits::Float;
 
-/// Where some receivers lie: least and largest t and w, as in `common/lists.glsl`.
+/// The bounds of a tile's receivers: least and largest t and w.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds<T> {
-    /// Least t.
+    /// The least t, texels.
     pub t_min: [T; 2],
-    /// Largest t.
+    /// The largest t, texels.
     pub t_max: [T; 2],
-    /// Least and largest w.
+    /// The least and largest w, 1/m.
     pub w: [T; 2],
 }
 
-/// Bounds that hold whatever rounding another shader has: 2⁻²⁰ of t and w, and 2⁻¹⁰ of a texel more.
+/// Bounds that hold under any rounding of another shader: 2⁻²⁰ of t and w, and 2⁻¹⁰ of a texel more.
 pub fn rounded_tile<T: Float>(tile: &Bounds<T>) -> Bounds<T> {
     let power = |n: i32| (T::one() + T::one()).powi(n);
     let slack =
@@ -25,7 +25,7 @@ pub fn rounded_tile<T: Float>(tile: &Bounds<T>) -> Bounds<T> {
     }
 }
 
-/// The first pixel of a listed tile, and whether an occluder may be felt there.
+/// The first pixel of a listed tile, and whether an occluder may shadow the tile.
 pub fn listed_tile(word: u32) -> ([u32; 2], bool) {
     let tile = [word & 0x7fff, word >> 15 & 0x7fff];
     (tile.map(|i| i * super::TILE), word & 1 << 30 != 0)

@@ -1,31 +1,32 @@
-//! A line of a light, and what the samples on it see.
+//! A line of a light, and the windows of the maps of the samples on it.
 
 use glam::{DMat4, DVec3, DVec4};
 
-/// A line of a light. Its own space is light space turned about the light's axis, its middle the origin.
+/// A line of a light. In its own space the line's middle is the origin, and light space is turned about the light's
+/// axis.
 ///
-/// What bounds boxes' tangents from below is a concave function of a sample's place, and from above a convex one, so
-/// between two ends a straight line holds them all.
+/// The least tangent of a box is a concave function of a sample's place, and the largest a convex one, so windows that
+/// are interpolated between the line's two ends hold the boxes for every sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line {
-    /// Its x along the light's x and y: a unit vector.
+    /// The line's x along the light's x and y: a unit vector.
     pub along: [f64; 2],
-    /// Its middle, metres from the light's centre.
+    /// The line's middle, metres from the light's centre.
     pub middle: [f64; 2],
-    /// Half its length, metres.
+    /// Half the line's length, metres.
     pub half: f64,
-    /// Its share of the light, 0 to 1.
+    /// The line's share of the light, 0 to 1.
     pub weight: f64,
-    /// Least and largest u at its first end and at its last.
+    /// The least and largest u at its first end and at its last, tangents.
     pub u: [[f64; 2]; 2],
-    /// Least and largest v.
+    /// The least and largest v, tangents.
     pub v: [f64; 2],
-    /// Distance of its maps' near plane, metres.
+    /// The distance of its maps' near plane from the light, metres.
     pub near: f64,
 }
 
 impl Line {
-    /// What stands where a frame has no line.
+    /// The line that a frame without lines declares its passes with.
     pub const NONE: Self = Self {
         along: [1.0, 0.0],
         middle: [0.0; 2],
@@ -36,25 +37,25 @@ impl Line {
         near: 1.0,
     };
 
-    /// Least and largest u at its first end, at its last.
+    /// The least and largest u at its first end, then at its last.
     pub(crate) fn u_window(&self) -> [f32; 4] {
         let [[a, b], [c, d]] = self.u;
         [a, b, c, d].map(|x| x as f32)
     }
 
-    /// Whether an occluder may come nearer to it than a tenth of its length: what ends there may be further aside than
-    /// any map looks, and the line's middle does not tell what its other parts see.
+    /// Whether an occluder may come nearer to the line than a tenth of its length. Such an occluder's edges may lie
+    /// further aside than any map shows, and the middle's map is no guide to what other samples see.
     pub(crate) fn is_touched(&self) -> bool {
         self.near < 0.2 * self.half
     }
 
-    /// Its length in metres.
+    /// The line's length, metres.
     pub(crate) fn length(&self) -> f32 {
         (2.0 * self.half) as f32
     }
 
-    /// Light space to what `view.glsl` takes: x in metres from the line's middle, and y, z and w of the clip space that
-    /// all maps of the line share.
+    /// The matrix from light space to the input of `view.glsl`: x in metres from the line's middle, and y, z and w of
+    /// the clip space that all maps of the line share.
     pub fn line_from_light(&self) -> DMat4 {
         let [c, s] = self.along;
         let [x, y] = self.middle;

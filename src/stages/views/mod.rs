@@ -1,4 +1,4 @@
-//! Views of techniques that look at the occluders from more places than the light's centre.
+//! The views of techniques that see the occluders from other places than the light's centre.
 
 mod line;
 mod point;
@@ -12,17 +12,17 @@ use smallvec::SmallVec;
 /// The views that a technique has of its own.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Views {
-    /// None: the occluders are seen from the light's centre, or from behind it.
+    /// There are none: the occluders are seen from the light's centre, or from behind it.
     #[default]
     Centre,
-    /// From points on the light, each with a map.
+    /// There is a view from each of these points on the light, with a map each.
     Points(Vec<LightPoint>),
-    /// From samples on lines of the light.
+    /// There is a view for each of these lines, which the samples on it share.
     Lines(Vec<Line>),
 }
 
 impl Views {
-    /// How many there are.
+    /// The number of views.
     pub fn count(&self) -> usize {
         match self {
             Self::Centre => 0,
@@ -41,7 +41,7 @@ impl Views {
         if let Self::Lines(lines) = self { lines } else { &[] }
     }
 
-    /// Light space to the clip space of each view.
+    /// The matrices from light space to the clip space of each view.
     pub fn clips(&self) -> SmallVec<[DMat4; 1]> {
         match self {
             Self::Centre => SmallVec::new(),

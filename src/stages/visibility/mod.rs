@@ -1,8 +1,7 @@
-//! The result: one image that holds the visible fraction of the light for each pixel.
+//! The result of a light: one image that holds its visible fraction for each pixel.
 //!
-//! `visibility` is R32_SFLOAT, as large as the G-buffer: 1 is lit, 0 is umbra; 1 where nothing
-//! receives. Techniques that work at the pixels write it themselves; those that work in the light's
-//! space are resolved onto the pixels here.
+//! `visibility` is R32_SFLOAT, as large as the G-buffer: 1 is lit, 0 is umbra; 1 where nothing receives. Techniques
+//! that work at the pixels write it themselves; results in the light's space are resolved onto the pixels here.
 
 use crate::graph::{Access, Graph, Need, Owner, Pass, Push, ResourceId, Use, Work};
 use crate::shaders;
@@ -14,27 +13,28 @@ use smallvec::smallvec;
 /// The visibility image's format.
 pub const FORMAT: vk::Format = vk::Format::R32_SFLOAT;
 
-/// The same where the visible fraction is one of red, green and blue each; alpha is 1.
+/// The visibility image's format for a visible fraction of red, green and blue each; alpha is 1.
 pub const COLOR_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
-/// What hosts do with a node's own visibility image: sample it, or copy it out.
+/// The uses of a node's own visibility image by hosts: they sample it, or copy it out.
 pub(crate) const USAGE: vk::ImageUsageFlags = vk::ImageUsageFlags::from_raw(
     vk::ImageUsageFlags::STORAGE.as_raw()
         | vk::ImageUsageFlags::SAMPLED.as_raw()
         | vk::ImageUsageFlags::TRANSFER_SRC.as_raw(),
 );
 
-/// The visibility image's format, with color or without.
+/// The visibility image's format, with `color` or without.
 pub fn format(color: bool) -> vk::Format {
     if color { COLOR_FORMAT } else { FORMAT }
 }
 
-/// The host's pixels, as resources of the graph.
+/// The host's G-buffer, as resources of the graph.
 #[derive(Clone, Copy, Debug)]
 pub struct GBuffer {
-    /// Depth, as the host's camera sees it.
+    /// The depth image, as the host's camera sees the scene.
     pub depth: ResourceId,
-    /// Roles: red 1 blocks and receives, ½ receives only, 0 receives nothing. All are 1 without it.
+    /// The image of roles: red 1 blocks and receives, ½ receives only, 0 receives nothing. Without it every pixel has
+    /// 1.
     pub mask: Option<ResourceId>,
     /// Width and height in pixels.
     pub extent: [u32; 2],
@@ -45,7 +45,7 @@ pub struct GBuffer {
 }
 
 impl GBuffer {
-    /// Depth and mask at bindings 0 and 1; without a mask the shaders do not read the second.
+    /// The uses of depth and mask at bindings 0 and 1; without a mask the depth is bound there and not read.
     pub fn bound(&self) -> [Use; 2] {
         [
             Use::bound(0, self.depth, Access::SampledCompute),
@@ -54,15 +54,15 @@ impl GBuffer {
     }
 }
 
-/// `lit.comp`
+/// The push constants of `lit.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct LitPush {
-    /// Width and height.
+    /// The image's width and height.
     pub extent: [i32; 2],
 }
 
-/// `resolve.comp`
+/// The push constants of `resolve.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct ResolvePush {
@@ -70,7 +70,7 @@ pub struct ResolvePush {
     pub light_from_ndc: [f32; 16],
     /// Receiver texels a unit of u and v.
     pub texels_per_uv: [f32; 2],
-    /// Receiver-texel coordinates of u = v = 0.
+    /// The receiver-texel coordinates of u = v = 0.
     pub first: [f32; 2],
     /// The G-buffer's width and height.
     pub extent: [i32; 2],
@@ -80,20 +80,20 @@ pub struct ResolvePush {
     pub receiver_inv_near: f32,
     /// The map's side in texels.
     pub receiver_map: i32,
-    /// Bit 0: the mask is there; bit 1: the mean of both maps, not their maximum.
+    /// Bit 0: there is a mask; bit 1: the mean of both maps, not their maximum.
     pub flags: i32,
 }
 
-/// What is resolved.
+/// The soft shadow map that is projected onto the pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct Resolve<'a> {
     /// The receiver map.
     pub receiver_depth: ResourceId,
-    /// How it looks at the scene.
+    /// The receiver map's view.
     pub view: &'a MapView,
-    /// Occlusion of both sides; the same twice where there is one.
+    /// The occlusion by both sides; the same map twice where there is one.
     pub maps: [ResourceId; 2],
-    /// Their mean is the occlusion, not their maximum.
+    /// Whether the occlusion is the mean of the two instead of their maximum.
     pub mean: bool,
 }
 
@@ -103,12 +103,12 @@ pub fn declare(graph: &mut Graph, extent: [u32; 2], color: bool, lent: bool) -> 
     graph.image("visibility", format(color), extent, owner)
 }
 
-/// One invocation a pixel, in groups of 8×8.
+/// The workgroups for one invocation a pixel, in groups of 8×8.
 pub(crate) fn grid(extent: [u32; 2]) -> [u32; 3] {
     [extent[0].div_ceil(8), extent[1].div_ceil(8), 1]
 }
 
-/// Adds the row that makes every pixel lit.
+/// Adds the pass that makes every pixel lit.
 pub fn lit(graph: &mut Graph, visibility: ResourceId, extent: [u32; 2], color: bool, need: Need) {
     graph.push(Pass {
         name: "visibility.lit",
@@ -122,7 +122,7 @@ pub fn lit(graph: &mut Graph, visibility: ResourceId, extent: [u32; 2], color: b
     });
 }
 
-/// Adds the row that projects a soft shadow map onto the pixels.
+/// Adds the pass that projects a soft shadow map onto the pixels.
 pub fn resolve(
     graph: &mut Graph,
     visibility: ResourceId,

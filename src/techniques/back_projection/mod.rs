@@ -8,22 +8,20 @@
 //!                  \ | |  /
 //!   pixel             ●
 //! ```
-//! The sum over texels of the soft shadow map ([`crate::techniques::soft_shadow_map`]), published in the same year, in
-//! screen space from the start, and texel by texel: each pixel visits the window of the map that the
-//! light can be hidden from. A hierarchy of the least and the largest distance (their hierarchical shadow
-//! map) shrinks that window to what its nearest occluder asks for, and says where a pixel is lit or in
-//! umbra without a visit.
+//! The technique is the sum over texels of the soft shadow map ([`crate::techniques::soft_shadow_map`]), published in
+//! the same year, in screen space and texel by texel: each pixel visits the window of the map in which an occluder
+//! could hide light from it. A hierarchy of the least and the largest distance (their hierarchical shadow map) shrinks
+//! that window to the size that its nearest occluder needs, and finds pixels that are lit or in umbra without a visit.
 //!
-//! Where we depart: the bias is this room's, and what the pixel's own surface hides is a closed form. Their
-//! umbra is where every texel of the window is nearer than the pixel; here those texels must be above the
-//! pixel's plane as well, which the pixel's own slope is not.
+//! Where we depart: the bias is that of `techniques/common`, and the part of the light that the pixel's own surface
+//! hides is a closed form. Their umbra is where every texel of the window is nearer than the pixel; here those texels
+//! must also lie above the pixel's plane, which the pixel's own slope does not.
 //!
-//! **Limits.** Gaps are filled, overlaps are not taken out: where a near edge passes before something
-//! further, both count, and shadows come out too dark: 2 % in the
-//! mean on spheres and the bunny. A pixel in a wide penumbra costs as many
-//! fetches as its window has texels, so the time grows with the square of the light's and the map's side.
-//! Mesa's CPU driver stops a shader after 65,535 turns of its loops; eight texels a turn are enough for a
-//! window of 700² texels.
+//! **Limits.** Gaps are filled, overlaps are not removed: where a near edge passes before something further, both
+//! count, and shadows come out too dark: 2 % in the mean on spheres and the bunny. A pixel in a wide penumbra fetches
+//! as many texels as its window has, so the time grows with the square of the light's and of the map's side. Mesa's
+//! CPU driver stops a shader after 65,535 turns of its loops; eight texels a turn are enough for a window of 700²
+//! texels.
 
 pub mod twin;
 
@@ -35,7 +33,7 @@ use crate::shaders;
 use bytemuck::{Pod, Zeroable};
 use smallvec::smallvec;
 
-/// The knobs.
+/// The knobs of back-projection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
     /// The map's side, texels, 1 to 4096; 256 by default.
@@ -73,7 +71,7 @@ impl Room for Settings {
     }
 }
 
-/// What `next_level.comp` is given.
+/// The push constants of `next_level.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct NextLevel {
@@ -83,17 +81,17 @@ pub struct NextLevel {
     pub level: i32,
 }
 
-/// Nodes a side of a level of a map.
+/// The number of nodes along a side of a level of a map.
 fn level_side(map: u32, level: u32) -> u32 {
     map.div_ceil(1 << level)
 }
 
-/// How many nodes the levels before a level have.
+/// The number of nodes in the levels before a level.
 fn level_start(map: u32, level: u32) -> u32 {
     (1..level).map(|k| level_side(map, k).pow(2)).sum()
 }
 
-/// The level that is one node.
+/// The level that has a single node.
 fn top(map: u32) -> u32 {
     map.next_power_of_two().trailing_zeros()
 }

@@ -1,10 +1,10 @@
-//! The CPU twins of the filled gaps and of the levels, in any float type.
+//! The CPU twins of `glsl/back_projection`: filled gaps and levels, in any float type.
 
 use crate::techniques::common::twin::overlap;
 use num_traits::Float;
 
-/// What a texel with magnification `k` hides of the light from a receiver at `t`, reaching over the gaps
-/// to the texels before it along x and y, whose magnifications are in `before`; 0 where there is none.
+/// The fraction of the light that a texel with magnification `k` hides from a receiver at `t`, extended over the gaps
+/// to the texels before it along x and y, whose magnifications are in `before`; a magnification of 0 is no texel.
 pub fn filled_occlusion<T: Float>(lo: [T; 2], t: [T; 2], k: T, before: [T; 2], scale: [T; 2]) -> T {
     if k <= T::zero() {
         return T::zero();
@@ -18,12 +18,12 @@ pub fn filled_occlusion<T: Float>(lo: [T; 2], t: [T; 2], k: T, before: [T; 2], s
     along(0) * along(1)
 }
 
-/// Nodes a side of a level of a map.
+/// The number of nodes along a side of a level of a map.
 pub fn level_side(map: u32, level: u32) -> u32 {
     map.div_ceil(1 << level)
 }
 
-/// Where a level's nodes start.
+/// The index of a level's first node.
 pub fn level_start(map: u32, level: u32) -> u32 {
     (1..level).map(|k| level_side(map, k).pow(2)).sum()
 }

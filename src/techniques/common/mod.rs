@@ -1,14 +1,13 @@
-//! What techniques with one map from the light's centre share.
+//! Passes and push constants of the techniques with one map from the light's centre.
 //!
-//! **One bias for all of them.** A texel's surface hides a pixel where it lies above the pixel's own
-//! plane, which the G-buffer's depth gives: the receiver-plane bias, exact for flat receivers at any
-//! slope and filter width. It may be off by the rounding of that test and by how far the raster moves a
-//! vertex, and a bent surface of the pixel's own rises above its plane by up to 0.3 of the distance
-//! within the map (`glsl/common/light_space.glsl`); that much higher a texel must lie. The distance is half a
-//! texel's diagonal where a texel stands for itself, and how far away it is where it stands for a whole
-//! filter. Nothing is to be tuned.
+//! **One bias for all of them.** A texel's surface hides a pixel where it lies above the pixel's own plane, which the
+//! G-buffer's depth gives: the receiver-plane bias, exact for flat receivers at any slope and filter width. The bias
+//! is the rounding of that test, the distance by which a raster moves a vertex, and the height by which a bent surface
+//! rises above the pixel's plane: up to 0.3 of the distance within the map (`glsl/common/light_space.glsl`). That
+//! distance is half a texel's diagonal where a texel stands for itself, and the distance to the texel where it stands
+//! for a whole filter. Nothing is to be tuned.
 //!
-//! **Limits.** A map from the light's centre shows what the centre sees.
+//! **Limits.** A map from the light's centre misses occluders that the centre does not see.
 
 pub mod twin;
 
@@ -18,7 +17,7 @@ use crate::shaders::Module;
 use crate::stages::visibility::{GBuffer, grid};
 use bytemuck::{Pod, Zeroable};
 
-/// What passes over the pixels with one occluder map are given (`one_map.glsl`).
+/// The push constants of passes over the pixels with one occluder map (`one_map.glsl`).
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Pixels {
@@ -38,17 +37,17 @@ pub struct Pixels {
     pub inv_near: f32,
     /// How far a raster moves a vertex, in texels.
     pub snap: f32,
-    /// How far off an occluder's w may be beyond its rounding, 1/m.
+    /// The error of an occluder's w beyond its rounding, 1/m.
     pub depth_error: f32,
     /// The map's side in texels.
     pub map: i32,
-    /// 1 where the mask is there.
+    /// 1 where the G-buffer has a mask of roles.
     pub masked: i32,
-    /// Of taps or levels.
+    /// The number of taps or levels.
     pub count: i32,
 }
 
-/// What `finest_level.comp` and `nearest.comp` are given.
+/// The push constants of `finest_level.comp` and `nearest.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct FinestLevel {
@@ -77,15 +76,15 @@ pub(crate) fn pixel_push(count: u32, inputs: &PassInputs) -> Push {
     })
 }
 
-/// What a pass over the pixels reads, as `one_map.glsl` binds it; the image that it writes comes behind.
+/// The inputs of a pass over the pixels, as `one_map.glsl` binds them; the image that it writes is bound after them.
 pub(crate) fn pixel_uses(front: ResourceId, gbuffer: &GBuffer) -> Uses {
     let mut uses = Uses::from_slice(&gbuffer.bound());
     uses.push(Use::bound(2, front, Access::SampledCompute));
     uses
 }
 
-/// Adds the pass that turns the map from the light's centre into the visible fraction, as `one_map.glsl` has it;
-/// `count` and the uses in `more` are the technique's own.
+/// Adds the pass that turns the map from the light's centre into the visible fraction (`one_map.glsl`); `count` and the
+/// uses in `more` are the technique's own.
 pub(crate) fn one_map(
     graph: &mut Graph,
     name: &'static str,

@@ -1,20 +1,21 @@
-//! The CPU twins of what techniques share in `glsl/common`, in any float type.
+//! The CPU twins of `glsl/common`, in any float type.
 //!
-//! A twin says the same as the shader, line by line, and shares no code with it.
+//! A twin computes what the shader does, line by line, and shares no code with it.
 
 use num_traits::Float;
 
-/// `x`, but no less than `low` and no more than `high`.
+/// Clamps `x` to `low` and `high`.
 pub(crate) fn clamp<T: Float>(x: T, low: T, high: T) -> T {
     x.max(low).min(high)
 }
 
-/// ½.
+/// The number ½.
 pub(crate) fn half<T: Float>() -> T {
     T::one() / (T::one() + T::one())
 }
 
-/// k = 1/(w_o − w_r), in metres: what a step of u at the occluder covers on the light's plane.
+/// The magnification k = 1/(w_o − w_r), in metres: the length on the light's plane that a step of u at the occluder
+/// covers.
 pub fn magnification<T: Float>(w_o: T, w_r: T) -> T {
     T::one() / (w_o - w_r)
 }
@@ -46,12 +47,12 @@ pub fn patch_occlusion<T: Float>(
     along(0) * along(1)
 }
 
-/// A receiver's place, its unit normal, and the map it is compared with.
+/// A receiver and its plane over the occluder map that it is compared with.
 #[derive(Clone, Copy, Debug)]
 pub struct MapPlane<T> {
-    /// Light space, with the map's eye at the origin.
+    /// The receiver's place in light space, with the map's eye at the origin, metres.
     pub position: [T; 3],
-    /// Towards the side that light comes from.
+    /// The plane's unit normal, on the side that light comes from.
     pub normal: [T; 3],
     /// Texels a unit of u and v.
     pub texels_per_uv: [T; 2],
@@ -59,8 +60,8 @@ pub struct MapPlane<T> {
     pub first: [T; 2],
 }
 
-/// How far a texel's surface, `w_o` at its centre `at`, lies above a receiver's plane beyond what the
-/// receiver's own surface may rise over `reach` in u and v, in units of 1/w; rounding left out.
+/// How far a texel's surface, `w_o` at its centre `at`, lies above a receiver's plane beyond the height that the
+/// receiver's own surface may rise over `reach` in u and v; in units of 1/w, without rounding.
 pub fn clearance<T: Float>(plane: &MapPlane<T>, at: [T; 2], w_o: T, reach: T) -> T {
     let MapPlane { position: p, normal: n, texels_per_uv, first } = plane;
     let half = T::one() / (T::one() + T::one());
@@ -72,8 +73,8 @@ pub fn clearance<T: Float>(plane: &MapPlane<T>, at: [T; 2], w_o: T, reach: T) ->
     above - own_slope * reach.max(half * texel[0].hypot(texel[1]))
 }
 
-/// The nodes of a map of `map` texels a side that hold texels from `lo` to `hi`, as in `nearest.glsl`: columns and
-/// rows, first and last; the first behind the last where there are none.
+/// The nodes of a map of `map` texels a side that hold texels from `lo` to `hi` (`nearest.glsl`): columns and rows,
+/// first and last. The last lies before the first where there are none.
 pub fn nodes_around(map: u32, lo: [f32; 2], hi: [f32; 2]) -> [[i32; 2]; 2] {
     let side = map.div_ceil(32).max(8);
     let end = (map.div_ceil(side) - 1) as f32;
@@ -104,7 +105,7 @@ pub fn fraction_above<T: Float>(slope: [T; 2], c: T) -> T {
     if c > T::zero() { corner } else { T::one() - corner }
 }
 
-/// A pixel with a depth to a homogeneous point of light space; the matrix is given by columns.
+/// Converts a pixel with a depth to a homogeneous point of light space; the matrix is given by columns.
 pub fn unproject<T: Float>(
     light_from_ndc: &[T],
     pixel: [T; 2],
@@ -120,7 +121,7 @@ pub fn unproject<T: Float>(
     })
 }
 
-/// A homogeneous point as a point.
+/// Converts a homogeneous point to a point.
 pub fn dehomogenize<T: Float>(p: [T; 4]) -> [T; 3] {
     [0, 1, 2].map(|i| p[i] / p[3])
 }
@@ -137,7 +138,7 @@ pub fn towards_viewer<T: Float>(light_from_ndc: &[T], p: [T; 3], background: T) 
     }
 }
 
-/// The unit normal of the plane along two steps, on the side that `to_viewer` points to.
+/// The unit normal of the plane that two steps span, on the side that `to_viewer` points to.
 pub fn plane_normal<T: Float>(x: [T; 3], y: [T; 3], to_viewer: [T; 3]) -> [T; 3] {
     let size = |v: [T; 3]| v.iter().fold(T::min_positive_value(), |most, c| most.max(c.abs()));
     let [x, y] = [x, y].map(|v| v.map(|c| c / size(v)));

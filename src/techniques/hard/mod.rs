@@ -1,11 +1,11 @@
 //! A hard shadow map from the light's centre, 3×3 percentage-closer filtered.
 //!
-//! Reeves, Salesin, Cook 1987: compare first, then filter. The filter is the mean of nine comparisons a
-//! texel apart, each bilinear over four texels, as hardware does them; by fetches, because a comparison
-//! sampler filters depth formats on some devices only. Together that is 4×4 texels, compared each with
-//! the pixel's plane at its own place.
+//! Comparisons come before the filter (Reeves, Salesin and Cook 1987). The filter is the mean of nine comparisons a
+//! texel apart, each bilinear over four texels like a hardware comparison; shaders fetch and compare, because a
+//! comparison sampler filters depth formats on some devices only. Together they read 4×4 texels, each compared with
+//! the pixel's plane at the texel's own place.
 //!
-//! **Limits.** The light is a point: no penumbra but the filter's three texels.
+//! **Limits.** The light is a point: there is no penumbra but the filter's three texels.
 
 use super::common::one_map;
 use super::room::{Maps, PassInputs, Room, Shows, Takes};
@@ -13,7 +13,7 @@ use crate::graph::{Graph, Need, ResourceId};
 use crate::knob::{Field, Knobs};
 use crate::shaders;
 
-/// The knobs.
+/// The knobs of hard shadow maps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
     /// The map's side, texels, 1 to 4096; 256 by default.
@@ -51,12 +51,12 @@ impl Room for Settings {
     }
 }
 
-/// How many comparisons along each axis are averaged.
+/// The number of comparisons that are averaged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Filter {
-    /// 3×3 bilinear ones.
+    /// 3×3 bilinear comparisons.
     Three,
-    /// A bilinear one alone, for a shadow that stands for one whose penumbra no pixel shows.
+    /// One bilinear comparison, for a shadow that stands for a soft one whose penumbra is narrower than a pixel.
     One,
 }
 

@@ -1,58 +1,59 @@
-//! What the passes of one line share.
+//! The resources that the passes of a line share, and the context that they are declared in.
 
 use super::settings::Settings;
 use crate::graph::ResourceId;
 use crate::stages::views::Line;
 use crate::techniques::room::PassInputs;
 
-/// What a line's maps and channels are made in, and what is made of all of them.
+/// The resources of a line's passes. Those of the maps are reused for each sample; `maps` and `places` keep the
+/// results.
 pub(super) struct LineResources {
     pub layers: Layers,
     pub left: SkinSide,
     pub right: SkinSide,
-    /// What of the segment that is being made its rows must know.
+    /// The state of the segment being built: the places and layers of its two samples.
     pub segment: ResourceId,
-    /// How large the grids of its rows are.
+    /// The workgroups of the segment's passes, for indirect dispatches.
     pub groups: ResourceId,
-    /// The arguments of the draws of its skins.
+    /// The arguments of the two draws of the segment's skins.
     pub draws: ResourceId,
-    /// A layer a sample, line by line: what pixels ask for.
+    /// The samples' maps that pixels read: a layer a sample, line by line.
     pub maps: ResourceId,
-    /// A row a line.
+    /// The image of lines and their samples' places: a row of texels a line.
     pub places: ResourceId,
 }
 
-/// What the rows of one line are made of.
+/// The context in which the passes of one line are declared.
 pub(super) struct LineContext<'a> {
     pub resources: &'a LineResources,
     pub settings: &'a Settings,
     pub inputs: &'a PassInputs<'a>,
     pub line: &'a Line,
-    /// Which line it is: its row of places, its view of the meshes.
+    /// The line's number: its row of `places` and its view of the meshes.
     pub row: u32,
 }
 
-/// What samples see.
+/// The samples of a line and the depth layers that they see.
 pub(super) struct Layers {
-    /// Where they are.
+    /// The number of samples and their places along the line.
     pub samples: ResourceId,
-    /// The nearest occluders and receivers as one of them sees them: drawn into, and taken from.
+    /// The depth images of one sample's nearest occluders and receivers, drawn and then copied into `seen`.
     pub occluders: ResourceId,
     pub receivers: ResourceId,
-    /// Two that lie side by side.
+    /// The w of occluders and receivers, in one layer for each of two neighbouring samples.
     pub seen: ResourceId,
-    /// What receivers see of the line.
+    /// The visible parts of the line from a grid of receivers, 32 bits each.
     pub masks: ResourceId,
 }
 
-/// What one sample of a segment makes of the other's occluders.
+/// The skins of one side: edges in one sample's map, drawn into a channel of the other sample.
 pub(super) struct SkinSide {
     pub edges: &'static str,
     pub draw: &'static str,
-    /// Which ends of occluders are seen past: -1, those towards −x.
+    /// Which ends of occluders have skins: −1 those towards −x, 1 those towards +x.
     pub side: i32,
     pub skins: ResourceId,
-    /// Of the draw's arguments in [`super::passes::LineResources::draws`].
+    /// The byte offset of the draw's arguments in [`LineResources::draws`].
     pub offset: u64,
     pub channel: ResourceId,
 }

@@ -9,38 +9,39 @@
 //!                  sees a part                            each sample  keep                   both its channels
 //!                                                         each pixel   visibility             segments, summed
 //! ```
-//! A point in penumbra is seen by one end of a segment of the light and not by the other. What hides it from that one
-//! ends at an edge that the other sees past; the ray from the hidden end past the edge is a skin, and what of it the
-//! other end sees covers the penumbra (section 3.2). All samples of a line see a point in one row of their maps, so a
-//! skin is a strip of one row.
+//! A point in penumbra is seen by one end of a segment of the light and not by the other. The occluder that hides it
+//! from the hidden end has an edge that the other end sees past. The ray from the hidden end past that edge is a skin,
+//! and the part of it that the other end sees covers the penumbra (section 3.2). All samples of a line see a point in
+//! the same row of texels of their maps, so a skin is a strip of one row.
 //!
-//! **Where the samples are** (the paper's open problem, section 5). A sample tells of the line around it, up to the
-//! first occluder on either side; of what shines through beyond that no map knows. So the middle of the line looks
-//! once: each of 4096 receivers in its map has the occluders of its row projected back onto the line, 32 bits of it,
-//! and samples are put, one after the other, where most bits are lost, until those left are no more than the `error`
-//! asked for, in the mean over receivers that do not see all of the line, or there are `samples`. All of it happens on
-//! the GPU, in the frame: rows of samples that are not needed draw nothing and dispatch no workgroup. The middle misses
-//! occluders behind others, and skins have errors of their own: measured errors are at most 1.3 points above the one
-//! asked for. An occluder within a tenth of the line's length of it is more than the middle can tell of; then all
-//! samples are used, evenly.
+//! **Where the samples are** (the paper's open problem, section 5). A sample represents the line around it, up to the
+//! first occluder on either side; no map holds the light that shines through beyond. So the scene is first drawn from
+//! the middle of the line. For each of 4096 receivers in that map the occluders in its row of texels are projected
+//! back onto the line, as 32 bits of it, and samples are placed, one after the other, where most bits are lost, until
+//! the rest is within the requested `error`, in the mean over receivers that do not see all of the line, or there are
+//! `samples`. All of it happens on the GPU, in the frame: passes of samples that are not needed draw nothing and
+//! dispatch no workgroup. The middle misses occluders behind others, and skins have errors of their own: measured
+//! errors are at most 1.3 points above the requested one. An occluder nearer to the line than a tenth of its length is
+//! beyond what the middle can resolve; then all samples are used, evenly spaced.
 //!
-//! **Where we depart.** Of skins that overlap the one stays that hides most, instead of the nearest. With
-//! `transition=rational`, the default, a skin goes on to the furthest receiver, and what is behind it is told by
-//! eq. 1 from its own distance: the place where its ray past the edge meets the light. It is exact on receivers of
-//! any slope, and where an occluder hides the middle of a segment of which both ends are seen. `linear` is as
-//! published: even from the occluder's edge to the receiver beside it. Where no skin was drawn each sample adds half
-//! of a segment (section 3.2), and all of it where its neighbour is hidden: a sample's map and its neighbour's do not
-//! agree to a texel on where that begins, which left dark lines.
+//! **Where we depart.** Where skins overlap, the one that hides most is kept, instead of the nearest. With
+//! `transition=rational`, the default, a skin goes on to the furthest receiver, and eq. 1 gives the visibility of a
+//! surface behind it from that surface's own distance: the place where its ray past the edge meets the light. It is
+//! exact on receivers of any slope, and where an occluder hides the middle of a segment of which both ends are seen.
+//! `linear` is as published: even from the occluder's edge to the receiver beside it. Where no skin was drawn each
+//! sample adds half of a segment (section 3.2), and all of it where its neighbour is hidden: a sample's map and its
+//! neighbour's do not agree to a texel on where that begins, which left dark lines.
 //!
-//! **Edges.** A plane's inverse distance falls by as much from each texel to the next. What falls by a fifth more than
-//! before and behind is an edge, whatever the scale: nothing has to be tuned.
+//! **Edges.** A plane's inverse distance falls by the same step from each texel to the next. A step that is a fifth
+//! larger than those before and behind it is an edge, at any scale: nothing has to be tuned.
 //!
-//! **Lights with an area** are a few lines: side by side (`across=stack`), for rectangles along their longer side, for
-//! polygons what each row has of them; or their edges, as published for polygons (section 4). A rectangle of height b
-//! is one line where its penumbrae across are so narrow that n = 1 line keeps P / 2n (D + P) within the `error`, P
-//! being b (w_o − w_r) and D the occluder's height in tangents; else as many as it takes, at most `lines`.
+//! **Lights with an area** are a few lines. With `across=stack` they lie side by side, along a rectangle's longer side
+//! or across a polygon at equal distances; with `across=edges` they are the light's edges, as published for polygons
+//! (section 4). A rectangle of height b is one line where its penumbrae across are so narrow that n = 1 keeps P / 2n
+//! (D + P) within the `error`, P being b (w_o − w_r) and D the occluder's height in tangents; else as many as that
+//! takes, at most `lines`.
 //!
-//! **Kept maps.** While the host gives one `Frame::revision`, the maps stay, and a frame is one row: 0.6 to 0.9 of the
+//! **Kept maps.** While the host gives one `Frame::revision`, the maps stay, and a frame is one pass: 0.6 to 0.9 of the
 //! time of hard shadows from as many points.
 //!
 //! **Measured** (lavapipe, 256² maps, a line of 1 m, mean error in percent over shadow and penumbra against the exact
@@ -50,11 +51,10 @@
 //! that lean by 0, 20 and 40° the linear transition errs by 0.2, 1.1 and 2.1, the rational one by 0.2. A triangle light
 //! of a metre as 4 and 16 lines: 1.1 and 0.1; as its edges 7.5, with 2 samples or with 8, as the paper warns.
 //!
-//! **Limits.** The host cannot draw meshes itself: where samples are is known on the device alone. Occluders nearer to
-//! the line than a tenth of a segment end further aside than any map looks (84°): a card that the line goes through
-//! leaves 15 % with 2 samples and 1.2 with 8, one right under it 78 and 11. A receiver that does not block hides
-//! others from the channels. Leaves want many samples. Where the light is lost to all samples, a penumbra ends in a
-//! step.
+//! **Limits.** The host cannot draw meshes itself: only the device knows where samples are. Occluders nearer to the
+//! line than a tenth of a segment end further aside than any map shows (84°): a card that the line goes through leaves
+//! 15 % with 2 samples and 1.2 with 8, one right under it 78 and 11. A receiver that does not block hides others from
+//! the channels. Leaves want many samples. Where the light is hidden from all samples, a penumbra ends in a step.
 
 mod line;
 mod passes;
@@ -85,7 +85,7 @@ impl Room for Settings {
         Takes {
             line: true,
             outline: true,
-            // A sample's place on the line is known on the device alone.
+            // Only the device knows a sample's place on the line.
             host_draws: HostDraws::None("does not know where linear-light puts its samples"),
             lent_maps: Err(
                 "sees the occluders from points all along the light, and occluder maps from its centre alone",
@@ -133,7 +133,7 @@ mod tests {
     use crate::techniques::room::Seen;
     use glam::{DMat4, DVec3};
 
-    /// What the shaders declare for themselves.
+    /// The sizes that the shaders declare agree with those of the passes.
     #[test]
     fn the_shaders_sizes_are_these() {
         let line = include_str!("../../../glsl/linear_light/line.glsl");

@@ -1,4 +1,4 @@
-//! The rows: samples' maps → which of them count → skins → channels, line by line; pixels → visible fractions.
+//! The passes: samples' maps → needed samples → skins → channels, line by line; then pixels → visible fractions.
 
 use super::line::{Layers, LineContext, LineResources, SkinSide};
 use super::samples;
@@ -14,16 +14,16 @@ use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use smallvec::smallvec;
 
-/// Texels of the image of places before a line's samples.
+/// The texels of a row of the image of places before its samples.
 pub(super) const SAMPLES_AT: u32 = 4;
 
-/// What `visibility.comp` is given.
+/// The push constants of `visibility.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Visibility {
-    /// The G-buffer's NDC to light space, by column.
+    /// The matrix from the G-buffer's NDC to light space, by columns.
     pub light_from_ndc: [f32; 16],
-    /// Of the G-buffer.
+    /// The G-buffer's width and height.
     pub extent: [i32; 2],
     /// The depth of a pixel that shows no surface.
     pub background: f32,
@@ -31,9 +31,9 @@ pub struct Visibility {
     pub snap: f32,
     /// The maps' side in texels.
     pub map: i32,
-    /// Samples that a line may have.
+    /// The most samples of a line.
     pub most: i32,
-    /// How many there are.
+    /// The number of lines.
     pub lines: i32,
     /// 1: the mask holds the receivers' roles.
     pub masked: i32,

@@ -1,4 +1,4 @@
-//! The rows that say where a line's samples are, and those that draw what they see.
+//! The passes that place a line's samples, and those that draw what each sample sees.
 
 use super::line::LineContext;
 use crate::graph::{Access, Draw, Graph, Layer, Pass, Push, ResourceId, Target, Use, Work};
@@ -8,42 +8,42 @@ use crate::stages::visibility::grid;
 use bytemuck::{Pod, Zeroable};
 use smallvec::smallvec;
 
-/// Receivers along and across the rows of `mask.comp`'s grid.
+/// The grid of receivers of `mask.comp`: along and across the map's rows of texels.
 pub(super) const RECEIVERS: [u32; 2] = [128, 32];
 
-/// What `spread.comp` is given.
+/// The push constants of `spread.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Spread {
-    /// Samples.
+    /// The number of samples.
     pub count: i32,
 }
 
-/// What `mask.comp` is given.
+/// The push constants of `mask.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Mask {
-    /// Least and largest u at the line's first end, at its last.
+    /// The least and largest u at the line's first end, then at its last.
     pub u_window: [f32; 4],
-    /// Its length, m.
+    /// The line's length, m.
     pub line: f32,
     /// The maps' side in texels.
     pub map: i32,
 }
 
-/// What `place.comp` is given.
+/// The push constants of `place.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Place {
-    /// Asked for, as a share of the line.
+    /// The allowed loss, as a share of the line.
     pub error: f32,
-    /// Samples.
+    /// The most samples.
     pub most: i32,
-    /// 1: as many as may be, evenly.
+    /// 1: `most` samples, evenly spaced.
     pub even: i32,
 }
 
-/// Adds the rows that place a line's samples: evenly, or where its middle tells that light is lost.
+/// Adds the passes that place a line's samples: evenly, or where light seen from its middle would be lost.
 pub(super) fn place(graph: &mut Graph, ctx: &LineContext) {
     let LineContext { resources, settings, inputs, line, .. } = *ctx;
     let layers = &resources.layers;
@@ -105,28 +105,28 @@ pub(super) fn place(graph: &mut Graph, ctx: &LineContext) {
     ));
 }
 
-/// Adds the rows that draw what a sample sees.
+/// Adds the passes that draw the depth images of a sample.
 pub(super) fn look(graph: &mut Graph, ctx: &LineContext, nth: u32) {
     let layers = &ctx.resources.layers;
     graph.push(drawn("linear_light.occluders", layers.occluders, Layer::Front, Some(nth), ctx));
     graph.push(drawn("linear_light.receivers", layers.receivers, Layer::Receivers, Some(nth), ctx));
 }
 
-/// What `view.glsl` is given.
+/// The push constants of `view.glsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Sample {
-    /// By column; each mesh pushes its own.
+    /// The mesh's matrix to the line's clip space, by columns; each mesh has its own.
     pub line_from_mesh: [f32; 16],
-    /// Least and largest u at the line's first end, at its last.
+    /// The least and largest u at the line's first end, then at its last.
     pub u_window: [f32; 4],
-    /// Its length, m.
+    /// The line's length, m.
     pub line: f32,
-    /// Which sample.
+    /// The sample's number.
     pub nth: i32,
 }
 
-/// The row that draws a layer as a sample sees it, or as the line's middle does.
+/// The pass that draws a layer as a sample sees it, or as the line's middle does.
 fn drawn(
     name: &'static str,
     image: ResourceId,
@@ -159,19 +159,19 @@ fn drawn(
     }
 }
 
-/// What `copy_depth.comp` is given.
+/// The push constants of `copy_depth.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct CopyDepth {
     /// 1 over the map's near plane, 1/m.
     pub inv_near: f32,
-    /// Its side in texels.
+    /// The map's side in texels.
     pub map: i32,
-    /// Where it goes.
+    /// The layer to write.
     pub layer: i32,
 }
 
-/// The row that takes what was drawn into a layer.
+/// The pass that copies a sample's depth images into a layer.
 pub(super) fn copy(ctx: &LineContext, layer: u32) -> Pass {
     let layers = &ctx.resources.layers;
     Pass {

@@ -1,4 +1,4 @@
-//! The rows that make channels of a line's samples, segment by segment.
+//! The passes that make the channels of a line's samples, segment by segment.
 
 use super::line::{LineContext, SkinSide};
 use super::settings::Transition;
@@ -9,44 +9,44 @@ use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use smallvec::smallvec;
 
-/// Where in [`super::passes::LineResources::groups`] the grids of a segment's rows are, and of the row that keeps the
-/// sample before.
+/// The byte offsets in [`super::line::LineResources::groups`] of the workgroups of a segment's passes, and of the pass
+/// that keeps the sample before.
 const SEGMENT: u64 = 16;
 
 const SAMPLE_BEFORE: u64 = 32;
 
-/// Adds the rows of the segment before a sample, and what they leave of the sample before it.
+/// Adds the passes of the segment before a sample, and the one that keeps the sample before it.
 pub(super) fn declare(graph: &mut Graph, ctx: &LineContext, nth: u32) {
-    // The first one's neighbour sees what ends towards it. Only then is what the segment before drew into the first
-    // one's other channel done with.
+    // Edges towards the first sample are drawn into its channel first. Only after that is its other channel, from the
+    // segment before, complete and can be read.
     skins(graph, ctx, &ctx.resources.left);
     keep(graph, ctx, nth);
     skins(graph, ctx, &ctx.resources.right);
 }
 
-/// What `start.comp` is given.
+/// The push constants of `start.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Start {
     /// The line's x along the light's x and y; its middle, m.
     pub turn: [f32; 4],
-    /// Least and largest u at its first end, at its last.
+    /// The least and largest u at the line's first end, then at its last.
     pub u_window: [f32; 4],
-    /// Least and largest v.
+    /// The least and largest v.
     pub v_window: [f32; 2],
-    /// Its length, m.
+    /// The line's length, m.
     pub line: f32,
-    /// Its share of the light.
+    /// The line's share of the light.
     pub weight: f32,
-    /// Which sample, and the segment before it.
+    /// The sample's number; the segment before it has the same number.
     pub nth: i32,
-    /// Of the image of places.
+    /// The line's row of the image of places.
     pub row: i32,
-    /// Workgroups along a side of a map.
+    /// Workgroups along a map's side.
     pub groups: i32,
 }
 
-/// Adds the row that says which of the rows of a sample and of the segment before it have anything to do.
+/// Adds the pass that begins a sample and the segment before it, and sets the workgroups of their passes.
 pub(super) fn start(graph: &mut Graph, ctx: &LineContext, nth: u32) {
     let LineContext { resources, settings, inputs, line, row } = *ctx;
     let [c, s] = line.along;
@@ -76,37 +76,37 @@ pub(super) fn start(graph: &mut Graph, ctx: &LineContext, nth: u32) {
     ));
 }
 
-/// What `edges.comp` is given.
+/// The push constants of `edges.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Edges {
-    /// Least and largest u at the line's first end, at its last.
+    /// The least and largest u at the line's first end, then at its last.
     pub u_window: [f32; 4],
     /// The maps' side in texels.
     pub map: i32,
-    /// -1: occluders that end towards -x; 1: towards +x.
+    /// −1: occluders that end towards −x; 1: towards +x.
     pub side: i32,
 }
 
-/// What `skins.vert` and `skins.frag` is given.
+/// The push constants of `skins.vert` and `skins.frag`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Skins {
-    /// Least and largest u at the line's first end, at its last.
+    /// The least and largest u at the line's first end, then at its last.
     pub u_window: [f32; 4],
-    /// Its length, m.
+    /// The line's length, m.
     pub line: f32,
     /// No receiver is further than 1/w_far.
     pub w_far: f32,
     /// The maps' side in texels.
     pub map: i32,
-    /// -1: skins that the last sample saw, as the first one sees them; 1: the other way round.
+    /// −1: skins of the last sample, drawn into the first one's channel; 1: the other way round.
     pub side: i32,
-    /// 1: by the w of what is behind; 0: by that of what lies beside the edge.
+    /// 1: transition by the w of the surface behind the skin; 0: by that of the surface beside the edge.
     pub rational: i32,
 }
 
-/// Adds the rows that find where occluders end as one sample sees them, and draw that into the other's channel.
+/// Adds the passes that find where occluders end in one sample's map, and draw skins into the other's channel.
 fn skins(graph: &mut Graph, ctx: &LineContext, skins: &SkinSide) {
     let LineContext { resources, settings, inputs, line, .. } = *ctx;
     let map = settings.map as i32;
@@ -155,21 +155,21 @@ fn skins(graph: &mut Graph, ctx: &LineContext, skins: &SkinSide) {
     });
 }
 
-/// What `keep.comp` is given.
+/// The push constants of `keep.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Keep {
     /// The maps' side in texels.
     pub map: i32,
-    /// Where the sample's goes.
+    /// The layer to write.
     pub layer: i32,
 }
 
-/// Adds the row that keeps the map of the sample before a sample.
+/// Adds the pass that keeps the map of the sample before a sample.
 pub(super) fn keep(graph: &mut Graph, ctx: &LineContext, nth: u32) {
     let LineContext { resources, settings, inputs, row, .. } = *ctx;
     let layer = row * settings.samples + nth - 1;
-    // Nothing was drawn for a segment before the first sample.
+    // The first sample has no segment before it.
     let (name, before) = match nth {
         1 => ("linear_light.keep_first", resources.left.channel),
         _ => ("linear_light.keep", resources.right.channel),

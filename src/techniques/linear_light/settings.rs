@@ -1,4 +1,4 @@
-//! The knobs.
+//! The knobs of linear lights, and their memory limits.
 
 use crate::Error;
 use crate::graph::STORAGE_BYTES;
@@ -7,54 +7,54 @@ use crate::knob::{Field, Knobs, choice, choices};
 /// The most samples on a line.
 pub(super) const MOST_SAMPLES: u32 = 16;
 
-/// The most bytes that all of the samples' maps may take.
+/// The memory limit of all sample maps, bytes.
 const MOST_BYTES: u64 = 1 << 28;
 
-/// Bytes of the buffer of one side's skins: in the worst case every texel ends an occluder.
+/// The bytes of one side's skin buffer: in the worst case every texel ends an occluder.
 pub(super) fn skin_bytes(map: u32) -> u64 {
     16 * u64::from(map).pow(2)
 }
 
-/// By which receiver a skin goes from hidden to seen.
+/// The receiver whose distance sets how visibility grows behind a skin.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Transition {
-    /// The one that lies beside the occluder's edge: it grows evenly, as published.
+    /// The receiver beside the occluder's edge: visibility grows evenly, as published.
     Linear,
-    /// The one that is behind the skin: exact on receivers of any slope (eq. 1).
+    /// The receiver behind the skin: exact on receivers of any slope (eq. 1).
     #[default]
     Rational,
 }
 
 choices! { Transition: "linear" => Linear, "rational" => Rational }
 
-/// Which lines a light with an area is taken for.
+/// The lines that represent a light with an area.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Across {
-    /// Lines side by side all over it.
+    /// Parallel lines side by side all over the light.
     #[default]
     Stack,
-    /// Its edges, as published for polygons (section 4).
+    /// The light's edges, as published for polygons (section 4).
     Edges,
 }
 
 choices! { Across: "stack" => Stack, "edges" => Edges }
 
-/// The knobs.
+/// The knobs of linear lights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// The side of each sample's maps, texels, 1 to 4096; 256 by default.
     pub map: u32,
     /// The most samples on a line, 2 to 16; 8 by default.
     pub samples: u32,
-    /// The most lines that stand for a light with an area, 1 to 16; 4 by default. A line light is one.
+    /// The most lines that represent a light with an area, 1 to 16; 4 by default. A line light is one.
     pub lines: u32,
-    /// Which lines.
+    /// Which lines represent a light with an area.
     pub across: Across,
-    /// The error asked for, as a share of the light, 0 to 1; 0.01 by default. Samples are added where light is lost
-    /// between others, and lines to a light with an area, until what is missed is no more. 0: as many of both as
-    /// there may be, evenly.
+    /// The requested error, as a share of the light, 0 to 1; 0.01 by default. Samples are added where light is lost
+    /// between others, and lines to a light with an area, until the loss is no larger. 0 uses the most samples and
+    /// lines, evenly spaced.
     pub error: f32,
-    /// How visibility goes from 0 to 1.
+    /// How visibility goes from 0 to 1 behind a skin.
     pub transition: Transition,
 }
 
@@ -87,14 +87,14 @@ impl Knobs for Settings {
             "lines",
             "lines",
             [1, 16],
-            "most lines that stand for a light with an area; a line light is one. Any whole number",
+            "most lines that represent a light with an area; a line light is one. Any whole number",
             |s| s.lines,
             |s, lines| s.lines = lines,
         ),
         choice!(
             "across",
             Across,
-            "which lines stand for a light with an area: lines side by side all over it, or its edges, as published \
+            "which lines represent a light with an area: lines side by side all over it, or its edges, as published \
              for polygons, which is coarse",
             across
         ),
@@ -102,8 +102,8 @@ impl Knobs for Settings {
             "error",
             "visible fraction",
             [0.0, 1.0],
-            "mean error asked for: points are added where light is lost between others, and lines to a light with an \
-             area, until what is missed is no more; 0 uses as many as there may be, evenly",
+            "mean error requested: points are added where light is lost between others, and lines to a light with an \
+             area, until the loss is no larger; 0 uses the most points and lines, evenly spaced",
             |s| s.error,
             |s, error| s.error = error,
         ),
@@ -139,7 +139,7 @@ impl Settings {
         })
     }
 
-    /// Whether samples are evenly spaced, whatever they see.
+    /// Whether samples are evenly spaced, independent of the scene.
     pub fn is_even(&self) -> bool {
         self.error == 0.0 || self.samples == 2
     }

@@ -1,9 +1,9 @@
-//! The CPU twins of `glsl/linear_light/skin.glsl`, in any float type.
+//! The CPU twins of `glsl/linear_light`, in any float type.
 
 use num_traits::Float;
 
-/// Whether an occluder ends between two texels that lie side by side, by their w and those of the ones before and
-/// behind them.
+/// Whether an occluder ends between two neighbouring texels, by the w of the texel before them, their own, and the w of
+/// the texel behind them.
 pub fn is_edge<T: Float>([before, near, seen, behind]: [T; 4]) -> bool {
     let rounding = T::from(1.0e-6).unwrap_or_else(T::epsilon);
     let falls = |a: T, b: T| (a - b).max(T::zero());
@@ -12,12 +12,12 @@ pub fn is_edge<T: Float>([before, near, seen, behind]: [T; 4]) -> bool {
     near - seen > more * least + rounding * near
 }
 
-/// The w where a ray is at `u`: at `ray` for w = 0, and moving by `step` with w.
+/// The w at which a ray crosses `u`: the ray is at `ray` for w = 0 and moves by `step` with w.
 pub fn crossing_of<T: Float>(ray: T, u: T, step: T) -> T {
     (u - ray) / step
 }
 
-/// What a point behind a skin sees of the light between two samples (eq. 1).
+/// The part of the light between two samples that a point behind a skin sees, 0 to 1 (eq. 1).
 pub fn transition<T: Float>(w_edge: T, w_crossing: T, w_receiver: T) -> T {
     if w_edge > w_receiver {
         ((w_edge - w_crossing) / (w_edge - w_receiver)).max(T::zero()).min(T::one())
@@ -26,7 +26,7 @@ pub fn transition<T: Float>(w_edge: T, w_crossing: T, w_receiver: T) -> T {
     }
 }
 
-/// Bits from `low` to `high`, both included, `low` of 0 to 31 and `high` of −1 to 31.
+/// A mask of the bits from `low` to `high`, both included, `low` of 0 to 31 and `high` of −1 to 31.
 pub fn bits(low: i32, high: i32) -> u32 {
     if low > high { 0 } else { (u32::MAX >> (31 - high)) & (u32::MAX << low) }
 }
@@ -54,8 +54,8 @@ pub fn run_at(mask: u32, at: i32) -> u32 {
     bits(low, high)
 }
 
-/// The part of a segment that a receiver sees: `[skin, none]` of its first and of its last sample, and how far either
-/// sees the receiver (`glsl/linear_light/line.glsl`).
+/// The part of a segment that a receiver sees, from `[part by skins, weight without a skin]` of its first and of its
+/// last sample, and how far either sees the receiver (`glsl/linear_light/line.glsl`).
 pub fn part_of_segment<T: Float>(first: [T; 2], last: [T; 2], see: [T; 2]) -> T {
     let half = T::from(0.5).unwrap_or_else(T::nan);
     let clear = |none: T, other: T| none * (T::one() - half * other);

@@ -1,4 +1,4 @@
-//! Which lines a light is, and what their samples see.
+//! The lines that represent a light, and the windows of their samples' maps.
 
 use super::settings::Across;
 use super::settings::Settings;
@@ -8,7 +8,7 @@ use crate::techniques::room::Seen;
 use crate::{Error, RectangleLight};
 use glam::DVec2;
 
-/// How much longer one side must be to be the longer one, as a share: more than rounding makes of equal ones, or the
+/// How much longer a side must be to count as the longer one, as a share: more than the rounding of equal sides, or the
 /// lines of a square would jump from one direction to the other as it turns.
 const LONGER: f64 = 1e-6;
 
@@ -21,14 +21,14 @@ pub(super) fn is_taller(light: &RectangleLight) -> bool {
 /// A segment of the light's plane.
 struct Segment {
     ends: [DVec2; 2],
-    /// Not yet a share.
+    /// The weight relative to the other segments.
     weight: f64,
 }
 
 /// The lines of a light and what their samples see; empty where no occluder is in front of it.
 ///
 /// # Errors
-/// [`Error::Setting`] where an outline takes more lines than there may be.
+/// [`Error::Setting`] where an outline needs more lines than the settings allow.
 pub fn lines(settings: &Settings, seen: &Seen) -> Result<Vec<Line>, Error> {
     let [a, b] = seen.light.half_extents();
     let rectangle = [[-a, -b], [a, -b], [a, b], [-a, b]];
@@ -64,12 +64,12 @@ pub fn lines(settings: &Settings, seen: &Seen) -> Result<Vec<Line>, Error> {
     Ok(turned_each(seen, settings, &edges.collect::<Vec<_>>()).unwrap_or_default())
 }
 
-/// How many lines side by side keep within the error asked for.
+/// The number of lines side by side that keeps within the requested error.
 ///
-/// n lines make n steps of a penumbra that is P = b (w_o - w_r) high in tangents, b being the light's height: off by
-/// 1/4n in the mean over it. Of a shadow of an occluder of height D the penumbrae along two edges are 2P of D + P, so
-/// that the error is P / 2n (D + P), if the occluder is as solid as its box. Measured behind a card of 1 m under a
-/// light of 0.4 m, 4 lines: 1.7 % for 2.1.
+/// n lines make n steps of a penumbra of height P = b (w_o − w_r) in tangents, b being the light's height: an error of
+/// 1/4n in the mean over the penumbra. In the shadow of an occluder of height D the penumbrae along two edges are 2P
+/// of D + P, so the error is P / 2n (D + P), if the occluder is as solid as its box. Measured behind a card of 1 m
+/// under a light of 0.4 m with 4 lines: 1.7 % for a predicted 2.1.
 fn stack_height(settings: &Settings, seen: &Seen) -> u32 {
     if settings.error == 0.0 {
         return settings.lines;
@@ -85,8 +85,8 @@ fn stack_height(settings: &Settings, seen: &Seen) -> u32 {
     wanted.clamp(1.0, f64::from(settings.lines)) as u32
 }
 
-/// What rows of one height, through their middles, have of a polygon from its lowest to its highest corner; each
-/// weighs as much as its length.
+/// Cuts a polygon by `rows` horizontal lines, the middles of strips of equal height from its lowest to its highest
+/// corner; each piece inside weighs as much as its length.
 fn chords(light: &RectangleLight, corners: &[[f64; 2]], rows: u32) -> Vec<Segment> {
     let b = light.half_extents()[1];
     if b == 0.0 {
@@ -115,8 +115,8 @@ fn chords(light: &RectangleLight, corners: &[[f64; 2]], rows: u32) -> Vec<Segmen
     all
 }
 
-/// Lines along x: what bounds tangents bends one way along either side of the light, so that what its ends and its
-/// sides see holds what all of them do.
+/// Lines along x, with windows interpolated between those of the light's ends and sides. Bounds of tangents bend only
+/// one way along the light, so that interpolated windows hold all occluders.
 fn stacked(seen: &Seen, settings: &Settings, segments: &[Segment]) -> Option<Vec<Line>> {
     let [a, b] = seen.light.half_extents();
     let from = |x, y| fit_occluders(&seen.light.moved([x, y]), seen.occluders, None, settings.map);
@@ -144,7 +144,7 @@ fn stacked(seen: &Seen, settings: &Settings, segments: &[Segment]) -> Option<Vec
     Some(segments.iter().map(line_of).collect())
 }
 
-/// Lines that run any way in the light's plane.
+/// Lines in any direction in the light's plane, with windows fitted to each.
 fn turned_each(seen: &Seen, settings: &Settings, segments: &[Segment]) -> Option<Vec<Line>> {
     let total: f64 = segments.iter().map(|s| s.weight).sum();
     let line_of = |s: &Segment| {
@@ -169,14 +169,14 @@ fn turned_each(seen: &Seen, settings: &Settings, segments: &[Segment]) -> Option
     segments.iter().map(line_of).collect()
 }
 
-/// Least and largest u of the receivers as a sample sees them.
+/// The least and largest u of the receivers as a sample sees them.
 fn reach(sample: &RectangleLight, near: f64, seen: &Seen) -> [f64; 2] {
     let found = tangents_of(sample, seen.receivers, near);
     found.map_or([0.0; 2], |(min, max)| [min[0], max[0]])
 }
 
-/// The tangents of occluders from a line's ends, and as far beside them as skins are seen: samples see each other's as
-/// far from their edges as they lie apart (section 3.2), where receivers are.
+/// The windows of the occluders from a line's ends, widened by the width of skins: a sample sees another one's skins as
+/// far from their edges as the two lie apart (section 3.2), as far as there are receivers.
 fn widened(
     ends: [[f64; 2]; 2],
     reach: [[f64; 2]; 2],

@@ -7,19 +7,19 @@
 //!         \|/        once         average        the share of the others
 //!          ● pixel
 //! ```
-//! The light is cut into n cells of one area and no very different sides, whatever n is, with a point at
-//! a random place in each (Cook 1986); a light of another outline than its rectangle's is cut in the same
-//! way. A map is fitted to the occluders as its point sees them, and one
-//! texel is compared with the pixel's plane: no filter, because the mean over the points is one.
+//! The light is cut into n cells of equal area whose sides differ little, whatever n is, with a point at a random
+//! place in each (Cook 1986); a light with another outline than a rectangle is cut by the same rule. Each point's map
+//! is fitted to the occluders that it sees, and one texel is compared with the pixel's plane: no filter, because the
+//! mean over the points is one.
 //!
-//! As n and the maps grow the result is the truth, up to what the G-buffer's depth tells of the pixel's
-//! plane: a pixel's own bent surface, which the bias spares, is spared by less than a texel. Each point
-//! adds a whole number, so the sum is exact and has no order.
+//! As n and the maps grow, the result converges to the exact visible fraction, up to the error of the pixel's plane
+//! from the G-buffer's depth: the bias for a pixel's own bent surface shrinks with the texel. Each point adds a whole
+//! number, so the sum is exact and independent of order.
 //!
-//! The two rows in the middle are the same again for each point, with another view of the meshes and
-//! other push constants; a plan shows them once, with their number.
+//! The two passes in the middle are repeated for each point, with another view of the meshes and other push constants;
+//! a plan shows them once, with their number.
 //!
-//! **Limits.** Shadows band where few points are asked for. A frame draws the occluders n times.
+//! **Limits.** Shadows band with few points. A frame draws the occluders n times.
 
 mod places;
 pub use places::{places, places_within};
@@ -36,14 +36,14 @@ use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use smallvec::smallvec;
 
-/// The knobs.
+/// The knobs of many lights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
     /// The side of each point's map, texels, 1 to 4096; 256 by default.
     pub map: u32,
     /// Points on the light, 1 to 4096; 256 by default.
     pub samples: u32,
-    /// Which random places the points take; 0 puts them into the middle of their cells.
+    /// The seed of the points' random places; 0 puts the points into the middle of their cells.
     pub seed: u32,
 }
 
@@ -110,7 +110,7 @@ impl Room for Settings {
     }
 }
 
-/// What `receivers.comp` is given.
+/// The push constants of `receivers.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Receivers {
@@ -120,19 +120,19 @@ pub struct Receivers {
     pub extent: [i32; 2],
     /// The depth of a pixel that shows no surface.
     pub background: f32,
-    /// 1 where the mask is there.
+    /// 1 where the G-buffer has a mask of roles.
     pub masked: i32,
 }
 
-/// What `add_point.comp` is given.
+/// The push constants of `add_point.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct AddPoint {
-    /// The point on the light, m from its centre.
+    /// The point's place on the light, m from its centre.
     pub point: [f32; 2],
-    /// Map texels a unit of u and v, as the point has them.
+    /// Map texels a unit of u and v, in the point's map.
     pub texels_per_uv: [f32; 2],
-    /// Texel coordinates of u = v = 0.
+    /// The texel coordinates of u = v = 0.
     pub first: [f32; 2],
     /// The G-buffer's width and height.
     pub extent: [i32; 2],
@@ -144,18 +144,18 @@ pub struct AddPoint {
     pub map: i32,
 }
 
-/// What `average.comp` is given.
+/// The push constants of `average.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Average {
     /// The G-buffer's width and height.
     pub extent: [i32; 2],
-    /// How many points there were.
+    /// The number of points.
     pub points: f32,
 }
 
-/// The points of a frame, each with a map of `side` texels fitted to the occluders; where a point sees
-/// none of them, as its maps have it that see nothing.
+/// The points of a frame, each with a map of `side` texels fitted to the occluders. A point that sees none of them
+/// gets a view in which nothing is visible.
 fn points(settings: &Settings, seen: &Seen) -> Vec<LightPoint> {
     let Seen { light, outline, occluders, centre, .. } = *seen;
     let Settings { samples, seed, .. } = *settings;
@@ -204,7 +204,7 @@ fn declare(graph: &mut Graph, points: &[LightPoint], inputs: &PassInputs) {
         ],
         need,
     ));
-    // A frame without shadows has no points; its rows say so once.
+    // A frame without shadows has no points; it declares its passes once, for the plan to name them.
     let none = [LightPoint { at: [0.0; 2], view: *inputs.occluders }];
     let points = if points.is_empty() { &none } else { points };
     for (nth, point) in points.iter().enumerate() {

@@ -1,9 +1,9 @@
-//! Where the points lie on the light.
+//! The places of the points on the light.
 //!
 //! ```text
 //!    ┌──────────────┐        ___________
 //!    │ ·  │·   │  · │       /· │ · /      rows of as many cells as their share of the area
-//!    ├────┴─┬──┴────┤      /──┬┴──/       says, cut across where the cells' areas are alike:
+//!    ├────┴─┬──┴────┤      /──┬┴──/       cut across so that all cells have one area:
 //!    │   ·  │    ·  │     / · │ ·│        a rectangle, or any outline
 //!    └──────┴───────┘     ‾‾‾‾‾‾‾‾
 //! ```
@@ -16,17 +16,17 @@ fn uniform(seed: u32, point: u32, axis: u32) -> f64 {
     f64::from(h ^ (h >> 16)) / 2f64.powi(32)
 }
 
-/// A cell of the light: where it is among all, and where in it its point is to be.
+/// A cell of the light: its place among all cells, and its point's place in it.
 struct Cell {
-    /// The points up to the row's first one, and up to the next row's.
+    /// The number of points before the row's first one, and before the next row's.
     row: [u32; 2],
-    /// Which point it is, of all.
+    /// The point's number among all.
     point: u32,
     /// The point's place in the cell, as shares of the area: across the row, and along it.
     at: [f64; 2],
 }
 
-/// The n cells of a light, row by row, in as many rows as are asked for where there are as many cells.
+/// The n cells of a light, row by row, in the given number of rows, at most n.
 fn cells(n: u32, rows: f64, seed: u32) -> impl Iterator<Item = Cell> {
     let rows = rows.round().clamp(1.0, f64::from(n.max(1))) as u32;
     let start = move |row: u32| (u64::from(row) * u64::from(n) / u64::from(rows)) as u32;
@@ -39,8 +39,8 @@ fn cells(n: u32, rows: f64, seed: u32) -> impl Iterator<Item = Cell> {
     })
 }
 
-/// A point in each of n cells of one area of a light with these half-extents, metres from its centre:
-/// rows of cells, as many and as high as makes the cells square where they can be.
+/// The places of n points, one in each of n cells of equal area, on a light with these half-extents; metres from its
+/// centre. The number of rows makes the cells as square as they can be.
 pub fn places(half: [f64; 2], n: u32, seed: u32) -> Vec<[f64; 2]> {
     let rows = (f64::from(n) * half[1] / half[0]).sqrt();
     cells(n, rows, seed)
@@ -53,16 +53,16 @@ pub fn places(half: [f64; 2], n: u32, seed: u32) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// The same of a light with this outline: a simple polygon, counter-clockwise, x and y in metres from the
-/// light's centre. Of a rectangle they are the same places but for rounding.
+/// The places of n points on a light with this outline: a simple polygon, counter-clockwise, x and y in metres from the
+/// light's centre. A rectangle's outline gives the places of [`places`], up to rounding.
 ///
-/// A row of a polygon that is not convex may be in several parts, and a cell then in two of them.
+/// In a polygon that is not convex a row may have several parts, and a cell may lie in two of them.
 pub fn places_within(outline: &[[f64; 2]], n: u32, seed: u32) -> Vec<[f64; 2]> {
     let swapped: Vec<[f64; 2]> = outline.iter().rev().map(|&[x, y]| [y, x]).collect();
     let up = Profile::new(&swapped);
     let (area, [low, high]) = (up.area(), up.reach());
     let rows = ((high - low) * (f64::from(n) / area).sqrt()).max(1.0);
-    // A row's strip of the polygon is the same for all of its cells.
+    // All cells of a row share its strip of the polygon.
     let mut strip: Option<([u32; 2], [f64; 2], Profile)> = None;
     cells(n, rows, seed)
         .map(|Cell { row, point, at: [x, y] }| {
@@ -82,20 +82,20 @@ pub fn places_within(outline: &[[f64; 2]], n: u32, seed: u32) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// The last place in a slab of width 1 that counts as in it: at its very end a polygon may be over.
+/// The last place within a slab of width 1; at its very end a polygon may be over.
 const INNER: f64 = 1.0 - 1e-12;
 
-/// How much of a polygon lies left of an x: between two neighbouring corners' x its height is linear.
+/// The area of a polygon to the left of an x: between the x of neighbouring corners the polygon's height is linear.
 struct Profile {
     slabs: Vec<Slab>,
 }
 
 struct Slab {
-    /// Least and largest x.
+    /// The least and largest x of the slab.
     x: [f64; 2],
-    /// The polygon's height there, all parts together.
+    /// The polygon's height at both, all parts together.
     height: [f64; 2],
-    /// The area left of it.
+    /// The polygon's area to the left of the slab.
     before: f64,
 }
 
@@ -106,8 +106,7 @@ impl Slab {
 }
 
 impl Profile {
-    /// Of a polygon that runs counter-clockwise; edges of it that lie on each other and run opposite ways
-    /// count as none.
+    /// The profile of a polygon that runs counter-clockwise; edges that lie on each other and run opposite ways cancel.
     fn new(polygon: &[[f64; 2]]) -> Self {
         let mut xs: Vec<f64> = polygon.iter().map(|p| p[0]).collect();
         xs.sort_by(f64::total_cmp);
@@ -123,7 +122,7 @@ impl Profile {
                 }
             }
             let before = slabs.last().map_or(0.0, |last| last.before + last.area());
-            // Rounding may leave less than nothing of it.
+            // Rounding may make a height negative.
             slabs.push(Slab { x: ends, height: height.map(|h: f64| h.max(0.0)), before });
         }
         Self { slabs }
@@ -133,7 +132,7 @@ impl Profile {
         self.slabs.last().map_or(0.0, |last| last.before + last.area())
     }
 
-    /// Least and largest x.
+    /// The least and largest x of the polygon.
     fn reach(&self) -> [f64; 2] {
         match (self.slabs.first(), self.slabs.last()) {
             (Some(first), Some(last)) => [first.x[0], last.x[1]],
@@ -141,7 +140,7 @@ impl Profile {
         }
     }
 
-    /// The x that a share of the area lies left of.
+    /// The x that has a given share of the area to its left.
     fn at(&self, share: f64) -> f64 {
         if share >= 1.0 {
             return self.reach()[1];
@@ -162,7 +161,7 @@ fn edges(polygon: &[[f64; 2]]) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
     polygon.iter().zip(polygon.iter().cycle().skip(1)).map(|(&a, &b)| [a, b])
 }
 
-/// The y of an edge at an x; at its ends theirs, to the bit.
+/// The y of an edge at an x; at the edge's ends it is exactly theirs.
 fn on_edge(left: [f64; 2], right: [f64; 2], x: f64) -> f64 {
     if x == right[0] {
         return right[1];
@@ -170,8 +169,8 @@ fn on_edge(left: [f64; 2], right: [f64; 2], x: f64) -> f64 {
     left[1] + (right[1] - left[1]) * ((x - left[0]) / (right[0] - left[0]))
 }
 
-/// What of a polygon has an x below a limit, or for a `side` of −1 above it (Sutherland and Hodgman 1974). Of
-/// one that is not convex the parts are joined by edges along the limit, there and back.
+/// The part of a polygon with an x below a limit, or for a `side` of −1 above it (Sutherland and Hodgman 1974). The
+/// parts of a polygon that is not convex are joined by edges along the limit, there and back.
 fn below(polygon: &[[f64; 2]], limit: f64, side: f64) -> Vec<[f64; 2]> {
     let inside = |p: [f64; 2]| side * (limit - p[0]) >= 0.0;
     let mut kept = Vec::with_capacity(2 * polygon.len());
@@ -187,7 +186,7 @@ fn below(polygon: &[[f64; 2]], limit: f64, side: f64) -> Vec<[f64; 2]> {
     kept
 }
 
-/// The y above a share of what a polygon has at an x between two heights.
+/// The y below which a share of the polygon's section at an x lies, between two heights.
 fn on_section(polygon: &[[f64; 2]], x: f64, [bottom, top]: [f64; 2], share: f64) -> f64 {
     let mut crossed: Vec<f64> = edges(polygon)
         .map(|[a, b]| if a[0] < b[0] { [a, b] } else { [b, a] })

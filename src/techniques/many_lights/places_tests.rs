@@ -77,8 +77,8 @@ fn centroid(polygon: &[[f64; 2]]) -> (f64, [f64; 2]) {
     (sums[0], [sums[1] / sums[0], sums[2] / sums[0]])
 }
 
-/// Points lie inside, and their mean is the centroid: each is off by no more than its cell, and those of n
-/// cells by √n times less than one of them, since they are drawn one by one.
+/// Points lie inside, and their mean is the centroid: each is off by no more than its cell, and the mean of n by √n
+/// times less than one of them, since they are drawn one by one.
 #[test]
 fn points_of_an_outline_lie_in_it_and_round_its_centroid() {
     for outline in outlines() {
@@ -132,7 +132,7 @@ fn points_of_an_outline_are_spread_evenly() {
     }
 }
 
-/// The cut of a rectangle's outline is that of the rectangle.
+/// A rectangle's outline is cut into the rectangle's own cells.
 #[test]
 fn an_outline_that_is_the_rectangle_has_its_points() {
     for [a, b] in [[0.5, 0.5], [2.0, 0.25], [0.1, 0.4]] {

@@ -1,4 +1,4 @@
-//! The rows over the pixels: at all of them, or at those of tiles that meet something.
+//! The passes over the pixels: at all of them, or at those of tiles that may meet an occluder.
 
 use super::settings::{Combine, Prefilter, Settings};
 use crate::graph::{Access, Graph, Owner, Pass, Push, ResourceId, Use};
@@ -13,17 +13,17 @@ use smallvec::smallvec;
 
 const NAME: &str = "occlusion_textures.visibility";
 
-/// What the pixels are told by.
+/// The slices as the pixels read them.
 pub(super) struct PrefilteredSlices {
-    /// Where slices begin and end.
+    /// The distances at which slices begin and end.
     pub placement: ResourceId,
-    /// A bit a slice.
+    /// The mask of a bit a slice for each texel.
     pub mask: ResourceId,
-    /// Its sums or means.
+    /// The slices' summed-area tables, or levels of means.
     pub means: ResourceId,
 }
 
-/// Adds the rows that make `visibility` of what is filtered.
+/// Adds the passes that write the visible fraction from the prefiltered slices.
 pub(super) fn declare_pixels(
     graph: &mut Graph,
     slices: &PrefilteredSlices,
@@ -55,7 +55,7 @@ pub(super) fn declare_pixels(
         graph.push(Pass::compute(NAME, shader, groups, push, uses, inputs.need));
         return;
     }
-    // Of levels no mean tells whether there is nothing or little: squares of the mask do.
+    // Means from levels do not distinguish an empty window from one with little in it; squares of the mask do.
     let blocking = if sums { slices.means } else { squares(graph, slices.mask, inputs) };
     let (sort, shader) = match (sums, settings.is_correlated()) {
         (true, false) => (shaders::SLICE_TILES_SAT, shaders::LISTED_SAT),
@@ -75,7 +75,7 @@ pub(super) fn declare_pixels(
     tiles.run(graph, (NAME, shader), push, uses, 6, inputs.need);
 }
 
-/// What `squares.comp` is given.
+/// The push constants of `squares.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Squares {
@@ -83,7 +83,7 @@ pub struct Squares {
     pub map: i32,
 }
 
-/// Adds the row that says what blocks in squares of the mask.
+/// Adds the pass that finds the slices that block in each square of the mask.
 fn squares(graph: &mut Graph, mask: ResourceId, inputs: &PassInputs) -> ResourceId {
     let side = inputs.occluders.side;
     let row = nodes_a_row(side);
@@ -103,11 +103,11 @@ fn squares(graph: &mut Graph, mask: ResourceId, inputs: &PassInputs) -> Resource
     squares
 }
 
-/// What `visibility_*.comp`, `tiles_*.comp` and `listed_*.comp` is given.
+/// The push constants of `visibility_*.comp`, `tiles_*.comp` and `listed_*.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Visibility {
-    /// The G-buffer's NDC to light space, by column.
+    /// The matrix from the G-buffer's NDC to light space, by columns.
     pub light_from_ndc: [f32; 16],
     /// Map texels a unit of u and v.
     pub texels_per_uv: [f32; 2],
@@ -115,7 +115,7 @@ pub struct Visibility {
     pub first: [f32; 2],
     /// Half the light's width and height, m.
     pub half_light: [f32; 2],
-    /// Of the G-buffer.
+    /// The G-buffer's width and height.
     pub extent: [i32; 2],
     /// The depth of a pixel that shows no surface.
     pub background: f32,
@@ -123,7 +123,7 @@ pub struct Visibility {
     pub eye: f32,
     /// The map's side in texels.
     pub map: i32,
-    /// Slices and what is switched on, see `visibility.glsl`.
+    /// The number of slices and what is switched on, see `slices.glsl`.
     pub flags: i32,
 }
 

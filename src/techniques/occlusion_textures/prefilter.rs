@@ -10,17 +10,17 @@ use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use smallvec::smallvec;
 
-/// What `sum_rows.comp` is given.
+/// The push constants of `sum_rows.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct SumRows {
     /// The map's side in texels.
     pub map: i32,
-    /// 1: a tile a slice; 0: a tile four slices.
+    /// 1: each tile holds a slice; 0: each tile holds four slices.
     pub correlated: i32,
 }
 
-/// What `sum_columns.comp` is given.
+/// The push constants of `sum_columns.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct SumColumns {
@@ -61,27 +61,27 @@ pub(super) fn declare_sums(
     sums
 }
 
-/// What `first_level.comp` is given.
+/// The push constants of `first_level.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct FirstLevel {
     /// The map's side in texels.
     pub map: i32,
-    /// Of levels.
+    /// The kind of the levels' windows.
     pub kind: i32,
-    /// 1: a tile a slice; 0: a tile four slices.
+    /// 1: each tile holds a slice; 0: each tile holds four slices.
     pub correlated: i32,
 }
 
-/// What `next_level.comp` is given.
+/// The push constants of `next_level.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct NextLevel {
     /// The map's side in texels.
     pub map: i32,
-    /// Of levels.
+    /// The kind of the levels' windows.
     pub kind: i32,
-    /// The one to make.
+    /// The level to make.
     pub level: i32,
 }
 
@@ -96,7 +96,7 @@ pub(super) fn declare_levels(
     let levels = Levels { map: side, kind: settings.level_kind() };
     let format = vk::Format::R16G16B16A16_SFLOAT;
     let name = "occlusion_textures.filtered";
-    // The map itself is in the mask.
+    // The mask holds level 0.
     let image = graph.image_array(name, format, [side; 2], tiles * (levels.layers() - 1));
     let kind = levels.kind.code();
     let groups = |level| {

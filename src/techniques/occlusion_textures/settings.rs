@@ -4,12 +4,12 @@ use crate::Error;
 use crate::knob::{Field, Knobs, choice, choices};
 use crate::stages::nbuffer::{self, Levels};
 
-/// How means of rectangles are made ready.
+/// The prefilter that gives means of rectangles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Prefilter {
-    /// Means of 2^k × 2^k texels side by side (Williams 1983).
+    /// Levels of means of 2^k × 2^k texels side by side (Williams 1983).
     Mip,
-    /// Means of 2^k × 2^k texels beginning at every texel (Décoret 2005).
+    /// Levels of means of 2^k × 2^k texels beginning at every texel (Décoret 2005).
     NBuffer,
     /// Summed-area tables (Crow 1984) in whole numbers.
     #[default]
@@ -18,50 +18,50 @@ pub enum Prefilter {
 
 choices! { Prefilter: "mip" => Mip, "n-buffer" => NBuffer, "sat" => Sat }
 
-/// Where slices begin and end.
+/// The placement of the slices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Placement {
-    /// All are as thick (section 3.4).
+    /// All slices have one thickness (Eisemann and Décoret 2008 section 3.4).
     Uniform,
-    /// Thin where there is much in them.
+    /// Slices are thin where there are many faces.
     #[default]
     Fitted,
 }
 
 choices! { Placement: "uniform" => Uniform, "fitted" => Fitted }
 
-/// What slices hide together.
+/// The combination of the parts of the light that slices hide.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Combine {
-    /// As if they knew nothing of each other (eq. 5).
+    /// The product of what slices let through, for independent slices (eq. 5).
     Product,
-    /// As if none lay behind another.
+    /// The sum of what slices hide, for disjoint slices.
     Sum,
-    /// As if all did.
+    /// The maximum of what slices hide, for nested slices.
     Max,
-    /// By what they have in common in the kernel's window.
+    /// By the slices' measured overlap in the kernel's window.
     #[default]
     Correlated,
 }
 
 choices! { Combine: "product" => Product, "sum" => Sum, "max" => Max, "correlated" => Correlated }
 
-/// The knobs.
+/// The knobs of occlusion textures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
     /// The side of the slices, texels, 1 to 4096; 256 by default.
     pub map: u32,
-    /// How many slices, 4 to 32; 16 by default.
+    /// The number of slices, 4 to 32; 16 by default.
     pub slices: u32,
-    /// Where slices begin and end.
+    /// The placement of the slices.
     pub placement: Placement,
-    /// How slices are filtered.
+    /// The prefilter of the slices.
     pub prefilter: Prefilter,
-    /// How slices are combined.
+    /// The combination of the slices.
     pub combine: Combine,
-    /// Whether a slice blocks in the next one too (section 3.4); off by default.
+    /// Whether a slice also blocks in the next one (section 3.4); off by default.
     pub fill: bool,
-    /// Whether tiles of pixels whose kernels meet nothing are skipped; on by default.
+    /// Whether tiles of pixels whose kernels meet no occluder are skipped; on by default.
     pub classify: bool,
 }
 
@@ -79,13 +79,13 @@ impl Default for Settings {
     }
 }
 
-/// The width of the image of filtered tiles: the largest that every device has (maxImageDimension2D).
+/// The width of the image of prefiltered tiles: the largest that every device has (maxImageDimension2D).
 pub(super) const IMAGE_WIDTH: u32 = 4096;
 
-/// Layers of an image that every device has (maxImageArrayLayers).
+/// The layers of an image that every device has (maxImageArrayLayers).
 const MOST_LAYERS: u64 = 256;
 
-/// Bytes of what is filtered, at most: as much as a summed-area table of 4096² has.
+/// The memory limit of prefiltered slices, bytes: that of a summed-area table of 4096².
 const MOST_BYTES: u64 = 1 << 28;
 
 impl Knobs for Settings {
@@ -148,12 +148,12 @@ impl Settings {
         })
     }
 
-    /// Whether slices are combined by what they have in common.
+    /// Whether slices are combined by their measured overlap.
     pub fn is_correlated(&self) -> bool {
         self.combine == Combine::Correlated
     }
 
-    /// What is filtered side by side: four slices each; correlated two, or one of levels.
+    /// The number of tiles to prefilter: four slices in each; of correlated slices two, or one for levels.
     pub fn tiles(&self) -> u32 {
         let each = match (self.is_correlated(), self.prefilter) {
             (false, _) => 4,
@@ -163,18 +163,18 @@ impl Settings {
         self.slices.div_ceil(each)
     }
 
-    /// Whether slices are placed by what there is.
+    /// Whether slices are placed by a histogram of the faces.
     pub fn is_fitted(&self) -> bool {
         self.placement == Placement::Fitted
     }
 
-    /// The windows of [`Prefilter::Mip`] and [`Prefilter::NBuffer`].
+    /// The kind of windows of [`Prefilter::Mip`] and [`Prefilter::NBuffer`].
     pub(super) fn level_kind(&self) -> nbuffer::Kind {
         if self.prefilter == Prefilter::Mip { nbuffer::Kind::Mip } else { nbuffer::Kind::NBuffer }
     }
 
-    /// Whether what is filtered of a map of `map` texels a side is an image that every device has: of
-    /// 4096 rows as long for summed-area tables, of 256 layers for levels, and of no more bytes.
+    /// Whether the prefiltered slices of a map of `map` texels a side fit an image that every device has: 4096 texels
+    /// a side for summed-area tables, 256 layers for levels, and the memory limit.
     fn fits(&self, map: u32) -> bool {
         let tiles = u64::from(self.tiles());
         let texels = u64::from(map) * u64::from(map) * tiles;

@@ -1,4 +1,4 @@
-//! Slices: where they begin and end, the faces drawn into them, and a mask of one bit a slice.
+//! Slices: their placement, the faces drawn into them, and a mask of one bit a slice.
 
 use super::settings::Settings;
 use crate::graph::{
@@ -12,37 +12,37 @@ use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use smallvec::{SmallVec, smallvec};
 
-/// Bins of distances, as in `slices.glsl`.
+/// The number of bins of distances (`slices.glsl`).
 const BINS: u32 = 960;
 
-/// Bins and planes of slices.
+/// The size of the placement's image: bins and planes of slices in one row of texels.
 const PLACEMENT: [u32; 2] = [1024, 1];
 
-/// The most texels a side of the layers that the histogram is made of.
+/// The most texels a side of the layers from which the histogram is made.
 const HISTOGRAM_MAP: u32 = 128;
 
-/// Slices that one draw counts.
+/// The number of slices that one draw counts.
 const SLICES_A_DRAW: u32 = 4 * COLOR_ATTACHMENTS as u32;
 
-/// The layers that the histogram is made of: few texels tell as much.
+/// The layers from which the histogram is made; few texels are enough.
 pub(super) fn histogram_layers(settings: &Settings, map: u32) -> Wanted {
     let back = settings.is_fitted();
     Wanted { map: map.min(HISTOGRAM_MAP), back, inner: false, receiver_map: None }
 }
 
-/// What `place.comp` and `place_fitted.comp` is given.
+/// The push constants of `place.comp` and `place_fitted.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Place {
-    /// Of the occluders from the light's plane, m.
+    /// The distance of the nearest occluder from the light's plane, m.
     pub near: f32,
-    /// Of the furthest of them.
+    /// The distance of the furthest occluder from the light's plane, m.
     pub far: f32,
     /// How far behind the light the projection point is, m.
     pub eye: f32,
-    /// Where in a slice its texture lies: 0 above, 1 below.
+    /// The place of a slice's texture: 0 at its top, 1 at its bottom.
     pub plane: f32,
-    /// How many.
+    /// The number of slices.
     pub slices: i32,
 }
 
@@ -60,7 +60,7 @@ pub(super) fn declare_placement(
         near: (inputs.occluders.near - behind) as f32,
         far: (inputs.occluders.far - behind) as f32,
         eye: behind as f32,
-        // Published at the bottom; in the middle the error is smaller.
+        // The published place is the bottom; in the middle the error is smaller.
         plane: if settings.is_correlated() { 0.5 } else { 1.0 },
         slices: settings.slices as i32,
     });
@@ -77,7 +77,7 @@ pub(super) fn declare_placement(
     placement
 }
 
-/// What `histogram.comp` is given.
+/// The push constants of `histogram.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Histogram {
@@ -85,7 +85,7 @@ pub struct Histogram {
     pub map: i32,
     /// Distance of the near plane from the projection point, m.
     pub near: f32,
-    /// Of the occluders, m.
+    /// The distance of the furthest occluder from the nearest, m.
     pub span: f32,
 }
 
@@ -124,7 +124,7 @@ fn declare_histogram(
     histogram
 }
 
-/// The names of what is drawn with some faces: rows, images.
+/// The names of the passes and images of faces drawn into slices.
 struct Drawn {
     layer: Layer,
     passes: [&'static str; 2],
@@ -176,10 +176,10 @@ const BACKS: Drawn = Drawn {
     ],
 };
 
-/// What is drawn: four slices each.
+/// The images that faces are drawn into: four slices each.
 type Slabs = SmallVec<[ResourceId; 8]>;
 
-/// Adds the rows that count faces; four slices an image.
+/// Adds the passes that count faces; four slices an image.
 fn draw(
     graph: &mut Graph,
     drawn: &Drawn,
@@ -218,21 +218,21 @@ fn draw(
     images
 }
 
-/// What `mask.comp` is given.
+/// The push constants of `mask.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Mask {
     /// The map's side in texels.
     pub map: i32,
-    /// How many.
+    /// The number of slices.
     pub slices: i32,
-    /// 1: what lies between front and back faces blocks.
+    /// 1: matter between front and back faces blocks.
     pub solid: i32,
-    /// 1: a slice blocks in the next one too.
+    /// 1: a slice also blocks in the next one.
     pub fill: i32,
 }
 
-/// Adds the rows that make one number a texel, a bit a slice.
+/// Adds the passes that make the mask: one number a texel, a bit a slice.
 pub(super) fn declare_mask(
     graph: &mut Graph,
     placement: ResourceId,
@@ -251,7 +251,7 @@ pub(super) fn declare_mask(
     let mask = graph.image("occlusion_textures.mask", format, [side; 2], Owner::Transient);
     let mut uses = smallvec![Use::bound(0, mask, Access::ImageWrite)];
     for (images, first) in [(&fronts, 1), (&backs, 9)] {
-        // What there is no slice for is not looked at.
+        // An image without a slice is bound and not read.
         let bound = |i| images.get(i).or(images.first()).copied();
         uses.extend(
             (0..8).filter_map(|i| {

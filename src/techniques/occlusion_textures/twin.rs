@@ -1,5 +1,5 @@
-//! The CPU twins of `glsl/occlusion_textures/`, in any float type, and the published formulas whole, in f64,
-//! by a way that shares nothing with the device's: texels are visited one by one.
+//! The CPU twins of `glsl/occlusion_textures/`, in any float type, and the published formulas in f64, by a method that
+//! shares nothing with the device's: texels are visited one by one.
 
 use super::settings::Combine;
 use crate::RectangleLight;
@@ -7,10 +7,10 @@ use crate::stages::depth_layers::{Eye, MapView};
 use glam::{DVec2, DVec3};
 use num_traits::Float;
 
-/// Bins of distances, as in `slices.glsl`.
+/// The number of bins of distances (`slices.glsl`).
 pub const BINS: i32 = 960;
 
-/// The bin of what a projection from behind the light stores.
+/// The bin of a depth that a projection from behind the light stores.
 pub fn bin_of<T: Float>(stored: T, near: T, span: T) -> i32 {
     let bins = T::from(BINS).unwrap_or_else(T::one);
     let t = (near / stored - near) / span * bins;
@@ -39,8 +39,8 @@ pub fn kernel_of<T: Float>(
     [x0, y0, x1, y1]
 }
 
-/// A rectangle that holds the kernels of a tile's points in a plane, by `[least t, largest t]` of where they are seen
-/// from the light's centre, in texels from that of u = v = 0, and their least w (`slices.glsl`).
+/// A rectangle that holds the kernels of a tile's points in a plane. `[least t, largest t]` are the points' places
+/// seen from the light's centre, in texels from u = v = 0; the last argument is their least w (`slices.glsl`).
 pub fn tile_kernel_of<T: Float>(
     [per_x, per_y, first_x, first_y, eye]: [T; 5],
     [min_x, min_y, max_x, max_y]: [T; 4],
@@ -62,13 +62,13 @@ pub fn tile_kernel_of<T: Float>(
     [x0, y0, x1, y1]
 }
 
-/// How much of a slice counts for a point at distance `z` (section 3.4).
+/// The share of a slice that counts for a point at distance `z` (section 3.4).
 pub fn slice_weight<T: Float>(z: T, upper: T, lower: T, blocks: bool) -> T {
     let begins = if blocks { lower } else { upper };
     ((z - begins) / (lower - upper)).max(T::zero()).min(T::one())
 }
 
-/// What is hidden behind one more slice that hides `more` for itself, as the papers have it.
+/// The hidden part of the light behind one more slice that hides `more` by itself, by the published combinations.
 pub fn hidden_with<T: Float>(combine: Combine, hidden: T, more: T) -> T {
     match combine {
         Combine::Sum => (hidden + more).min(T::one()),
@@ -79,12 +79,12 @@ pub fn hidden_with<T: Float>(combine: Combine, hidden: T, more: T) -> T {
     }
 }
 
-/// The same by what the slice has in common with those above it: `window` is its share, theirs, and that of
-/// both; `before` the share of the slice right above.
+/// The hidden part of the light behind one more slice, by its overlap with the slices above it: the window holds its
+/// share, theirs, and that of both; `before` is the share of the slice right above.
 pub fn hidden_with_correlated<T: Float>(hidden: T, before: T, [own, covered, both]: [T; 3]) -> T {
     let few = T::from(1.0e-3).unwrap_or_else(T::epsilon);
     let (zero, one) = (T::zero(), T::one());
-    // The shares that two sets have in common at most and at least.
+    // The shares that two sets can have in common, at most and at least.
     let most = |a: T, b: T| a.min(b);
     let least = |a: T, b: T| (a + b - one).max(zero);
     let independent = own * covered;
@@ -100,8 +100,8 @@ pub fn hidden_with_correlated<T: Float>(hidden: T, before: T, [own, covered, bot
     (hidden + own - common).max(zero).min(one)
 }
 
-/// The slices that block a column, with a bit each: `faces` counts those that look at the light and those
-/// that look away from it, slice by slice.
+/// The slices that block a column, with a bit each: `faces` counts, slice by slice, the faces that look at the light
+/// and those that look away from it.
 pub fn solid_of(faces: &[(u32, u32)]) -> u32 {
     let mut depth = 0i64;
     let (mut there, mut inside) = (0u32, 0u32);
@@ -120,8 +120,8 @@ pub fn solid_of(faces: &[(u32, u32)]) -> u32 {
     if depth == 0 { there | inside } else { there }
 }
 
-/// What a tile of a summed-area table holds of a texel: four slices; or a pair of them, and whether any slice
-/// blocks above the pair, above its second, and above what follows it.
+/// The numbers that a tile of a summed-area table holds for a texel: four slices; or a pair of them, and whether any
+/// slice blocks above the pair, above its second, and above the slice that follows the pair.
 pub fn tile_sums(mask: u32, tile: u32, correlated: bool) -> [u32; 5] {
     let blocks = |slice: u32| mask >> slice & 1 == 1;
     let bits = if correlated {
@@ -141,8 +141,8 @@ pub fn tile_sums(mask: u32, tile: u32, correlated: bool) -> [u32; 5] {
     bits.map(u32::from)
 }
 
-/// What a tile of levels holds of a texel: four slices; or of one slice whether it blocks, whether any above it
-/// does, and both.
+/// The numbers that a tile of levels holds for a texel: four slices; or for one slice whether it blocks, whether any
+/// slice above it does, and whether both do.
 pub fn tile_means(mask: u32, tile: u32, correlated: bool) -> [u32; 4] {
     if !correlated {
         let [a, b, c, d, _] = tile_sums(mask, tile, false);
@@ -153,7 +153,7 @@ pub fn tile_means(mask: u32, tile: u32, correlated: bool) -> [u32; 4] {
     [own, above, own & above, 0]
 }
 
-/// A texel of a summed-area table: four sums of 25 bits, and a fifth in what they leave.
+/// A texel of a summed-area table: four sums of 25 bits, and a fifth sum in the bits that they leave.
 pub fn packed([a, b, c, d, e]: [u32; 5]) -> [u32; 4] {
     let all = [a, b, c, d].iter().rev().fold(0u128, |all, &x| all << 32 | u128::from(x));
     let all = (0..4).fold(all, |all, i| all | u128::from(e >> (7 * i) & 127) << (32 * i + 25));
@@ -204,7 +204,7 @@ impl Published {
         (at(slice), at(slice + 1))
     }
 
-    /// Where a point lies in the map, in texels.
+    /// The place of a point in the map, in texels.
     fn texel_of(&self, p: DVec3) -> DVec2 {
         let (per, first) = (self.view.texels_per_uv(), self.view.first());
         DVec2::from_array([0, 1].map(|i| [p.x, p.y][i] / (p.z + self.eye) * per[i] + first[i]))
@@ -228,7 +228,7 @@ impl Published {
                 if weights.iter().any(|w| *w < 0.0) {
                     continue;
                 }
-                // In the map 1/distance is linear.
+                // The map interpolates 1/distance linearly.
                 let w: f64 = weights.iter().zip(triangle).map(|(w, p)| w / (p.z + self.eye)).sum();
                 let depth = (1.0 / w - self.view.near) / (self.view.far - self.view.near);
                 let slice = (depth * f64::from(self.slices)).floor();
@@ -241,7 +241,7 @@ impl Published {
         }
     }
 
-    /// The mean of a slice over a rectangle of texels, by summing them up.
+    /// The mean of a slice over a rectangle, summed texel by texel.
     fn mean(&self, slice: u32, lo: DVec2, hi: DVec2) -> f64 {
         let side = f64::from(self.view.side);
         let part = |i: f64, lo: f64, hi: f64| ((i + 1.0).min(hi) - i.max(lo)).max(0.0);
@@ -263,12 +263,12 @@ impl Published {
         let mut hidden = 0.0;
         for slice in 0..self.slices {
             let (upper, lower) = self.planes(slice);
-            // Section 3.4: the own slice does not count, the one above it fades in.
+            // The point's own slice does not count, and the one above it fades in (section 3.4).
             let weight = ((p.z - lower) / (lower - upper)).clamp(0.0, 1.0);
             if weight == 0.0 {
                 continue;
             }
-            // The rays from the light's rim, where they cross the plane.
+            // The rays from the light's rim cross the plane here.
             let crossing = |light: DVec2| {
                 let q = p + (light.extend(0.0) - p) * ((p.z - lower) / p.z);
                 self.texel_of(q)

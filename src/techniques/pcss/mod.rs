@@ -9,25 +9,23 @@
 //!                  \  |  /                  comparisons within it that pass
 //!   receiver        \ ● / d_r
 //! ```
-//! All in metres of the rectangle as it is: width and height have a reach each. The taps are a disc of
-//! points that lie far apart; each pixel turns it by an angle of its own, and equal areas of the disc go
-//! to equal areas of the light's rectangle (Shirley and Chiu 1997), so that the mean over the taps is the
-//! mean over the light. Each filter tap is bilinear over four comparisons, so that no filter is narrower
-//! than a texel.
+//! Distances are in metres of the light's rectangle: width and height have a reach each. The taps are a disc of points
+//! that lie far apart. Each pixel turns the disc by an angle of its own, and equal areas of the disc go to equal areas
+//! of the light's rectangle (Shirley and Chiu 1997), so that the mean over the taps is the mean over the light. Each
+//! filter tap is bilinear over four comparisons, so that no filter is narrower than a texel.
 //!
-//! Where we depart: the disc is a spiral (Vogel 1979) where others use a table of Poisson-disc points. It
-//! needs no table, has as many points as are asked for, and as many of them in each ring as its area
-//! takes, which a short prefix of a Poisson disc has not. Fernando leaves the bias to the user; here it is
-//! the receiver-plane bias of this room. What the pixel's own surface hides of the light is a closed form,
-//! and the taps that stand for the rest of the light say how much of that is hidden.
+//! Where we depart: the disc is a spiral (Vogel 1979) where others use a table of Poisson-disc points. It needs no
+//! table, has any number of points, and as many of them in each ring as its area takes, which a short prefix of a
+//! Poisson disc does not have. Fernando leaves the bias to the user; here it is the receiver-plane bias of
+//! `techniques/common`. The part of the light that the pixel's own surface hides is a closed form, and the taps in the
+//! rest of the light give the hidden share of that.
 //!
-//! **Tiles.** Where nothing in the part of the map that a tile's pixels search lies before any of them, there is
-//! no blocker to be found, and no tap is taken; see `visibility/tiles.rs`. The largest w of squares of the map's
-//! texels tells that.
+//! **Tiles.** A tile is skipped where nothing in the part of the map that its pixels search lies before any of them: no
+//! pixel can find a blocker (see `stages/tiles`). The largest w of squares of the map's texels decides that.
 //!
-//! **Limits.** One distance stands for all blockers, so shadows of things behind each other are wrong
-//! where they overlap; blockers beside the light's view of the pixel count in the mean. The error does
-//! not vanish with more taps. Pixels are turned apart, so that few taps show as grain.
+//! **Limits.** One distance stands for all blockers, so shadows of things behind each other are wrong where they
+//! overlap; blockers beside the light's view of the pixel count in the mean. The error does not vanish with more taps.
+//! The disc's angle differs from pixel to pixel, so that few taps show as grain.
 
 pub mod twin;
 
@@ -43,12 +41,12 @@ use smallvec::smallvec;
 
 const NAME: &str = "pcss.visibility";
 
-/// The knobs.
+/// The knobs of percentage-closer soft shadows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
     /// The map's side, texels, 1 to 4096; 256 by default.
     pub map: u32,
-    /// Taps of the blocker search, and as many again of the filter, 1 to 64; 16 by default.
+    /// The number of taps of the blocker search, and as many again of the filter, 1 to 64; 16 by default.
     pub taps: u32,
     /// Whether tiles of pixels that no occluder can shadow are skipped; on by default.
     pub classify: bool,

@@ -1,4 +1,4 @@
-//! The rows: layers → columns → levels; pixels → list → rays.
+//! The passes: layers → columns → levels; pixels → list → rays.
 
 use super::settings::{Hash, Layers, Sampling, Search, Settings};
 use crate::graph::{Access, Graph, Need, Owner, Pass, Push, ResourceId, Use, Uses, Work};
@@ -10,12 +10,12 @@ use crate::techniques::room::PassInputs;
 use bytemuck::{Pod, Zeroable};
 use smallvec::smallvec;
 
-/// The list of pixels: its head, and for each where it is and the heights that its rays need look at.
+/// The bytes of the list of pixels: its head, and for each pixel its place and the heights that its rays must search.
 pub(super) fn list_bytes([width, height]: [u32; 2]) -> u64 {
     80 + 12 * u64::from(width) * u64::from(height)
 }
 
-/// The shaders of some settings.
+/// The shaders that some settings need.
 struct Shaders {
     classify: Module,
     trace: Module,
@@ -23,7 +23,7 @@ struct Shaders {
     columns: Module,
 }
 
-/// What most settings have is compiled apart from what seldom is asked for.
+/// The shaders for some settings. Usual settings have shaders of their own, without the code that only others need.
 fn shaders_of(settings: &Settings, inputs: &PassInputs) -> Shaders {
     let usual = settings.levels == nbuffer::Kind::NBuffer
         && settings.search == Search::Hierarchical
@@ -45,21 +45,21 @@ fn shaders_of(settings: &Settings, inputs: &PassInputs) -> Shaders {
     }
 }
 
-/// What `start.comp` is given.
+/// The push constants of `start.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Start {
-    /// Light space to the G-buffer's NDC, by column.
+    /// The matrix from light space to the G-buffer's NDC, by columns.
     pub ndc_from_light: [f32; 16],
 }
 
-/// What `filter_rows.comp` and `filter_columns.comp` is given.
+/// The push constants of `filter_rows.comp` and `filter_columns.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Filter {
-    /// The G-buffer's NDC to light space, by column.
+    /// The matrix from the G-buffer's NDC to light space, by columns.
     pub light_from_ndc: [f32; 16],
-    /// Of the G-buffer.
+    /// The G-buffer's width and height.
     pub extent: [i32; 2],
 }
 
@@ -75,12 +75,12 @@ pub(super) fn declare(
     let gbuffer = inputs.gbuffer;
     let arguments = graph.buffer("ray_march.arguments", 16);
     let pixels = graph.buffer("ray_march.pixels", list_bytes(gbuffer.extent));
-    // Without a filter nobody reads them.
+    // Without a filter no pass reads these images.
     let filtered = if settings.filter { gbuffer.extent } else { [1, 1] };
     let mut image = |name, format| graph.image(name, format, filtered, Owner::Transient);
     let noisy = image("ray_march.noisy", COLOR_FORMAT);
     let halfway = image("ray_march.halfway", visibility::format(inputs.color));
-    // The pixels' normals, where the others have no room for them.
+    // The image of the pixels' normals, where the noisy image has no channels for them.
     let surfaces = inputs.color.then(|| image("ray_march.surfaces", COLOR_FORMAT));
     graph.push(Pass::compute(
         "ray_march.start",
@@ -146,7 +146,7 @@ pub(super) fn declare(
     }
 }
 
-/// Adds a row that runs for the listed pixels.
+/// Adds a pass that runs for the listed pixels.
 fn listed(
     graph: &mut Graph,
     name: &'static str,
@@ -161,31 +161,31 @@ fn listed(
     graph.push(Pass { name, uses, push, work, need: *need });
 }
 
-/// What `columns.comp` is given.
+/// The push constants of `columns.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Columns {
     /// The map's side in texels.
     pub map: i32,
-    /// 2, or 4 where there are the nearest back and the furthest front faces too.
+    /// The number of layers: 2, or 4 with the nearest back and the furthest front faces.
     pub layers: i32,
-    /// Of what is stored as 1.
+    /// The height of a stored 1.
     pub height: f32,
 }
 
-/// What `level.comp` is given.
+/// The push constants of `level.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Level {
     /// The map's side in texels.
     pub map: i32,
-    /// Of levels.
+    /// The kind of the levels' windows.
     pub kind: i32,
-    /// The one to make.
+    /// The level to make.
     pub level: i32,
 }
 
-/// Adds the rows that turn the layers into columns, and these into bounds of windows.
+/// Adds the passes that turn the layers into columns, and these into the bounds of windows.
 fn declare_levels(
     graph: &mut Graph,
     layers: &DepthLayers,
@@ -234,11 +234,11 @@ fn declare_levels(
     windows
 }
 
-/// What `classify.comp` and `trace.comp` is given.
+/// The push constants of `classify.comp` and `trace.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Pixels {
-    /// The G-buffer's NDC to light space, by column.
+    /// The matrix from the G-buffer's NDC to light space, by columns.
     pub light_from_ndc: [f32; 16],
     /// Map texels a unit of u and v, or a metre where the projection is orthographic.
     pub texels_per_unit: [f32; 2],
@@ -246,7 +246,7 @@ pub struct Pixels {
     pub first: [f32; 2],
     /// Half the light's width and height, m.
     pub half_light: [f32; 2],
-    /// Of the G-buffer.
+    /// The G-buffer's width and height.
     pub extent: [i32; 2],
     /// The depth of a pixel that shows no surface.
     pub background: f32,
@@ -256,13 +256,13 @@ pub struct Pixels {
     pub top: f32,
     /// How far a raster moves a vertex, in texels.
     pub snap: f32,
-    /// How far off an occluder's height may be beyond its rounding.
+    /// The error of an occluder's height beyond its rounding.
     pub depth_error: f32,
     /// The map's side in texels.
     pub map: i32,
-    /// Rays, rows of cells and what is switched on, see `pixel.glsl`.
+    /// The number of rays, the rows of cells and what is switched on, see `pixel.glsl`.
     pub flags: i32,
-    /// Of the hashes.
+    /// The seed of the hashes.
     pub seed: u32,
 }
 
@@ -280,7 +280,7 @@ fn pixel_push(settings: &Settings, inputs: &PassInputs) -> Pixels {
         | bit(settings.hash == Hash::Pcg, 19)
         | bit(settings.layers == Layers::Eye, 20)
         | bit(settings.classify, 21)
-        // Without the filter's rows the rays' own pass writes the result.
+        // Without the filter's passes the pass of the rays writes the result.
         | bit(settings.filter && inputs.filter.is_yes(), 22)
         | match settings.sampling {
             Sampling::Jittered => 0,

@@ -5,83 +5,83 @@ use crate::knob::{Field, Knobs, choice, choices};
 use crate::stages::depth_layers::Projection;
 use crate::stages::nbuffer::{self, Levels};
 
-/// The depth layers that say what is solid.
+/// The depth layers, which decide what is solid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Layers {
-    /// From the nearest faces to the furthest back faces (section 3.3).
+    /// Two layers: solid from the nearest faces to the furthest back faces (section 3.3).
     Two,
-    /// The same, but for what the eye looks through (section 3.4).
+    /// Three layers: without the part that the eye looks through (section 3.4).
     Eye,
-    /// From the nearest faces to the nearest back faces, and from the furthest front faces to the furthest
-    /// back faces.
+    /// Four layers: solid from the nearest faces to the nearest back faces, and from the furthest front faces to the
+    /// furthest back faces.
     #[default]
     Four,
 }
 
 choices! { Layers: "2" => Two, "3" => Eye, "4" => Four }
 
-/// How a ray looks for what stops it.
+/// The search of a ray for the matter that stops it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Search {
-    /// By windows of the N-buffer (section 3.5).
+    /// A search by windows of the N-buffer (section 3.5).
     #[default]
     Hierarchical,
-    /// A texel at a time, refined by halving (section 3.3).
+    /// A search a texel at a time, refined by halving (section 3.3).
     Linear,
 }
 
 choices! { Search: "hierarchical" => Hierarchical, "linear" => Linear }
 
-/// Where on the light a pixel's rays go.
+/// The points of the light that a pixel's rays go to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sampling {
-    /// Each to a random place in a cell of its own.
+    /// Each ray goes to a random place in a cell of its own.
     Jittered,
-    /// Each to a random place on the light.
+    /// Each ray goes to a random place on the light.
     Random,
-    /// To the points of Sobol's sequence, scrambled for each pixel.
+    /// The rays go to the points of Sobol's sequence, scrambled for each pixel.
     #[default]
     LowDiscrepancy,
 }
 
 choices! { Sampling: "jittered" => Jittered, "random" => Random, "low-discrepancy" => LowDiscrepancy }
 
-/// What makes random numbers of pixels.
+/// The hash that makes a pixel's random numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Hash {
     /// A hash of integers (Jarzynski and Olano 2020).
     #[default]
     Pcg,
-    /// MD5 reduced to 16 rounds (appendix A).
+    /// The hash MD5, reduced to 16 rounds (Curtis 2009, appendix A).
     Md5,
 }
 
 choices! { Hash: "pcg" => Pcg, "md5" => Md5 }
 
-/// The knobs.
+/// The knobs of ray marching.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
     /// The side of the depth layers and the N-buffer, texels, 1 to 4096; 256 by default.
     pub map: u32,
     /// Rays a pixel, 1 to 256; 16 by default.
     pub rays: u32,
-    /// Where the rays go.
+    /// The points of the light that rays go to.
     pub sampling: Sampling,
-    /// What makes the random numbers.
+    /// The hash that makes the random numbers.
     pub hash: Hash,
-    /// Which random numbers; another one each frame changes the noise.
+    /// The seed of the random numbers; another one each frame changes the noise.
     pub seed: u32,
-    /// How rays look for what stops them.
+    /// The search of a ray for the matter that stops it.
     pub search: Search,
     /// The windows of the hierarchical search.
     pub levels: nbuffer::Kind,
-    /// What is solid.
+    /// The depth layers, which decide what is solid.
     pub layers: Layers,
-    /// Where the layers are seen from.
+    /// The projection of the layers.
     pub projection: Projection,
-    /// Whether rays are only spent where a window of the N-buffer cannot say that they are not needed; on by default.
+    /// Whether rays are traced only where the N-buffer cannot decide without them; on by default.
     pub classify: bool,
-    /// Whether noise is filtered, where filtering takes more of it away than it blurs; on by default.
+    /// Whether noise is filtered, where the filter removes more noise than it blurs; on by default.
     pub filter: bool,
 }
 
@@ -183,7 +183,7 @@ impl Settings {
     /// Checks the knobs that must agree with each other.
     pub(super) fn check_together(&self) -> Result<(), Error> {
         let levels = Levels { map: self.map, kind: self.levels };
-        // Levels side by side are two layers, whatever the map.
+        // Mip levels lie side by side, so that they take two layers for any map.
         if levels.kind == nbuffer::Kind::Mip || levels.texels() * TEXEL_BYTES <= MOST_BYTES {
             return Ok(());
         }
@@ -199,8 +199,8 @@ impl Settings {
         })
     }
 
-    /// The width of penumbra from which the noise filter does anything, pixels: its Gaussian's standard deviation a is
-    /// given by a³ = N W² / (4 √π), `filter.glsl`.
+    /// The least width of a penumbra, in pixels, that the noise filter changes: its Gaussian's standard deviation a
+    /// follows from a³ = N W² / (4 √π), `noise.glsl`.
     pub(super) fn filtered_from(&self) -> f64 {
         let random = self.sampling == Sampling::Random;
         let noise = 0.33 * f64::from(self.rays).powf(if random { -0.5 } else { -0.75 });
@@ -208,12 +208,12 @@ impl Settings {
     }
 }
 
-/// The Gaussian below which the noise filter changes nothing, pixels (`filter.glsl`).
+/// The standard deviation, in pixels, below which the noise filter changes nothing (`noise.glsl`).
 const LEAST_FILTER: f64 = 0.4;
 
-/// Bytes of a window's bounds, or of a column.
+/// The bytes of a window's bounds, and of a column.
 const TEXEL_BYTES: u64 = 16;
 
-/// Windows at every texel take a layer as large as the map for each of their sizes: more than this for them
-/// is more than a shadow should have.
+/// The memory limit of all levels, bytes. Windows at every texel take a layer as large as the map for each of their
+/// sizes.
 const MOST_BYTES: u64 = 1 << 28;

@@ -1,17 +1,17 @@
-//! The CPU twins of `glsl/ray_march/`, in any float type, and a search that shares nothing with theirs.
+//! The CPU twins of `glsl/ray_march/`, in any float type, and a search that shares no code with the shader's.
 
 use num_traits::Float;
 
-/// (top, bottom, second top, second bottom); see `column.glsl`.
+/// A column: (top, bottom, second top, second bottom); see `column.glsl`.
 pub type Column<T> = [T; 4];
 
-/// What is far off any height.
+/// A number far below any height.
 fn far_off<T: Float>() -> T {
     T::from(3.0e38).unwrap_or_else(T::max_value)
 }
 
-/// What a window's columns have in common, each the larger of two columns': highest top, minus the lowest
-/// bottom, minus the lowest first top, highest first bottom.
+/// The bounds of a window of one column, each combined as a maximum: highest top, minus the lowest bottom, minus the
+/// lowest first top, highest first bottom.
 pub fn bounds_of<T: Float>(column: Column<T>) -> [T; 4] {
     let [top, bottom, second_top, second_bottom] = column;
     if top <= T::zero() {
@@ -34,19 +34,19 @@ pub fn step_down<T: Float>(h: T, neighbour: T, behind_it: T, opposite: T) -> T {
     if goes_on { drop.max(T::zero()) } else { T::zero() }
 }
 
-/// What is left of a piece, (top, bottom), with surfaces that go so far up or down within half a texel.
+/// The rest of a piece of matter, (top, bottom), whose surfaces go so far up or down within half a texel.
 pub fn beveled<T: Float>([top, bottom]: [T; 2], above: T, below: T) -> [T; 2] {
     let most = ((top - bottom) / (T::one() + T::one())).max(T::zero());
     [top - above.min(most), bottom + below.min(most)]
 }
 
-/// The column of a solid between its nearest and its furthest back faces, 0 where it has none.
+/// The column of a solid between its nearest and its furthest back faces; 0 where it has none.
 pub fn one_interval<T: Float>(top: T, far_back: T) -> Column<T> {
     let bottom = if far_back > T::zero() { far_back.min(top) } else { top };
     [top, bottom, T::zero(), T::zero()]
 }
 
-/// The column of what has nearest faces, nearest back, furthest front and furthest back faces, each 0 where
+/// The column of the matter between nearest faces, nearest back, furthest front and furthest back faces, each 0 where
 /// there are none.
 pub fn two_intervals<T: Float>(top: T, near_back: T, far_front: T, far_back: T) -> Column<T> {
     let bottom = if near_back > T::zero() { near_back } else { top };
@@ -57,9 +57,9 @@ pub fn two_intervals<T: Float>(top: T, near_back: T, far_front: T, far_back: T) 
     [top, bottom, far_front, second]
 }
 
-/// MD5 reduced to 16 rounds (Curtis 2009, appendix A): its own rounds, words and constants in a table.
+/// The hash MD5 reduced to 16 rounds (Curtis 2009, appendix A), with its rounds, words and constants in a table.
 pub fn md5(message: [u32; 4], key: u32) -> [u32; 4] {
-    /// Words that the rounds take: beyond the message they are 0.
+    /// The words that the rounds read: those beyond the message are 0.
     const WORDS: [usize; 16] = [0, 1, 2, 3, 1, 6, 11, 0, 5, 8, 11, 14, 0, 7, 14, 5];
     const TURNS: [[u32; 4]; 4] =
         [[7, 12, 17, 22], [5, 9, 14, 20], [4, 11, 16, 23], [6, 10, 15, 21]];
@@ -103,7 +103,7 @@ pub fn md5(message: [u32; 4], key: u32) -> [u32; 4] {
     digest
 }
 
-/// Four words to four (Jarzynski and Olano 2020, pcg4d).
+/// Hashes four words to four (Jarzynski and Olano 2020, pcg4d).
 pub fn pcg(words: [u32; 4]) -> [u32; 4] {
     let mut v = words.map(|x| x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
     let mix = |v: &mut [u32; 4]| {
@@ -131,7 +131,7 @@ pub fn sobol(n: u32) -> [u32; 2] {
     [n.reverse_bits(), y]
 }
 
-/// The cell of [0, 1]² that is the nth of `count`, of one area each in as many rows: corner and size.
+/// The nth of `count` cells that divide [0, 1]² into equal areas in the given number of rows: corner and size.
 pub fn cell_of<T: Float>(n: u32, count: u32, rows: u32) -> [T; 4] {
     let number = |x: u32| T::from(x).unwrap_or_else(T::nan);
     let start = |row: u32| row * count / rows;
@@ -146,7 +146,7 @@ pub fn cell_of<T: Float>(n: u32, count: u32, rows: u32) -> [T; 4] {
     ]
 }
 
-/// The standard deviation of the Gaussian in metres; see `noise.glsl`.
+/// The standard deviation of the noise filter's Gaussian, metres; see `noise.glsl`.
 pub fn filter_width<T: Float>(penumbra: T, pixel: T, noise: T) -> T {
     let number = |x: f64| T::from(x).unwrap_or_else(T::nan);
     let w = penumbra / pixel;
@@ -154,7 +154,7 @@ pub fn filter_width<T: Float>(penumbra: T, pixel: T, noise: T) -> T {
     if a < number(0.4) { T::zero() } else { a.min(number(6.0)) * pixel }
 }
 
-/// How much a neighbour counts in the filter.
+/// A neighbour's weight in the noise filter; see `noise.glsl`.
 pub fn filter_weight<T: Float>(apart: [T; 3], normal: [T; 3], its: [T; 3], width: T) -> T {
     let number = |x: f64| T::from(x).unwrap_or_else(T::nan);
     let dot = |a: [T; 3], b: [T; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -164,26 +164,26 @@ pub fn filter_weight<T: Float>(apart: [T; 3], normal: [T; 3], its: [T; 3], width
     (-squares / (width * width + width * width)).exp() * turned.powi(16)
 }
 
-/// A receiver in the map and its plane, as `column.glsl` has it.
+/// A receiver in the map and its plane; see `column.glsl`.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
-    /// Texels.
+    /// The place in the map, texels.
     pub t: [f64; 2],
-    /// Height.
+    /// The height.
     pub w: f64,
-    /// See `light_space.glsl`.
+    /// The plane's normal over texels; see `light_space.glsl`.
     pub n: [f64; 2],
-    /// See `light_space.glsl`.
+    /// The plane's offset; see `light_space.glsl`.
     pub n_0: f64,
-    /// See `light_space.glsl`.
+    /// The plane's factor of the height; see `light_space.glsl`.
     pub c: f64,
-    /// A column no less than this above the plane stops rays.
+    /// A column stops rays where its top is at least this high above the plane.
     pub margin: f64,
 }
 
-/// Whether a ray from a receiver meets a column of a map of `side` texels, by visiting every texel that it is
-/// over: `g` texels a unit of height, from `start` to `end` above the receiver. Also how near it came to
-/// having it otherwise, as a share of the heights: an answer below 1e-5 is one of rounding.
+/// Whether a ray from a receiver meets a column of a map of `side` texels, by visiting every texel under it: `g`
+/// texels a unit of height, from `start` to `end` above the receiver. The second value is the relative distance of
+/// heights from the opposite answer: below 1e-5 the answer depends on rounding.
 pub fn meets(
     columns: &[Column<f64>],
     side: u32,
@@ -192,7 +192,7 @@ pub fn meets(
     start: f64,
     end: f64,
 ) -> (bool, f64) {
-    // All heights at which the ray goes from texel to texel.
+    // The heights at which the ray goes from texel to texel.
     let mut borders = vec![start, end];
     for (t, g) in place.t.into_iter().zip(g).filter(|(_, g)| *g != 0.0) {
         let at = (0..=side).map(|b| (f64::from(b) - t) / g);
@@ -217,7 +217,7 @@ pub fn meets(
                 - place.c * top
                 - place.margin;
             let (lo, hi) = (place.w + pair[0], place.w + pair[1]);
-            // Positive where they overlap, by how much.
+            // The overlap of ray and matter, positive where they meet.
             let overlap = ((top - lo).min(hi - bottom)) / top;
             let holds = overlap.min(above / (place.c.abs() * top + place.margin));
             met |= holds >= 0.0;

@@ -43,9 +43,9 @@
 //! pixel's own rises above its plane within a texel (0.15 of its diagonal, measured); there is nothing
 //! to tune.
 //!
-//! **Tiles.** What lies before none of a tile's pixels within the light's window is asked once for all of them,
-//! by the same nodes (`visibility/tiles.rs`); the gather runs for the other tiles. The order of the walk is the
-//! gather's own, and what it leaves out adds exactly 0 to each pixel's sum.
+//! **Tiles.** One query of the nodes finds for all pixels of a tile whether an occluder lies before any of them within
+//! the light's window (`stages/tiles`); the gather runs only for tiles with one. The query walks the nodes in the
+//! gather's own order, and a node that it rejects adds exactly 0 to each pixel's sum.
 //!
 //! **The mean of both sides.** The paper merges the shadows of the nearest and of the furthest faces by
 //! their maximum (section 3.5). But neighbouring patches at different distances overlap or leave a gap
@@ -146,8 +146,7 @@ impl Room for Settings {
 /// Adds the passes that turn depth layers into the visible fraction.
 fn declare(graph: &mut Graph, layers: &DepthLayers, settings: &Settings, inputs: &PassInputs) {
     let (visibility, view) = (inputs.visibility, inputs.receivers);
-    // Without a back layer the front is all there is to both sides. A map of the receivers has rows for each side,
-    // which stay as they are.
+    // Without a back layer both sides are the front. A receiver map keeps the passes of each side.
     let one = Settings { sides: Sides::One, ..*settings };
     let at_pixels = settings.receivers == Receivers::Pixels;
     let settings = if at_pixels && layers.back.is_none() { &one } else { settings };

@@ -8,12 +8,12 @@ use crate::techniques::room::PassInputs;
 use bytemuck::{Pod, Zeroable};
 use smallvec::smallvec;
 
-/// Texels a side of a block and of a superblock, as in `node.glsl`.
+/// A block's and a superblock's side in texels (`node.glsl`).
 const BLOCK: u32 = 8;
 
 const SUPERBLOCK: u32 = 32;
 
-/// A superblock and its blocks, as they lie together.
+/// The number of nodes of a superblock and its blocks, which lie together.
 const FAMILY: u64 = 17;
 
 /// The occluder map's nodes, as resources and sizes.
@@ -21,7 +21,7 @@ const FAMILY: u64 = 17;
 pub(super) struct Nodes {
     pub texels: ResourceId,
     pub blocks: ResourceId,
-    /// Moments of any rectangle of a block's texels.
+    /// The prefix sums that give the moments of any rectangle of a block's texels.
     pub sums: ResourceId,
     /// Superblocks with their blocks.
     pub families: ResourceId,
@@ -35,7 +35,7 @@ pub(super) fn sides(settings: &Settings) -> &'static [u32] {
     if matches!(settings.sides, Sides::Two | Sides::Mean) { &[0, 1] } else { &[0] }
 }
 
-/// How they are put together: blending cannot choose a face by receiver, as the mean does.
+/// How both sides are combined: blending cannot choose a face by receiver, which the mean needs.
 pub(super) fn combination(settings: &Settings) -> Sides {
     match (settings.sides, settings.accumulate) {
         (Sides::Mean, Accumulate::Blend | Accumulate::BlendFp16) => Sides::Two,
@@ -47,7 +47,7 @@ pub(super) fn scale_of(inputs: &PassInputs) -> [f32; 2] {
     inputs.occluders.scale(inputs.light).map(|s| s as f32)
 }
 
-/// What `blocks.comp` is given.
+/// The push constants of `blocks.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Blocks {
@@ -62,7 +62,7 @@ pub struct Blocks {
     pub faces: i32,
 }
 
-/// What `superblocks.comp` is given.
+/// The push constants of `superblocks.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Superblocks {
@@ -88,7 +88,7 @@ pub(super) fn declare_nodes(
         blocks: graph.buffer("soft_shadow_map.blocks", count(block_row) * node_bytes),
         sums: graph.buffer(
             "soft_shadow_map.sums",
-            // Above N = 2048 they would be larger; blocks beyond do without.
+            // Above N = 2048 they would be larger; blocks beyond have no sums.
             (count(block_row) * texels_a_block * 16).min(STORAGE_BYTES),
         ),
         families: graph

@@ -1,4 +1,4 @@
-//! The rows of the gather at the G-buffer's pixels.
+//! The passes of the gather at the G-buffer's pixels.
 
 use super::nodes::{Nodes, scale_of, sides};
 use super::settings::{Settings, Sides, spread_of};
@@ -11,7 +11,7 @@ use smallvec::smallvec;
 
 const NAME: &str = "soft_shadow_map.gather_pixels";
 
-/// What `gather_pixels.comp` is given.
+/// The push constants of `gather_pixels.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct GatherPixels {
@@ -29,19 +29,19 @@ pub struct GatherPixels {
     pub background: f32,
     /// No occluder is nearer than 1/w_max.
     pub w_max: f32,
-    /// The series' limit.
+    /// The largest |δ| of the series, see [`super::settings::spread_of`].
     pub spread: f32,
     /// How far a raster moves a vertex, in texels.
     pub snap: f32,
     /// Superblocks a row.
     pub row: i32,
-    /// Bit 0: the mask is there; bit 1: two sides; bit 2: their mean.
+    /// Bit 0: there is a mask; bit 1: two sides; bit 2: their mean.
     pub flags: i32,
-    /// How far off an occluder's w may be beyond its rounding, 1/m.
+    /// The error of an occluder's w beyond its rounding, 1/m.
     pub depth_error: f32,
 }
 
-/// Adds the rows that gather at the pixels: at all of them, or at those of tiles that may feel an occluder.
+/// Adds the passes that gather at the pixels: at all of them, or at those of tiles that an occluder may shadow.
 pub(super) fn gather(graph: &mut Graph, nodes: &Nodes, settings: &Settings, inputs: &PassInputs) {
     let (gbuffer, visibility) = (inputs.gbuffer, inputs.visibility);
     let [width, height] = gbuffer.extent;
@@ -61,7 +61,7 @@ pub(super) fn gather(graph: &mut Graph, nodes: &Nodes, settings: &Settings, inpu
         tiles.sort(graph, shaders::TILES, push, (&[families], visibility), gbuffer, inputs.need);
         tiles.run(graph, (NAME, shaders::GATHER_TILES), push, uses, 6, inputs.need);
     } else {
-        // 8×8 invocations of 2×2 pixels.
+        // A workgroup of 8×8 invocations handles 2×2 pixels each.
         let groups = [width.div_ceil(16), height.div_ceil(16), 1];
         graph.push(Pass::compute(NAME, shaders::GATHER_PIXELS, groups, push, uses, inputs.need));
     }

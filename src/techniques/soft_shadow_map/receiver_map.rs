@@ -1,4 +1,4 @@
-//! The soft shadow map: what patches hide of the light at each texel of a receiver map, gathered or blended.
+//! The soft shadow map: the occlusion of each texel of a receiver map by the patches, gathered or blended.
 
 use super::nodes::{Nodes, scale_of};
 use super::settings::{Accumulate, Settings, Sides, spread_of};
@@ -10,16 +10,17 @@ use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use smallvec::smallvec;
 
-/// As in `gather.glsl`: each texel's back face where it lies before the receiver, else its front face.
+/// The value of `BACK_OR_FRONT` in `gather.glsl`: each texel's back face where it lies before the receiver, else its
+/// front face.
 const BACK_OR_FRONT: i32 = 2;
 
-/// Blended contributions are multiples of 2⁻²⁴, see `patch.frag`.
+/// Blended contributions are multiples of 2⁻²⁴ (`patch.frag`).
 pub const BLEND_STEPS: f32 = 16_777_216.0;
 
-/// Blocks a group, as in `patch_count.comp`.
+/// The number of blocks in a group (`patch_count.comp`).
 const GROUP: u32 = 64;
 
-/// Receiver texels in occluder texels: the step, and the centre of texel (0, 0).
+/// The receiver texels' places in occluder texels: the step, and the centre of texel (0, 0).
 pub fn receiver_grid(view: &MapView, occluders: &MapView) -> ([f32; 2], [f32; 2]) {
     let (per, first) = (occluders.texels_per_uv(), occluders.first());
     let receiver_per = view.texels_per_uv();
@@ -28,7 +29,7 @@ pub fn receiver_grid(view: &MapView, occluders: &MapView) -> ([f32; 2], [f32; 2]
     (step.map(|s| s as f32), zero)
 }
 
-/// What `gather_map.comp` is given.
+/// The push constants of `gather_map.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct GatherMap {
@@ -40,7 +41,7 @@ pub struct GatherMap {
     pub t_first: [f32; 2],
     /// No occluder is nearer than 1/w_max.
     pub w_max: f32,
-    /// The series' limit.
+    /// The largest |δ| of the series, see [`super::settings::spread_of`].
     pub spread: f32,
     /// 1 over the receiver map's near plane, 1/m.
     pub receiver_inv_near: f32,
@@ -69,7 +70,7 @@ pub(super) fn gather_map(
     let size = [settings.receiver_map; 2];
     let map = graph.image(map_name, vk::Format::R32_SFLOAT, size, Owner::Transient);
     let (t_step, t_first) = receiver_grid(view, inputs.occluders);
-    // 8×8 invocations of 2×2 texels.
+    // A workgroup of 8×8 invocations handles 2×2 texels each.
     let groups = settings.receiver_map.div_ceil(16);
     graph.push(Pass::compute(
         pass_name,
@@ -101,25 +102,25 @@ pub(super) fn gather_map(
     map
 }
 
-/// What `patch_count.comp` is given.
+/// The push constants of `patch_count.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct PatchCount {
-    /// Blocks of one side.
+    /// The number of blocks of one side.
     pub blocks: i32,
     /// 0 front, 1 back.
     pub side: i32,
 }
 
-/// What `patch_scan.comp` is given.
+/// The push constants of `patch_scan.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct PatchScan {
-    /// Groups of 64 blocks.
+    /// The number of groups of 64 blocks.
     pub groups: i32,
 }
 
-/// What `patch_emit.comp` is given.
+/// The push constants of `patch_emit.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct PatchEmit {
@@ -129,7 +130,7 @@ pub struct PatchEmit {
     pub side: i32,
 }
 
-/// What `patch.vert` and `patch.frag` is given.
+/// The push constants of `patch.vert` and `patch.frag`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct PatchDraw {
@@ -145,7 +146,7 @@ pub struct PatchDraw {
     pub receiver_inv_near: f32,
     /// The receiver map's side in texels.
     pub receiver_map: i32,
-    /// Steps a unit of occlusion that contributions are rounded to; 0 rounds none.
+    /// Contributions are rounded to multiples of 1/steps of the light; 0 rounds none.
     pub steps: f32,
 }
 

@@ -37,7 +37,7 @@ choices! { Sides: "one" => One, "bottom" => Bottom, "two" => Two, "mean" => Mean
 /// How micro-patches are added up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Accumulate {
-    /// Each receiver visits the texels; far ones by closed form.
+    /// Each receiver sums the texels; far ones by closed form.
     #[default]
     Gather,
     /// Penumbra rectangles blended into 32-bit floats.
@@ -48,7 +48,7 @@ pub enum Accumulate {
 
 choices! { Accumulate: "gather" => Gather, "blend" => Blend, "blend-fp16" => BlendFp16 }
 
-/// The knobs.
+/// The knobs of soft shadow maps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// The occluder map's side, texels, 1 to 4096; 256 by default.
@@ -174,7 +174,7 @@ mod tests {
             }
             assert!(tight > 0.5 * f64::from(tolerance), "{tolerance}: the range could be wider");
         }
-        // Nothing is within a spread of 0 but texels at one distance, for which the series is exact.
+        // A spread of 0 holds only texels at one distance, for which the series is exact.
         assert_eq!(spread_of(0.0), 0.0);
     }
 }

@@ -1,23 +1,23 @@
 //! The CPU twins of the sums over micro-patches, in any float type.
 //!
-//! A twin says the same as the shader, line by line, and shares no code with it.
+//! A twin computes what the shader does, line by line, and shares no code with it.
 
 use crate::techniques::common::twin::{clamp, half, patch_occlusion};
 use num_traits::Float;
 
-/// A square occluder map of w, 0 where there is nothing, and the light as it is seen through it.
+/// A square occluder map of w, 0 where there is no occluder, and the light's size in its texels.
 #[derive(Clone, Copy, Debug)]
 pub struct OccluderMap<'a> {
     /// w of each texel, row by row.
     pub w: &'a [f32],
-    /// Texels a row.
+    /// The number of texels in a row.
     pub side: usize,
     /// (Δu/Lx, Δv/Ly), 1/m.
     pub scale: [f32; 2],
 }
 
-/// The occlusion of a receiver by every micro-patch of a map, added up in f64: what blending and
-/// gathering both stand for.
+/// The occlusion of a receiver by every micro-patch of a map, added up in f64: the sum that blending and gathering both
+/// approximate.
 pub fn occlusion(map: &OccluderMap, t: [f32; 2], w_r: f32) -> f64 {
     let wide = |a: [f32; 2]| a.map(f64::from);
     map.w
@@ -59,13 +59,13 @@ pub fn backs_of_mean(front: &[f32], back: &[f32], side: usize) -> Vec<f32> {
         .collect()
 }
 
-/// What one receiver sees of both layers in pairs: each back texel that lies before it, and the front
-/// texel where the back does not.
+/// The texels that a receiver is shadowed by in the mean of both sides: each back texel that lies before it, and the
+/// front texel where the back does not.
 pub fn back_or_front(front: &[f32], back: &[f32], w_r: f32) -> Vec<f32> {
     front.iter().zip(back).map(|(&f, &b)| if b > 0.0 && b > w_r { b } else { f }).collect()
 }
 
-/// The occlusion by both sides from that by either, as in `light_space.glsl`.
+/// The occlusion by both sides from the occlusion by either (`light_space.glsl`).
 pub fn merged_sides<T: Float>(front: T, back: T) -> T {
     let tenth = T::one() / (half::<T>() * T::from(20.0).unwrap_or_else(T::nan));
     let larger = front.max(back);
@@ -81,42 +81,42 @@ pub fn series<T: Float>(s: [T; 4], mean: T, w_r: T) -> T {
     k * k * (s[0] + k * (k * ((two + T::one()) * s[2] - two * two * s[3] * k) - two * s[1]))
 }
 
-/// How a node lies to a tile of receivers.
+/// Where a node lies for a tile of receivers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// It hides nothing of the light from any of them.
+    /// The node hides nothing of the light from any of them.
     Outside,
     /// The series serves all of them.
     Inside,
-    /// Neither for sure.
+    /// Neither is certain.
     Mixed,
 }
 
 /// A square node of an occluder map.
 #[derive(Clone, Copy, Debug)]
 pub struct Node<T> {
-    /// Occupied texels.
+    /// The number of occupied texels.
     pub count: T,
-    /// Mean, least and largest w of them.
+    /// The mean, least and largest w of the occupied texels.
     pub w: [T; 3],
-    /// Its first texel.
+    /// The node's first texel.
     pub lo: [T; 2],
-    /// Its side in texels.
+    /// The node's side in texels.
     pub side: T,
 }
 
-/// Receivers with t from `t_min` to `t_max` and w from `w[0]` to `w[1]`.
+/// The bounds of receivers: t from `t_min` to `t_max`, w from `w[0]` to `w[1]`.
 #[derive(Clone, Copy, Debug)]
 pub struct Tile<T> {
-    /// Least t.
+    /// The least t, texels.
     pub t_min: [T; 2],
-    /// Largest t.
+    /// The largest t, texels.
     pub t_max: [T; 2],
-    /// Least and largest w.
+    /// The least and largest w, 1/m.
     pub w: [T; 2],
 }
 
-/// The twin of `may_shadow` in `node.glsl`: whether a node could hide any of the light from a tile.
+/// The twin of `may_shadow` in `node.glsl`: whether a node may hide any of the light from a tile.
 pub fn may_shadow<T: Float>(node: &Node<T>, tile: &Tile<T>, scale: [T; 2]) -> bool {
     let w_max = node.w[2];
     let along = |i: usize| {
@@ -127,8 +127,8 @@ pub fn may_shadow<T: Float>(node: &Node<T>, tile: &Tile<T>, scale: [T; 2]) -> bo
     node.count > T::zero() && w_max > tile.w[0] && along(0) && along(1)
 }
 
-/// The twin of `superblocks_around` in `node.glsl`: columns and rows of superblocks of 32 texels, first and last,
-/// that hold all that a tile could feel of occluders up to `w_max`.
+/// The twin of `superblocks_around` in `node.glsl`: columns and rows of the superblocks of 32 texels, first and last,
+/// in which an occluder with a w up to `w_max` may shadow a tile.
 pub fn superblocks_around<T: Float>(
     tile: &Tile<T>,
     row: T,
@@ -164,7 +164,7 @@ pub fn classify<T: Float>(node: &Node<T>, tile: &Tile<T>, scale: [T; 2], spread:
     }
 }
 
-/// A bit for each texel of an 8×8 block with lo ≤ (x, y) < hi; bit 8y + x.
+/// A mask of the texels of an 8×8 block with lo ≤ (x, y) < hi; bit 8y + x.
 pub fn rectangle_mask(lo: [u32; 2], hi: [u32; 2]) -> u64 {
     (0..64)
         .filter(|i| {
@@ -193,7 +193,7 @@ mod tests {
         assert_eq!(patch_occlusion([-0.5; 2], [0.5; 2], w_r, [0.0; 2], w_o, [texel; 2]), 0.0);
     }
 
-    /// A node that a tile does not feel hides nothing from any of its receivers, in floats as they are.
+    /// A node that may not shadow a tile hides nothing from any of its receivers, in 32-bit floats too.
     #[test]
     fn what_may_not_shadow_hides_nothing() {
         let mut seed = 1_u32;
