@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing for `make demo` (a Vulkan loader and driver), `make bench` (also a C++
 # compiler, for FLIP) or `make test` (also the validation layer, a C++ compiler for the GLSL compiler,
-# and SwiftShader as a second driver).
+# glTF models of other makers, and SwiftShader as a second driver).
 #   usage: tests/drivers.sh demo|bench|test
 # As root it uses apt; otherwise it prints the one line to run and stops. Nothing is updated or
 # downloaded where nothing is missing. SwiftShader goes to .drivers/ and is never installed.
@@ -47,6 +47,8 @@ test)
     have_driver lvp_icd || missing+=(mesa-vulkan-drivers)
     have_layer || missing+=(vulkan-validationlayers)
     command -v c++ >/dev/null || missing+=(g++)
+    # Models of other makers, which the glTF reader is tried on.
+    [ -n "${ANTUMBRA_GLTF_MODELS:-}" ] || [ -e /usr/share/assimp/models ] || missing+=(assimp-testmodels)
     ;;
 *)
     echo "tests/drivers.sh: $goal is neither demo, bench nor test" >&2
