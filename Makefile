@@ -101,7 +101,7 @@ function: export ANTUMBRA_DRIVER := $(DRIVER)
 function: export ANTUMBRA_VALIDATE := 1
 function:
 	$(if $(F),,$(error make function: name a test program, as in F=shaders; they are the folders tests/*/main.rs))
-	@tests/drivers.sh test
+	@tests/drivers.sh function
 	$(if $(findstring swiftshader,$(shell echo $(DRIVER) | tr A-Z a-z)),$(SWIFTSHADER)) \
 	    $(CARGO) test --workspace --test $(F) $(T)
 

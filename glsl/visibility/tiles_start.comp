@@ -1,4 +1,4 @@
-// Entry of the pass visibility.tiles_start (src/stages/tiles.rs).
+// Entry of the pass visibility.tiles_start (src/stages/tiles/mod.rs).
 #version 450
 
 // An empty list of tiles.

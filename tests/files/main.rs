@@ -8,4 +8,5 @@ mod docs;
 mod freshness;
 mod naga_translation;
 mod one_build;
+mod programs;
 mod untrusted;
