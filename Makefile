@@ -4,14 +4,14 @@
 #              out/bench/ and on the terminal (make bench QUICK=1 in under five minutes, the report
 #              alone)
 #
-# make function F=shader_functions T=overlap DRIVER=SwiftShader   one test program, or those of its tests whose
-#              name holds T, on one device; llvmpipe without DRIVER
+# make function F=shaders T=overlap DRIVER=SwiftShader   one test program, or those of its tests whose name holds
+#              T, on one device; llvmpipe without DRIVER
 #
 # make sanitize   the library's unit tests under AddressSanitizer, which nightly Rust has
 #
 # ANTUMBRA_DRIVER=<part of a device name> picks the device for all of them.
 
-.PHONY: demo test test_on_llvmpipe test_on_swiftshader function bench sanitize clean
+.PHONY: demo test test_once test_on_llvmpipe test_on_swiftshader function bench sanitize clean
 
 CARGO ?= cargo
 SHELL := /bin/bash
@@ -42,53 +42,61 @@ endif
 
 # ---------------------------------------------------------------------------------------------
 
-# Tests that use no device; they run once. Every other file in tests/ runs once a driver.
-NO_DEVICE := docs freshness house line_truth naga_translation one_build planning reflection refusals row_limits rows untrusted
-DEVICE := $(filter-out $(NO_DEVICE),$(basename $(notdir $(wildcard tests/*.rs))))
-test_once := $(CARGO) test --workspace --lib $(NO_DEVICE:%=--test %)
-# The embed example's own tests are what the node says to an engine that gets something wrong;
-# wrong_light and hard_cases are the benchmark's: that its report sees what is wrong, and its table of hard cases.
-test_on_device := $(CARGO) test --workspace $(DEVICE:%=--test %) --test wrong_light --test hard_cases --example embed
+# Each tests/NAME/main.rs is a program, and so is each file of benches/*/tests. Those that tests/Cargo.toml lists run once,
+# with a driver that is not there: a test among them that asks for a device fails. The others run once a driver.
+once := $(shell sed -n 's/^once = \[\(.*\)\]$$/\1/p' tests/Cargo.toml | tr -d '",')
+programs := $(patsubst tests/%/main.rs,%,$(wildcard tests/*/main.rs)) \
+    $(basename $(notdir $(wildcard benches/tests/*.rs benches/*/tests/*.rs)))
+# Where one driver is named, no other need be there.
+test_once := $(CARGO) test --workspace --lib $(patsubst %,--test %,$(filter-out $(if $(ANTUMBRA_DRIVER),two_drivers),$(once)))
+# The embed example's own tests are what the node says to an engine that gets something wrong.
+test_on_device := $(CARGO) test --workspace $(patsubst %,--test %,$(filter-out $(once),$(programs))) --example embed
 # Cargo must not look for the job server of the make above.
-test_on_driver := env -u MAKEFLAGS $(test_on_device)
+without_make := env -u MAKEFLAGS
 
 # Beside the installed drivers; a device must still be chosen by its name.
 SWIFTSHADER := VK_ADD_DRIVER_FILES=$(CURDIR)/.drivers/vk_swiftshader_icd.json
 # A GPU shows as one of these. Without ANTUMBRA_DRIVER the best device is used, which is then the GPU.
 GPU := $(wildcard /dev/dri/renderD* /dev/nvidia0 /dev/dxg)
 
+# What each cargo prints is each program's own summary.
 test: export ANTUMBRA_VALIDATE := 1
+test: export ANTUMBRA_NO_SKIPS := 1
 test:
 	@tests/drivers.sh test
-	$(test_once)
-	$(CARGO) test --workspace --doc
+	$(CARGO) test --workspace --no-run
 ifdef ANTUMBRA_DRIVER
+	$(MAKE) --no-print-directory test_once
 	$(SWIFTSHADER) $(test_on_device)
 else
-	$(test_on_device) --no-run
-	$(MAKE) --no-print-directory -j2 --output-sync=target test_on_llvmpipe test_on_swiftshader
+	$(MAKE) --no-print-directory -j2 --output-sync=target test_on_swiftshader test_once test_on_llvmpipe
 ifneq ($(GPU),)
 	$(test_on_device)
 endif
 endif
 
-# Both at once: while SwiftShader compiles shaders, and where a test works on one thread, a core is idle.
+# Two at once: while SwiftShader compiles shaders, and where a test works on one thread, a core is idle.
 # Each shows its output when it is done.
-test_on_llvmpipe test_on_swiftshader: export ANTUMBRA_VALIDATE := 1
+test_once test_on_llvmpipe test_on_swiftshader: export ANTUMBRA_VALIDATE := 1
+test_once test_on_llvmpipe test_on_swiftshader: export ANTUMBRA_NO_SKIPS := 1
+
+test_once:
+	ANTUMBRA_DRIVER=none $(SWIFTSHADER) $(without_make) $(test_once)
+	$(without_make) $(CARGO) test --workspace --doc
 
 test_on_llvmpipe:
-	ANTUMBRA_DRIVER=llvmpipe $(test_on_driver)
+	ANTUMBRA_DRIVER=llvmpipe $(without_make) $(test_on_device)
 
 test_on_swiftshader:
-	ANTUMBRA_DRIVER=SwiftShader $(SWIFTSHADER) $(test_on_driver)
+	ANTUMBRA_DRIVER=SwiftShader $(SWIFTSHADER) $(without_make) $(test_on_device)
 
 # One test on one device, as a change is worked on. The whole workspace here too, or cargo builds the dependencies anew.
 DRIVER ?= $(or $(ANTUMBRA_DRIVER),llvmpipe)
 function: export ANTUMBRA_DRIVER := $(DRIVER)
 function: export ANTUMBRA_VALIDATE := 1
 function:
-	$(if $(F),,$(error make function: name a test program, as in F=shader_functions; tests/Cargo.toml lists them))
-	@tests/drivers.sh test
+	$(if $(F),,$(error make function: name a test program, as in F=shaders; they are the folders tests/*/main.rs))
+	@tests/drivers.sh function
 	$(if $(findstring swiftshader,$(shell echo $(DRIVER) | tr A-Z a-z)),$(SWIFTSHADER)) \
 	    $(CARGO) test --workspace --test $(F) $(T)
 

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # Installs what is missing for `make demo` (a Vulkan loader and driver), `make bench` (also a C++
 # compiler, for FLIP) or `make test` (also the validation layer, a C++ compiler for the GLSL compiler,
-# and SwiftShader as a second driver).
-#   usage: tests/drivers.sh demo|bench|test
+# glTF models of other makers, and SwiftShader as a second driver; but for the models also for `make function`).
+#   usage: tests/drivers.sh demo|bench|function|test
 # As root it uses apt; otherwise it prints the one line to run and stops. Nothing is updated or
 # downloaded where nothing is missing. SwiftShader goes to .drivers/ and is never installed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-goal=${1:?usage: tests/drivers.sh demo|bench|test}
+goal=${1:?usage: tests/drivers.sh demo|bench|function|test}
 user_data=${XDG_DATA_HOME:-${HOME:-}/.local/share}
 
 # have_driver NAME: whether a driver whose description's file name starts so is where the loader looks.
@@ -43,19 +43,21 @@ demo | bench)
         missing+=(mesa-vulkan-drivers)
     [ "$goal" = demo ] || command -v c++ >/dev/null || missing+=(g++)
     ;;
-test)
+function | test)
     have_driver lvp_icd || missing+=(mesa-vulkan-drivers)
     have_layer || missing+=(vulkan-validationlayers)
     command -v c++ >/dev/null || missing+=(g++)
+    # Models of other makers, which the glTF reader is tried on.
+    [ "$goal" = function ] || [ -n "${ANTUMBRA_GLTF_MODELS:-}" ] || [ -e /usr/share/assimp/models ] || missing+=(assimp-testmodels)
     ;;
 *)
-    echo "tests/drivers.sh: $goal is neither demo, bench nor test" >&2
+    echo "tests/drivers.sh: $goal is none of demo, bench, function and test" >&2
     exit 2
     ;;
 esac
 
 swiftshader=0
-if [ "$goal" = test ] && ! [ -e .drivers/libvk_swiftshader.so ]; then
+if [[ "$goal" = @(function|test) ]] && ! [ -e .drivers/libvk_swiftshader.so ]; then
     # Where one device is named, that one is tested and no other.
     case ${ANTUMBRA_DRIVER:-SwiftShader} in
     *[Ss]wift*) swiftshader=1 ;;

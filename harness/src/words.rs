@@ -19,7 +19,7 @@ pub fn technique_of(words: &str) -> Result<Technique, Error> {
 ///
 /// # Panics
 /// Where there is none: the words stand in a test or a bench.
-#[allow(clippy::panic, reason = "only tests and benches write such words")]
+#[expect(clippy::panic, reason = "the words stand in a test or a bench")]
 pub fn technique(words: &str) -> Technique {
     words.parse().unwrap_or_else(|e| panic!("{words}: {e}"))
 }

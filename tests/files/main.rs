@@ -9,4 +9,5 @@ mod freshness;
 mod house;
 mod naga_translation;
 mod one_build;
+mod programs;
 mod untrusted;

@@ -2,6 +2,7 @@
 
 use antumbra_tests::example::{build_example, folder, root};
 use antumbra_tests::layer::{Checks, Run, run};
+use antumbra_tests::say;
 use std::path::{Path, PathBuf};
 
 struct Host {
@@ -45,7 +46,7 @@ fn hosts() -> Vec<Host> {
     let mut names = vec!["embed", "embed_vk_graph"];
     let driver = std::env::var("ANTUMBRA_DRIVER").unwrap_or_default();
     if driver.to_lowercase().contains("swiftshader") {
-        println!("without embed_wgpu, which is tried on lavapipe alone");
+        say("hosts: embed_wgpu is left to lavapipe");
     } else {
         names.push("embed_wgpu");
     }

@@ -6,7 +6,7 @@
 use antumbra::graph::{Graph, Owner};
 use antumbra::{Description, Error, LightTexture, Requirements, ShadowNode, Technique, frame};
 use antumbra_tests::TestDevice;
-use antumbra_tests::bench::{Bench, Described, EXTENT, Memory, OTHER_EXTENT, host};
+use antumbra_tests::bench::{Bench, Described, EXTENT, Memory, OTHER_EXTENT, SMALLEST, host};
 use antumbra_tests::measure::settings;
 use ash::vk;
 
@@ -29,24 +29,12 @@ fn pieces(description: &Description) -> usize {
     graphs.sum::<usize>() + usize::from(!description.lent_visibility)
 }
 
-/// Every technique, and what adds resources to one.
-const ALL: &[Described] = &[
-    ("technique=hard map=16", |_| {}),
-    ("technique=pcss map=16", |_| {}),
-    ("technique=back-projection map=16", |_| {}),
-    ("technique=many-lights map=16 samples=2", |_| {}),
-    ("map=16", |_| {}),
-    ("map=16 receivers=map receiver_map=16 sides=two", |_| {}),
+/// What adds resources to a technique, beside [`SMALLEST`].
+const MORE: &[Described] = &[
     ("map=16 receivers=map receiver_map=16 accumulate=blend", |_| {}),
-    ("map=16 receivers=map receiver_map=16 accumulate=blend-fp16 sides=one", |_| {}),
-    ("technique=ray-march map=16 rays=4", |_| {}),
-    ("technique=ray-march map=16 rays=4 layers=4 filter=off levels=mip", |_| {}),
     ("technique=ray-march map=16 rays=4", |d| {
         d.light_texture = Some(LightTexture { format: vk::Format::R8G8B8A8_UNORM, color: true });
     }),
-    ("technique=occlusion-textures map=16", |_| {}),
-    ("technique=occlusion-textures map=16 slices=8 prefilter=n-buffer combine=product", |_| {}),
-    ("technique=linear-light map=16 samples=2 lines=1", |_| {}),
     ("technique=hard map=16", |d| (d.lights, d.inspect) = (3, true)),
     ("technique=hard map=16", |d| d.other_techniques.push(settings("technique=hard map=32"))),
 ];
@@ -67,7 +55,8 @@ fn an_allocator_that_fails_at_each_call() {
     // There the techniques' pipelines alone would take longer than all of this.
     let slow = device.leaves_to_others("what a failed resize leaves, but for two techniques");
     let mut faults = [0; 3];
-    for (words, change) in ALL {
+    let smallest = SMALLEST.map(|words| -> Described { (words, |_| {}) });
+    for (words, change) in smallest.iter().chain(MORE) {
         let description = Bench::description(words, *change);
         if description.technique.room().blends_f32() && !Requirements::of(&host).blends_f32 {
             println!("{words}: the device cannot blend");

@@ -1,6 +1,8 @@
 //! Ten thousand frames in one process: lights, scenes, sizes, settings and techniques change, frames overlap, and
 //! nothing grows.
 //!
+//! A program of its own: it measures the memory of its process.
+//!
 //! `ANTUMBRA_CASES=10` runs ten times as many frames.
 
 // A test says what went wrong by panicking.
@@ -11,6 +13,7 @@ mod engine;
 use antumbra_harness::HeadlessDevice;
 use antumbra_tests::device::{device, unwatched};
 use antumbra_tests::random::times;
+use antumbra_tests::{say, validating};
 use engine::Engine;
 
 /// Frames without the validation layer, and then so many under it: it takes two to four times as long, and remembers
@@ -108,8 +111,8 @@ fn ten_thousand_frames_leave_nothing_behind() {
 }
 
 fn device_under_the_layer() -> antumbra_tests::TestDevice {
-    if std::env::var("ANTUMBRA_VALIDATE").is_err() {
-        println!("without the validation layer, which ANTUMBRA_VALIDATE=1 asks for");
+    if !validating() {
+        say("long_run: without the validation layer, which ANTUMBRA_VALIDATE=1 asks for");
     }
     device()
 }

@@ -267,8 +267,25 @@ fn a_wrong_twin_is_caught_with_a_case_that_shows_it() {
         .unwrap_err();
     assert!(problem.contains("float abs(float x)"), "{problem}");
     assert!(problem.contains("the twin in f32"), "{problem}");
-    assert!(problem.contains("worst:    [2.9"), "{problem}");
-    assert!(problem.contains("expected: [0.125]"), "{problem}");
+    assert!(problem.contains("worst:    x = 2.9"), "{problem}");
+    assert!(problem.contains("expected: returned = 0.125"), "{problem}");
+}
+
+/// A failure names the inputs by their parameters and stands before what passed, in the order of the checks.
+#[test]
+fn a_failure_comes_first_with_its_names() {
+    let abs = || Function::new("common/light_space.glsl", "float abs(float x)").case(-0.5);
+    let device = device();
+    abs().f32(Tolerance::exact(), |x| vec![x[0].abs()]).check(&device);
+    let wrong = abs().f32(Tolerance::exact(), |_| vec![0.25]);
+    let checked = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| wrong.check(&device)));
+    let panic = checked.unwrap_err();
+    let text = panic.downcast_ref::<String>().unwrap();
+    let at = |part: &str| text.find(part).unwrap_or_else(|| panic!("no {part:?} in:\n{text}"));
+    let order =
+        ["1 of 1 cases differ", "x = -0.5", "returned = 0.5", "returned = 0.25", "passed before"];
+    assert!(order.map(at).is_sorted(), "{text}");
+    assert!(text.ends_with("against the twin in f32: 1 cases, the same in all"), "{text}");
 }
 
 /// One unit in the last place of one result is caught where nothing is allowed.

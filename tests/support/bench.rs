@@ -16,6 +16,23 @@ use ash::vk;
 /// Settings as words, and what else a description has.
 pub type Described<'a> = (&'a str, fn(&mut Description));
 
+/// Each technique on a map of 16², and each way through one that has passes or resources of its own; but for blending
+/// 32-bit floats, which not every device does.
+pub const SMALLEST: [&str; 12] = [
+    "technique=hard map=16",
+    "technique=pcss map=16",
+    "technique=back-projection map=16",
+    "technique=many-lights map=16 samples=3",
+    "map=16",
+    "map=16 receivers=map receiver_map=16 sides=two",
+    "map=16 receivers=map receiver_map=16 accumulate=blend-fp16 sides=one",
+    "technique=ray-march map=16 rays=4",
+    "technique=ray-march map=16 rays=4 layers=4 filter=off levels=mip",
+    "technique=occlusion-textures map=16",
+    "technique=occlusion-textures map=16 slices=8 prefilter=n-buffer combine=product",
+    "technique=linear-light map=16 samples=2 lines=1",
+];
+
 /// The G-buffer's size.
 pub const EXTENT: [u32; 2] = [24, 16];
 /// What a node is resized to.

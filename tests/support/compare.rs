@@ -1,7 +1,5 @@
 //! How far a number may be from what was expected, and where it was furthest.
 
-use std::fmt;
-
 /// How far apart two numbers may be: whichever of the three allows more.
 ///
 /// Two NaNs agree, and so do two infinities of one sign; a NaN agrees with nothing else. Numbers
@@ -129,19 +127,6 @@ impl Report {
             }
         }
         self.failures += usize::from(failed);
-    }
-}
-
-impl fmt::Display for Report {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} of {} cases differ by more than is allowed", self.failures, self.cases)?;
-        if let Some(w) = &self.worst {
-            write!(f, "\n  worst:    {:?}", w.input)?;
-            write!(f, "\n  found:    {:?}\n  expected: {:?}", w.found, w.expected)?;
-            write!(f, "\n  apart by {:e}, {} ulps, ", w.difference, w.ulps)?;
-            write!(f, "{:.3} times what is allowed", w.excess)?;
-        }
-        Ok(())
     }
 }
 

@@ -1,9 +1,9 @@
 //! The device of a test.
 
 use crate::example::root;
+use crate::skip::{say, validating};
 use antumbra::Error;
 use antumbra_harness::{HeadlessDevice, HeadlessOptions, MessageLog, Tables};
-use std::io::Write;
 use std::ops::Deref;
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
@@ -34,8 +34,7 @@ static UNWATCHED: Mutex<Weak<HeadlessDevice>> = Mutex::new(Weak::new());
 /// # Panics
 /// Without such a device, with what to install.
 pub fn device() -> TestDevice {
-    let validation = std::env::var("ANTUMBRA_VALIDATE").is_ok_and(|value| value == "1");
-    shared(&SHARED, validation)
+    shared(&SHARED, validating())
 }
 
 /// As [`device`], but never under the validation layer: for laws on thousands of images, which would take half as
@@ -92,9 +91,7 @@ impl TestDevice {
     pub fn leaves_to_others(&self, what: &str) -> bool {
         let slow = self.name().contains("SwiftShader");
         if slow {
-            // The harness shows what is printed only where a test fails.
-            let _ =
-                writeln!(std::io::stderr(), "left to other drivers than {}: {what}", self.name());
+            say(&format!("left to other drivers than {}: {what}", self.name()));
         }
         slow
     }

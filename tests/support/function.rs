@@ -12,16 +12,25 @@
 //! `out` parameters are results after the returned value. Inputs and results are flat lists of
 //! numbers in that order, a matrix column by column.
 
-use crate::compare::{Report, Tolerance};
+use crate::compare::{Report, Tolerance, Worst};
 use crate::compile::try_compile;
-use crate::signature::{Scalar, Signature};
+use crate::signature::{Parameter, Scalar, Signature};
 use antumbra_harness::{HeadlessDevice, HostBuffer, run_compute};
 use ash::vk;
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
+use std::cell::RefCell;
 
 /// Invocations a workgroup; each runs one case.
 const GROUP: usize = 64;
+
+thread_local! {
+    /// What a test has checked so far; each test has a thread of its own.
+    static PASSED: RefCell<Vec<String>> = const { RefCell::new(Vec::new()) };
+}
+
+/// Options of the harness that show what passes; else what passed stands behind what fails.
+const SHOWN: [&str; 3] = ["--nocapture", "--no-capture", "--show-output"];
 
 /// What a test of one function consists of.
 pub struct Function {
@@ -210,23 +219,55 @@ impl Function {
                 report.add(&case.input, &case.output, &expected, twin.tolerance);
             }
             if report.failures > 0 {
-                let (prototype, name) = (&self.prototype, twin.name);
-                let device = device.name();
-                problems.push(format!("{prototype} on {device} against {name}: {report}"));
+                problems.push(self.problem(device, twin, &report));
             }
             reports.push(report);
         }
         if problems.is_empty() { Ok(reports) } else { Err(problems.join("\n")) }
     }
 
-    /// As [`Self::try_check`], and says how it went.
+    /// What a twin finds wrong, and the worst case by the parameters' names.
+    fn problem(&self, device: &HeadlessDevice, twin: &Twin, report: &Report) -> String {
+        let Report { failures, cases, worst } = report;
+        let mut text = format!(
+            "{} on {} against {}: {failures} of {cases} cases differ by more than is allowed",
+            self.prototype,
+            device.name(),
+            twin.name
+        );
+        if let Some(Worst { input, found, expected, excess, difference, ulps }) = worst {
+            let (input, of) = (self.signature.named_inputs(input), &self.signature);
+            text += &format!(
+                "\n  worst:    {input}\n  found:    {}\n  expected: {}\n  \
+                 apart by {difference:e}, {ulps} ulps, {excess:.3} times what is allowed",
+                of.named_outputs(found),
+                of.named_outputs(expected)
+            );
+        }
+        text
+    }
+
+    /// As [`Self::try_check`]; a line for each twin says how near it was.
     ///
     /// # Panics
-    /// If a twin differs by more than is allowed, with the worst case.
+    /// If a twin differs by more than is allowed: with the worst case, and behind it the lines of what this test has
+    /// checked before.
+    #[track_caller]
     pub fn check(&self, device: &HeadlessDevice) {
-        let reports = self.try_check(device).unwrap_or_else(|problem| panic!("{problem}"));
-        for (twin, report) in self.twins.iter().zip(&reports) {
-            println!("{} against {}: {report}", self.prototype, twin.name);
+        let reports = self.try_check(device).unwrap_or_else(|problem| {
+            let passed = PASSED.take();
+            let before = if passed.is_empty() { "" } else { "\npassed before:\n  " };
+            panic!("{problem}{before}{}", passed.join("\n  "))
+        });
+        for (twin, Report { cases, worst, .. }) in self.twins.iter().zip(&reports) {
+            let near = worst.as_ref().map_or("the same in all".into(), |worst| {
+                format!("the worst {:.3} times what is allowed", worst.excess)
+            });
+            let line = format!("{} against {}: {cases} cases, {near}", self.prototype, twin.name);
+            if std::env::args().any(|option| SHOWN.contains(&option.as_str())) {
+                println!("{line}");
+            }
+            PASSED.with_borrow_mut(|passed| passed.push(line));
         }
     }
 
@@ -249,7 +290,7 @@ impl Function {
             written += kind.count;
             format!("{} result = ", kind.name)
         });
-        for (i, (kind, out)) in parameters.iter().enumerate() {
+        for (i, Parameter { kind, out, .. }) in parameters.iter().enumerate() {
             if *out {
                 before += &format!("    {} out_{i};\n", kind.name);
                 after += &kind.write("words_out", "at_out", written, &format!("out_{i}"));

@@ -2,6 +2,7 @@
 //! instance, and must not have to know.
 
 use crate::example::folder;
+use crate::skip::validating;
 use std::path::Path;
 use std::process::Command;
 
@@ -33,8 +34,7 @@ pub enum Checks {
 impl Checks {
     /// These, where tests run under the layer.
     pub fn if_validating(self) -> Self {
-        let validating = std::env::var("ANTUMBRA_VALIDATE").is_ok_and(|value| value == "1");
-        if validating { self } else { Self::None }
+        if validating() { self } else { Self::None }
     }
 }
 

@@ -18,7 +18,9 @@ pub mod random;
 pub mod reflect;
 pub mod rig;
 mod signature;
+mod skip;
 pub mod tables;
 
 pub use device::{TestDevice, device};
 pub use function::{Case, Function};
+pub use skip::{say, skip, validating};

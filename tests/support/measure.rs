@@ -40,6 +40,15 @@ pub fn model(name: &str) -> Scene {
     from_gltf(&root().join(format!("scenes/{name}.glb"))).unwrap()
 }
 
+/// Room above a measured error for drivers that place edges differently, in percentage points.
+const ABOVE: f64 = 0.3;
+
+/// Whether an error is what a table says was measured, both in percent: it is worse by no more than drivers differ, and
+/// better by no more than three tenths and what two digits leave. Where it is much better the table is out of date.
+pub fn as_measured(error: f64, measured: f64) -> bool {
+    error <= measured + ABOVE && error >= 0.7 * measured - 0.05
+}
+
 /// A scene with the pixels that look at it.
 pub struct Setup<'a> {
     /// The scene; its first light is used.
@@ -178,4 +187,15 @@ pub fn bunny_under_a_line() -> Scene {
     let half = light.world_from_light().transform_vector3(DVec3::X * 0.5);
     *light = RectangleLight::line(light.center(), half, light.emission()).unwrap();
     scene
+}
+
+#[cfg(test)]
+mod tests {
+    use super::as_measured;
+
+    #[test]
+    fn a_table_is_wrong_in_either_direction() {
+        assert!(as_measured(1.2, 1.2) && as_measured(1.49, 1.2) && as_measured(0.8, 1.2));
+        assert!(!as_measured(1.51, 1.2) && !as_measured(0.78, 1.2) && !as_measured(f64::NAN, 1.2));
+    }
 }

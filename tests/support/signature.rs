@@ -98,12 +98,21 @@ impl Type {
     }
 }
 
+/// A parameter of a function.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Parameter {
+    pub name: String,
+    pub kind: Type,
+    /// Whether it is an `out` parameter, which is a result.
+    pub out: bool,
+}
+
 /// A function's name, parameters and results.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Signature {
     pub name: String,
-    /// In order; `true` for an `out` parameter, which is a result.
-    pub parameters: Vec<(Type, bool)>,
+    /// In order.
+    pub parameters: Vec<Parameter>,
     /// `None` for `void`.
     pub returns: Option<Type>,
 }
@@ -118,10 +127,13 @@ impl Signature {
             return Err(shape());
         };
         let parameters = list.split(',').map(str::trim).filter(|text| !text.is_empty());
+        let parameter = |kind: &str, name: &str, out| {
+            Ok(Parameter { name: name.to_owned(), kind: Type::parse(kind)?, out })
+        };
         let parameters = parameters
             .map(|text| match text.split_whitespace().collect::<Vec<_>>()[..] {
-                [kind, _] | ["in", kind, _] => Ok((Type::parse(kind)?, false)),
-                ["out", kind, _] => Ok((Type::parse(kind)?, true)),
+                [kind, name] | ["in", kind, name] => parameter(kind, name, false),
+                ["out", kind, name] => parameter(kind, name, true),
                 _ => Err(shape()),
             })
             .collect::<Result<_, _>>()?;
@@ -131,19 +143,45 @@ impl Signature {
 
     /// What goes in, in order.
     pub fn inputs(&self) -> impl Iterator<Item = Type> + '_ {
-        self.parameters.iter().filter(|(_, out)| !out).map(|(kind, _)| *kind)
+        self.parameters.iter().filter(|p| !p.out).map(|p| p.kind)
     }
 
     /// What comes out: the returned value, then the `out` parameters in order.
     pub fn outputs(&self) -> impl Iterator<Item = Type> + '_ {
-        let out = self.parameters.iter().filter(|(_, out)| *out).map(|(kind, _)| *kind);
+        let out = self.parameters.iter().filter(|p| p.out).map(|p| p.kind);
         self.returns.into_iter().chain(out)
+    }
+
+    /// A case's inputs, each by its parameter's name, as in `a = 0.5, b = [1.0, 0.0]`.
+    pub fn named_inputs(&self, numbers: &[f64]) -> String {
+        let names = self.parameters.iter().filter(|p| !p.out).map(|p| p.name.as_str());
+        named(names.zip(self.inputs()), numbers)
+    }
+
+    /// A case's results: the returned value, and each `out` parameter by its name.
+    pub fn named_outputs(&self, numbers: &[f64]) -> String {
+        let names = self.parameters.iter().filter(|p| p.out).map(|p| p.name.as_str());
+        let names = self.returns.map(|_| "returned").into_iter().chain(names);
+        named(names.zip(self.outputs()), numbers)
     }
 
     /// The scalar of each word of one case.
     pub fn scalars(types: impl Iterator<Item = Type>) -> Vec<Scalar> {
         types.flat_map(|t| std::iter::repeat_n(t.scalar, t.count)).collect()
     }
+}
+
+fn named<'a>(values: impl Iterator<Item = (&'a str, Type)>, mut numbers: &[f64]) -> String {
+    let mut texts = Vec::new();
+    for (name, kind) in values {
+        let (own, rest) = numbers.split_at(kind.count);
+        numbers = rest;
+        texts.push(match own {
+            [number] => format!("{name} = {number:?}"),
+            _ => format!("{name} = {own:?}"),
+        });
+    }
+    texts.join(", ")
 }
 
 #[cfg(test)]
@@ -159,6 +197,15 @@ mod tests {
         assert_eq!(Signature::parse("float g()").unwrap().inputs().count(), 0);
         assert!(Signature::parse("float g").unwrap_err().contains("form"));
         assert!(Signature::parse("sampler2D g()").unwrap_err().contains("sampler2D"));
+    }
+
+    #[test]
+    fn numbers_are_named() {
+        let s = Signature::parse("float f(vec2 a, uint n, out vec2 slope)").unwrap();
+        assert_eq!(s.named_inputs(&[0.5, 1.0, 3.0]), "a = [0.5, 1.0], n = 3.0");
+        assert_eq!(s.named_outputs(&[2.0, 0.25, -1.0]), "returned = 2.0, slope = [0.25, -1.0]");
+        let s = Signature::parse("void f(float a, out float b)").unwrap();
+        assert_eq!(s.named_outputs(&[2.0]), "b = 2.0");
     }
 
     #[test]

@@ -4,7 +4,8 @@ use antumbra::RectangleLight;
 use antumbra::scene::{Role, Scene, generate};
 use antumbra_harness::View;
 use antumbra_tests::device;
-use antumbra_tests::measure::{Setup, model, percent, summary};
+use antumbra_tests::example::root;
+use antumbra_tests::measure::{Setup, as_measured, model, percent, summary};
 
 /// The card's visible fraction against the closed form: the only error is the discretized edge, at
 /// most half a texel a side, so ½·Δ·4·1/(2·1) of the shadow where the fit leaves the card on texel
@@ -90,6 +91,21 @@ fn window(scene: &Scene) -> [[f64; 2]; 2] {
     [[-tan; 2], [tan; 2]]
 }
 
+/// What docs/accuracy.md says was measured, in percent.
+fn documented(model: &str, light: f64, side: u32, sides: &str) -> f64 {
+    let page = std::fs::read_to_string(root().join("docs/accuracy.md")).unwrap();
+    let table = page.lines().skip_while(|line| !line.starts_with("| | L | N = 64 |")).skip(2);
+    let light = format!("{light:.1}");
+    let row = table
+        .take_while(|line| line.starts_with('|'))
+        .map(|line| line.trim_matches('|').split('|').map(str::trim).collect::<Vec<_>>())
+        .find(|cells| cells[0].starts_with(model) && cells[1] == light)
+        .unwrap_or_else(|| panic!("docs/accuracy.md has no {model} under {light} m"));
+    let cell = row[2 + [64, 128, 256].iter().position(|s| *s == side).unwrap()];
+    let nth = ["one", "two", "mean"].iter().position(|s| *s == sides).unwrap();
+    cell.split('/').nth(nth).unwrap().trim().parse().unwrap()
+}
+
 #[test]
 fn the_published_table_is_reached() {
     let device = device();
@@ -119,15 +135,16 @@ fn the_published_table_is_reached() {
                      {expected} (truth's noise {:.2} points a pixel)",
                     100.0 * *noise
                 );
-                if error > expected + POINTS {
+                let told = documented(name, *light, *side, sides);
+                if error > expected + POINTS || !as_measured(error, told) {
                     misses.push(format!(
-                        "{name}, L = {light}, N = {side}, {sides}: {error:.2} %, not {expected}"
+                        "{name}, L = {light}, N = {side}, {sides}: {error:.2} %, not {expected} or {told}"
                     ));
                 }
             }
         }
     }
-    assert!(misses.is_empty(), "above the table:\n{}", misses.join("\n"));
+    assert!(misses.is_empty(), "not as the table or docs/accuracy.md:\n{}", misses.join("\n"));
 }
 
 /// Real models as their files are, every pixel that they show, self-shadows included.

@@ -3,7 +3,7 @@
 use antumbra::Technique;
 use antumbra::scene::{Scene, generate};
 use antumbra_tests::device;
-use antumbra_tests::measure::{Setup, percent, summary};
+use antumbra_tests::measure::{Setup, as_measured, percent, summary};
 
 /// A triangle out of every axis, and an L: a metre across.
 const TRIANGLE: &[[f64; 2]] = &[[-0.5, -0.3], [0.5, -0.1], [-0.2, 0.5]];
@@ -36,7 +36,8 @@ fn many_lights_see_the_polygon() {
             s.penumbra_pixels
         );
         assert!(s.penumbra_pixels > 1000 && s.lit_error < 0.001, "{name}");
-        assert!(100.0 * s.mean_abs_error < most, "{name}: {}", s.mean_abs_error);
+        let error = 100.0 * s.mean_abs_error;
+        assert!(error < most && as_measured(error, MEASURED), "{name}: {error} %");
 
         // The truth can tell the polygon from its rectangle, and from its mirror image.
         let plan = stage.plan(&setup.light(), None).unwrap();
@@ -50,8 +51,11 @@ fn many_lights_see_the_polygon() {
     }
 }
 
-/// The most that the mean error may be under the triangle and the L; 0.44 was measured under either, with
-/// 8.7 and 9.8 under their rectangles, 6.9 and 12.9 under their mirror images.
+/// The mean error in percent under the triangle and the L alike, as measured on lavapipe, with 8.7 and 9.8 under their
+/// rectangles, 6.9 and 12.9 under their mirror images.
+const MEASURED: f64 = 0.44;
+
+/// The most that it may be.
 const MOST: [f64; 2] = [0.6, 0.6];
 
 /// A rectangle as an outline is the rectangle: the same points but for rounding, and so the same pixels but for

@@ -17,7 +17,7 @@ fn a_sun_is_a_light_like_others() {
         let setup = Setup::ground(&scene, 1.6, 160);
         let mut truth = None;
         for (words, most) in SUN {
-            let mut stage = setup.stage(&device, &format!("map=512 {words}"));
+            let mut stage = setup.stage(&device, &format!("{words} map=512"));
             let image = setup.visibility(&mut stage);
             let (truth, noise) = truth.get_or_insert_with(|| setup.traced(&stage, 256));
             let error = percent(truth, &image);

@@ -1,0 +1,57 @@
+//! No test is left out: each file of a program's folder is a module of it, and each folder with a `main.rs` is a program.
+
+use antumbra_tests::example::root;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Which files and folders are there, in order.
+fn entries(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).unwrap();
+    let mut paths: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    paths
+}
+
+/// A path's name without its extension.
+fn stem(path: &Path) -> String {
+    path.file_stem().unwrap().to_string_lossy().into_owned()
+}
+
+/// The modules among these files that a text does not declare.
+fn left_out(text: &str, files: &[PathBuf]) -> Vec<String> {
+    let modules = files.iter().filter(|file| file.extension().is_some_and(|e| e == "rs"));
+    let names = modules.map(|file| stem(file)).filter(|name| name != "main");
+    names.filter(|name| !text.lines().any(|line| line == format!("mod {name};"))).collect()
+}
+
+#[test]
+fn every_file_is_a_module_of_its_program() {
+    let folders = entries(&root().join("tests"));
+    let manifest = fs::read_to_string(root().join("tests/Cargo.toml")).unwrap();
+    let mut programs = Vec::new();
+    for folder in folders.iter().filter(|folder| folder.join("main.rs").exists()) {
+        let name = stem(folder);
+        let target = format!("[[test]]\nname = \"{name}\"\npath = \"{name}/main.rs\"\n");
+        assert!(manifest.contains(&target), "tests/Cargo.toml has no {target}");
+        let main = fs::read_to_string(folder.join("main.rs")).unwrap();
+        for folder in std::iter::once(folder).chain(&entries(folder)).filter(|path| path.is_dir()) {
+            // A module's own modules stand in a folder of its name.
+            let parent = folder.with_extension("rs");
+            let text = fs::read_to_string(parent).unwrap_or_else(|_| main.clone());
+            let left_out = left_out(&text, &entries(folder));
+            assert!(left_out.is_empty(), "{}: no module declares {left_out:?}", folder.display());
+        }
+        programs.push(name);
+    }
+    assert!(programs.len() >= 6, "{programs:?}");
+    let once = manifest.lines().find_map(|line| line.strip_prefix("once = ")).unwrap();
+    let once: Vec<String> = serde_json::from_str(once).unwrap();
+    assert!(once.iter().all(|name| programs.contains(name)), "{once:?} of {programs:?}");
+}
+
+#[test]
+fn a_file_that_no_module_declares_is_found() {
+    let files = ["main.rs", "a.rs", "b.rs", "table.txt"].map(PathBuf::from);
+    assert_eq!(left_out("mod a;\n", &files), ["b"]);
+    assert_eq!(left_out("mod a;\nmod b;\n", &files), [""; 0]);
+}
