@@ -78,9 +78,12 @@ pub mod light;
 pub mod node;
 mod plain;
 pub mod scene;
+#[doc(hidden)]
 pub mod shaders;
+#[doc(hidden)]
 pub mod stages;
 pub mod technique;
+#[doc(hidden)]
 pub mod techniques;
 #[cfg(feature = "truth")]
 pub mod truth;
@@ -99,7 +102,7 @@ pub use lent::{
 pub use light::{Light, RectangleLight};
 pub use node::{LayerPass, PassTime, ShadowNode, VisibilityImage};
 pub use plain::{Matrix, Vector};
-pub use technique::Technique;
+pub use technique::{Technique, settings};
 
 /// The README's example is compiled with the doctests.
 #[cfg(doctest)]

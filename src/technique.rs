@@ -45,6 +45,12 @@ macro_rules! techniques {
             }
         }
 
+        /// The settings of each technique, and their choices.
+        pub mod settings {
+            $(#[doc(inline)]
+            pub use crate::techniques::$room::settings as $room;)+
+        }
+
         $(impl From<$room::Settings> for Technique {
             fn from(settings: $room::Settings) -> Self {
                 Self::$variant(settings)

@@ -10,6 +10,7 @@ use antumbra_harness::{ImageSource, read_image};
 use antumbra_tests::TestDevice;
 use antumbra_tests::bench::{Bench, Described, EXTENT, Memory, OTHER_EXTENT, host};
 use antumbra_tests::measure::settings;
+use antumbra_tests::permutations;
 use antumbra_tests::tables::{self, FAULTY};
 use ash::vk;
 use std::collections::BTreeMap;
@@ -31,7 +32,7 @@ fn names(description: &Description) -> Vec<String> {
         names.extend(graph.resources().iter().map(|r| r.name.to_owned()));
         names.extend(graph.passes().iter().map(|p| p.name.to_owned()));
     }
-    names.extend(antumbra::shaders::ALL.iter().map(|m| m.path.to_owned()));
+    names.extend(permutations::modules().into_iter().map(|module| module.name));
     names
 }
 

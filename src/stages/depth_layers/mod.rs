@@ -35,7 +35,7 @@ pub(crate) use view::{fit_boxes, fit_boxes_from, fit_receiver_boxes, tangents_of
 use crate::graph::{
     Access, Draw, Graph, Layer, Need, Owner, Pass, Push, ResourceId, Target, Use, Work,
 };
-use crate::shaders;
+use crate::shaders::{self, module};
 use ash::vk;
 use smallvec::smallvec;
 
@@ -264,7 +264,7 @@ fn copied(
             most: if back { 1.0 - f32::EPSILON } else { 1.0 },
         }),
         work: Work::Dispatch {
-            shader: shaders::COPY_MAP,
+            shader: module!("depth_layers/copy_map.comp"),
             groups: [side.div_ceil(8), side.div_ceil(8), 1],
         },
         need: *need,

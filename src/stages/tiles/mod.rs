@@ -28,7 +28,7 @@ pub mod twin;
 
 use super::visibility::GBuffer;
 use crate::graph::{Access, Graph, Need, Pass, Push, ResourceId, Use, Uses, Work};
-use crate::shaders::{self, Module};
+use crate::shaders::{Module, module};
 use smallvec::smallvec;
 
 /// A tile's side in pixels (`lists.glsl`).
@@ -58,7 +58,7 @@ impl Tiles {
         let list = graph.buffer("visibility.tile_list", HEAD + 4 * tiles);
         graph.push(Pass::compute(
             "visibility.tiles_start",
-            shaders::TILES_START,
+            module!("visibility/tiles_start.comp"),
             [1, 1, 1],
             Push::NONE,
             smallvec![

@@ -4,7 +4,7 @@
 //! that work at the pixels write it themselves; results in the light's space are resolved onto the pixels here.
 
 use crate::graph::{Access, Graph, Need, Owner, Pass, Push, ResourceId, Use, Work};
-use crate::shaders;
+use crate::shaders::{self, module};
 use crate::stages::depth_layers::MapView;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
@@ -115,7 +115,7 @@ pub fn lit(graph: &mut Graph, visibility: ResourceId, extent: [u32; 2], color: b
         uses: smallvec![Use::bound(0, visibility, Access::ImageWrite)],
         push: Push::new(&LitPush { extent: extent.map(|e| e as i32) }),
         work: Work::Dispatch {
-            shader: if color { shaders::LIT_COLOR } else { shaders::LIT },
+            shader: if color { module!("visibility/lit_color.comp") } else { shaders::LIT },
             groups: grid(extent),
         },
         need,
@@ -150,7 +150,10 @@ pub fn resolve(
             receiver_map: what.view.side as i32,
             flags: i32::from(gbuffer.mask.is_some()) | i32::from(what.mean) << 1,
         }),
-        work: Work::Dispatch { shader: shaders::RESOLVE, groups: grid(gbuffer.extent) },
+        work: Work::Dispatch {
+            shader: module!("visibility/resolve.comp"),
+            groups: grid(gbuffer.extent),
+        },
         need: *need,
     });
 }

@@ -23,33 +23,17 @@
 //! CPU driver stops a shader after 65,535 turns of its loops; eight texels a turn are enough for a window of 700²
 //! texels.
 
+pub mod settings;
 pub mod twin;
+
+pub use settings::Settings;
 
 use super::common::{FinestLevel, one_map};
 use super::room::{Maps, PassInputs, Room, Shows, Takes};
 use crate::graph::{Access, Graph, Pass, Push, ResourceId, Use};
-use crate::knob::{Field, Knobs};
-use crate::shaders;
+use crate::shaders::module;
 use bytemuck::{Pod, Zeroable};
 use smallvec::smallvec;
-
-/// The knobs of back-projection.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Settings {
-    /// The map's side, texels, 1 to 4096; 256 by default.
-    pub map: u32,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self { map: 256 }
-    }
-}
-
-impl Knobs for Settings {
-    const NAME: &'static str = "back-projection";
-    const FIELDS: &'static [Field<Self>] = &[Field::map(|s| s.map, |s, map| s.map = map)];
-}
 
 impl Room for Settings {
     fn takes(&self) -> Takes {
@@ -107,7 +91,7 @@ fn declare(graph: &mut Graph, front: ResourceId, inputs: &PassInputs) {
     };
     graph.push(Pass::compute(
         "back_projection.finest_level",
-        shaders::FINEST_LEVEL,
+        module!("back_projection/finest_level.comp"),
         grid(1),
         Push::new(&FinestLevel { map: map as i32, inv_near: (1.0 / inputs.occluders.near) as f32 }),
         smallvec![
@@ -119,7 +103,7 @@ fn declare(graph: &mut Graph, front: ResourceId, inputs: &PassInputs) {
     for level in 2..=top(map) {
         graph.push(Pass::compute(
             "back_projection.next_level",
-            shaders::NEXT_LEVEL,
+            module!("back_projection/next_level.comp"),
             grid(level),
             Push::new(&NextLevel { map: map as i32, level: level as i32 }),
             smallvec![Use::bound(0, levels, Access::BufferUpdate)],
@@ -128,5 +112,13 @@ fn declare(graph: &mut Graph, front: ResourceId, inputs: &PassInputs) {
     }
     let more = [Use::bound(4, levels, Access::BufferReadCompute)];
     let name = "back_projection.visibility";
-    one_map(graph, name, shaders::BACK_PROJECTION, front, top(map), &more, inputs);
+    one_map(
+        graph,
+        name,
+        module!("back_projection/back_projection.comp"),
+        front,
+        top(map),
+        &more,
+        inputs,
+    );
 }

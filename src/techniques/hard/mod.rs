@@ -7,29 +7,14 @@
 //!
 //! **Limits.** The light is a point: there is no penumbra but the filter's three texels.
 
+pub mod settings;
+
+pub use settings::Settings;
+
 use super::common::one_map;
 use super::room::{Maps, PassInputs, Room, Shows, Takes};
 use crate::graph::{Graph, Need, ResourceId};
-use crate::knob::{Field, Knobs};
-use crate::shaders;
-
-/// The knobs of hard shadow maps.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Settings {
-    /// The map's side, texels, 1 to 4096; 256 by default.
-    pub map: u32,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self { map: 256 }
-    }
-}
-
-impl Knobs for Settings {
-    const NAME: &'static str = "hard";
-    const FIELDS: &'static [Field<Self>] = &[Field::map(|s| s.map, |s, map| s.map = map)];
-}
+use crate::shaders::module;
 
 impl Room for Settings {
     fn takes(&self) -> Takes {
@@ -72,7 +57,7 @@ pub(crate) fn declare(
     one_map(
         graph,
         "hard.visibility",
-        shaders::HARD,
+        module!("hard/hard.comp"),
         front,
         count,
         &[],

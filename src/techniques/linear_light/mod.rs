@@ -60,7 +60,7 @@ mod line;
 mod passes;
 mod samples;
 mod segments;
-mod settings;
+pub mod settings;
 pub mod twin;
 mod view;
 

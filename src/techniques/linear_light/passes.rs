@@ -5,7 +5,7 @@ use super::samples;
 use super::segments;
 use super::settings::{MOST_SAMPLES, Settings, skin_bytes};
 use crate::graph::{Access, Graph, Owner, Pass, Push, Use};
-use crate::shaders;
+use crate::shaders::module;
 use crate::stages::depth_layers;
 use crate::stages::views::Line;
 use crate::stages::visibility::grid;
@@ -111,7 +111,7 @@ pub(super) fn declare(graph: &mut Graph, settings: &Settings, inputs: &PassInput
     let gbuffer = inputs.gbuffer;
     graph.push(Pass::compute(
         "linear_light.visibility",
-        shaders::LINE_VISIBILITY,
+        module!("linear_light/visibility.comp"),
         grid(gbuffer.extent),
         Push::new(&Visibility {
             light_from_ndc: gbuffer.light_from_ndc,

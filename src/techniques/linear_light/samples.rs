@@ -2,7 +2,7 @@
 
 use super::line::LineContext;
 use crate::graph::{Access, Draw, Graph, Layer, Pass, Push, ResourceId, Target, Use, Work};
-use crate::shaders;
+use crate::shaders::module;
 use crate::stages::depth_layers::{self, Raster};
 use crate::stages::visibility::grid;
 use bytemuck::{Pod, Zeroable};
@@ -50,7 +50,7 @@ pub(super) fn place(graph: &mut Graph, ctx: &LineContext) {
     if settings.is_even() {
         graph.push(Pass::compute(
             "linear_light.spread",
-            shaders::LINE_SPREAD,
+            module!("linear_light/spread.comp"),
             [1, 1, 1],
             Push::new(&Spread { count: settings.samples as i32 }),
             smallvec![Use::bound(0, layers.samples, Access::BufferWriteCompute)],
@@ -70,12 +70,15 @@ pub(super) fn place(graph: &mut Graph, ctx: &LineContext) {
     graph.push(Pass {
         name: "linear_light.middle_copy",
         uses: copied.uses.iter().copied().filter(|u| u.access != Access::Indirect).collect(),
-        work: Work::Dispatch { shader: shaders::LINE_COPY, groups: grid([settings.map; 2]) },
+        work: Work::Dispatch {
+            shader: module!("linear_light/copy_depth.comp"),
+            groups: grid([settings.map; 2]),
+        },
         ..copied
     });
     graph.push(Pass::compute(
         "linear_light.mask",
-        shaders::LINE_MASK,
+        module!("linear_light/mask.comp"),
         grid(RECEIVERS),
         Push::new(&Mask {
             u_window: line.u_window(),
@@ -90,7 +93,7 @@ pub(super) fn place(graph: &mut Graph, ctx: &LineContext) {
     ));
     graph.push(Pass::compute(
         "linear_light.place",
-        shaders::LINE_PLACE,
+        module!("linear_light/place.comp"),
         [1, 1, 1],
         Push::new(&Place {
             error: settings.error,
@@ -149,7 +152,11 @@ fn drawn(
             nth: sample.map_or(-1, |nth| nth as i32),
         }),
         work: Work::Raster {
-            vertex: if sample.is_some() { shaders::SAMPLE_VERT } else { shaders::MIDDLE_VERT },
+            vertex: if sample.is_some() {
+                module!("linear_light/sample.vert")
+            } else {
+                module!("linear_light/middle.vert")
+            },
             fragment: None,
             cull,
             target: Target::Depth { clear, compare },
@@ -188,7 +195,7 @@ pub(super) fn copy(ctx: &LineContext, layer: u32) -> Pass {
             layer: layer as i32,
         }),
         work: Work::Indirect {
-            shader: shaders::LINE_COPY,
+            shader: module!("linear_light/copy_depth.comp"),
             arguments: ctx.resources.groups,
             offset: 0,
         },

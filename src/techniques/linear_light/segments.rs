@@ -3,7 +3,7 @@
 use super::line::{LineContext, SkinSide};
 use super::settings::Transition;
 use crate::graph::{Access, Draw, Graph, Pass, Push, Target, Use, Work};
-use crate::shaders;
+use crate::shaders::module;
 use crate::stages::visibility::grid;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
@@ -53,7 +53,7 @@ pub(super) fn start(graph: &mut Graph, ctx: &LineContext, nth: u32) {
     let [x, y] = line.middle;
     graph.push(Pass::compute(
         "linear_light.start",
-        shaders::SKIN_START,
+        module!("linear_light/start.comp"),
         [1, 1, 1],
         Push::new(&Start {
             turn: [c, s, x, y].map(|x| x as f32),
@@ -113,7 +113,7 @@ fn skins(graph: &mut Graph, ctx: &LineContext, skins: &SkinSide) {
     graph.push(Pass {
         name: skins.edges,
         work: Work::Indirect {
-            shader: shaders::EDGES,
+            shader: module!("linear_light/edges.comp"),
             arguments: resources.groups,
             offset: SEGMENT,
         },
@@ -145,8 +145,8 @@ fn skins(graph: &mut Graph, ctx: &LineContext, skins: &SkinSide) {
             rational: i32::from(settings.transition == Transition::Rational),
         }),
         work: Work::Raster {
-            vertex: shaders::SKINS_VERT,
-            fragment: Some(shaders::SKINS_FRAG),
+            vertex: module!("linear_light/skins.vert"),
+            fragment: Some(module!("linear_light/skins.frag")),
             cull: vk::CullModeFlags::NONE,
             target: Target::Depth { clear: 1.0, compare: vk::CompareOp::LESS },
             draw: Draw::Indirect { arguments: resources.draws, offset: skins.offset },
@@ -177,7 +177,7 @@ pub(super) fn keep(graph: &mut Graph, ctx: &LineContext, nth: u32) {
     graph.push(Pass {
         name,
         work: Work::Indirect {
-            shader: shaders::KEEP,
+            shader: module!("linear_light/keep.comp"),
             arguments: resources.groups,
             offset: SAMPLE_BEFORE,
         },

@@ -22,59 +22,21 @@
 //! **Limits.** Shadows band with few points. A frame draws the occluders n times.
 
 mod places;
+pub mod settings;
+
 pub use places::{places, places_within};
+pub use settings::Settings;
 
 use super::room::{Maps, PassInputs, Room, Seen, Shows, Takes};
 use crate::Error;
 use crate::graph::{Access, Graph, Layer, Owner, Pass, Push, ResourceId, Use};
-use crate::knob::{Field, Knobs};
-use crate::shaders;
+use crate::shaders::module;
 use crate::stages::depth_layers::{self, MapView};
 use crate::stages::views::{LightPoint, Views};
 use crate::stages::visibility::grid;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use smallvec::smallvec;
-
-/// The knobs of many lights.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Settings {
-    /// The side of each point's map, texels, 1 to 4096; 256 by default.
-    pub map: u32,
-    /// Points on the light, 1 to 4096; 256 by default.
-    pub samples: u32,
-    /// The seed of the points' random places; 0 puts the points into the middle of their cells.
-    pub seed: u32,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self { map: 256, samples: 256, seed: 1 }
-    }
-}
-
-impl Knobs for Settings {
-    const NAME: &'static str = "many-lights";
-    const FIELDS: &'static [Field<Self>] = &[
-        Field::map(|s| s.map, |s, map| s.map = map),
-        Field::whole(
-            "samples",
-            "points",
-            [1, 4096],
-            "points on the light, each with a map of its own; any whole number",
-            |s| s.samples,
-            |s, samples| s.samples = samples,
-        ),
-        Field::whole(
-            "seed",
-            "whole number",
-            [0, u32::MAX],
-            "which random places of the light have points; 0 puts the points into the middle of their cells",
-            |s| s.seed,
-            |s, seed| s.seed = seed,
-        ),
-    ];
-}
 
 impl Room for Settings {
     fn takes(&self) -> Takes {
@@ -187,7 +149,7 @@ fn declare(graph: &mut Graph, points: &[LightPoint], inputs: &PassInputs) {
     let depth = graph.image("many_lights.point_map", depth_layers::FORMAT, sides, Owner::Transient);
     graph.push(Pass::compute(
         "many_lights.receivers",
-        shaders::RECEIVERS,
+        module!("many_lights/receivers.comp"),
         grid(gbuffer.extent),
         Push::new(&Receivers {
             light_from_ndc: gbuffer.light_from_ndc,
@@ -211,7 +173,7 @@ fn declare(graph: &mut Graph, points: &[LightPoint], inputs: &PassInputs) {
         depth_layers::draw(graph, "many_lights.point_depth", depth, Layer::Front, nth as u32, need);
         graph.push(Pass::compute(
             "many_lights.add_point",
-            shaders::ADD_POINT,
+            module!("many_lights/add_point.comp"),
             grid(gbuffer.extent),
             Push::new(&AddPoint {
                 point: point.at.map(|x| x as f32),
@@ -233,7 +195,7 @@ fn declare(graph: &mut Graph, points: &[LightPoint], inputs: &PassInputs) {
     }
     graph.push(Pass::compute(
         "many_lights.average",
-        shaders::AVERAGE,
+        module!("many_lights/average.comp"),
         grid(gbuffer.extent),
         Push::new(&Average { extent, points: points.len() as f32 }),
         smallvec![

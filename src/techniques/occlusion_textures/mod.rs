@@ -101,7 +101,7 @@
 
 mod pixels;
 mod prefilter;
-mod settings;
+pub mod settings;
 mod slices;
 pub mod twin;
 

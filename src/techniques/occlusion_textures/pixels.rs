@@ -2,7 +2,7 @@
 
 use super::settings::{Combine, Prefilter, Settings};
 use crate::graph::{Access, Graph, Owner, Pass, Push, ResourceId, Use};
-use crate::shaders;
+use crate::shaders::module;
 use crate::stages::nearest::nodes_a_row;
 use crate::stages::tiles::Tiles;
 use crate::stages::visibility::grid;
@@ -46,10 +46,10 @@ pub(super) fn declare_pixels(
     }
     if !settings.classify {
         let shader = match (sums, settings.is_correlated()) {
-            (true, false) => shaders::VISIBILITY_SAT,
-            (true, true) => shaders::VISIBILITY_SAT_CORRELATED,
-            (false, false) => shaders::VISIBILITY_LEVELS,
-            (false, true) => shaders::VISIBILITY_LEVELS_CORRELATED,
+            (true, false) => module!("occlusion_textures/visibility_sat.comp"),
+            (true, true) => module!("occlusion_textures/visibility_sat_correlated.comp"),
+            (false, false) => module!("occlusion_textures/visibility_levels.comp"),
+            (false, true) => module!("occlusion_textures/visibility_levels_correlated.comp"),
         };
         let groups = grid(gbuffer.extent);
         graph.push(Pass::compute(NAME, shader, groups, push, uses, inputs.need));
@@ -58,10 +58,22 @@ pub(super) fn declare_pixels(
     // Means from levels do not distinguish an empty window from one with little in it; squares of the mask do.
     let blocking = if sums { slices.means } else { squares(graph, slices.mask, inputs) };
     let (sort, shader) = match (sums, settings.is_correlated()) {
-        (true, false) => (shaders::SLICE_TILES_SAT, shaders::LISTED_SAT),
-        (true, true) => (shaders::SLICE_TILES_SAT_CORRELATED, shaders::LISTED_SAT_CORRELATED),
-        (false, false) => (shaders::SLICE_TILES_LEVELS, shaders::LISTED_LEVELS),
-        (false, true) => (shaders::SLICE_TILES_LEVELS, shaders::LISTED_LEVELS_CORRELATED),
+        (true, false) => (
+            module!("occlusion_textures/tiles_sat.comp"),
+            module!("occlusion_textures/visibility_listed_sat.comp"),
+        ),
+        (true, true) => (
+            module!("occlusion_textures/tiles_sat_correlated.comp"),
+            module!("occlusion_textures/visibility_listed_sat_correlated.comp"),
+        ),
+        (false, false) => (
+            module!("occlusion_textures/tiles_levels.comp"),
+            module!("occlusion_textures/visibility_listed_levels.comp"),
+        ),
+        (false, true) => (
+            module!("occlusion_textures/tiles_levels.comp"),
+            module!("occlusion_textures/visibility_listed_levels_correlated.comp"),
+        ),
     };
     let tiles = Tiles::start(graph, gbuffer.extent, inputs.need);
     let met = graph.buffer("occlusion_textures.met", 4 * Tiles::in_image(gbuffer.extent));
@@ -91,7 +103,7 @@ fn squares(graph: &mut Graph, mask: ResourceId, inputs: &PassInputs) -> Resource
     let squares = graph.image(name, vk::Format::R32_UINT, [row; 2], Owner::Transient);
     graph.push(Pass::compute(
         name,
-        shaders::SQUARES,
+        module!("occlusion_textures/squares.comp"),
         grid([row; 2]),
         Push::new(&Squares { map: side as i32 }),
         smallvec![

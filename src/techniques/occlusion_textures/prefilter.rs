@@ -2,7 +2,7 @@
 
 use super::settings::{IMAGE_WIDTH, Settings};
 use crate::graph::{Access, Graph, Owner, Pass, Push, ResourceId, Use};
-use crate::shaders::{self, Module};
+use crate::shaders::{Module, module};
 use crate::stages::nbuffer::Levels;
 use crate::stages::visibility::grid;
 use crate::techniques::room::PassInputs;
@@ -45,7 +45,7 @@ pub(super) fn declare_sums(
     };
     sum(
         "occlusion_textures.sum_rows",
-        shaders::SUM_ROWS,
+        module!("occlusion_textures/sum_rows.comp"),
         Push::new(&SumRows { map: side as i32, correlated: i32::from(settings.is_correlated()) }),
         smallvec![
             Use::bound(0, mask, Access::SampledCompute),
@@ -54,7 +54,7 @@ pub(super) fn declare_sums(
     );
     sum(
         "occlusion_textures.sum_columns",
-        shaders::SUM_COLUMNS,
+        module!("occlusion_textures/sum_columns.comp"),
         Push::new(&SumColumns { map: side as i32 }),
         smallvec![Use::bound(0, sums, Access::ImageUpdate)],
     );
@@ -105,7 +105,7 @@ pub(super) fn declare_levels(
     };
     graph.push(Pass::compute(
         "occlusion_textures.first_level",
-        shaders::MEANS_FIRST_LEVEL,
+        module!("occlusion_textures/first_level.comp"),
         groups(1),
         Push::new(&FirstLevel {
             map: side as i32,
@@ -121,7 +121,7 @@ pub(super) fn declare_levels(
     for level in 2..=levels.top() {
         graph.push(Pass::compute(
             "occlusion_textures.next_level",
-            shaders::MEANS_NEXT_LEVEL,
+            module!("occlusion_textures/next_level.comp"),
             groups(level),
             Push::new(&NextLevel { map: side as i32, kind, level: level as i32 }),
             smallvec![Use::bound(0, image, Access::ImageUpdate)],

@@ -4,7 +4,7 @@ use super::settings::Settings;
 use crate::graph::{
     Access, COLOR_ATTACHMENTS, Draw, Graph, Layer, Owner, Pass, Push, ResourceId, Target, Use, Work,
 };
-use crate::shaders::{self};
+use crate::shaders::{self, module};
 use crate::stages::depth_layers::{self, DepthLayers, Wanted};
 use crate::stages::visibility::grid;
 use crate::techniques::room::PassInputs;
@@ -69,9 +69,13 @@ pub(super) fn declare_placement(
         Some(layers) => {
             let histogram = declare_histogram(graph, layers, settings, inputs);
             uses.push(Use::bound(1, histogram, Access::BufferReadCompute));
-            ("occlusion_textures.place_fitted", shaders::PLACE_FITTED, 1)
+            ("occlusion_textures.place_fitted", module!("occlusion_textures/place_fitted.comp"), 1)
         }
-        None => ("occlusion_textures.place", shaders::PLACE, PLACEMENT[0].div_ceil(64)),
+        None => (
+            "occlusion_textures.place",
+            module!("occlusion_textures/place.comp"),
+            PLACEMENT[0].div_ceil(64),
+        ),
     };
     graph.push(Pass::compute(name, shader, [groups, 1, 1], pushed, uses, inputs.need));
     placement
@@ -98,7 +102,7 @@ fn declare_histogram(
     let histogram = graph.buffer("occlusion_textures.histogram", 4 * u64::from(BINS));
     graph.push(Pass::compute(
         "occlusion_textures.histogram_start",
-        shaders::HISTOGRAM_START,
+        module!("occlusion_textures/histogram_start.comp"),
         [BINS.div_ceil(64), 1, 1],
         Push::NONE,
         smallvec![Use::bound(0, histogram, Access::BufferWriteCompute)],
@@ -107,7 +111,7 @@ fn declare_histogram(
     let map = histogram_layers(settings, inputs.occluders.side).map;
     graph.push(Pass::compute(
         "occlusion_textures.histogram",
-        shaders::HISTOGRAM,
+        module!("occlusion_textures/histogram.comp"),
         grid([map; 2]),
         Push::new(&Histogram {
             map: map as i32,
@@ -206,7 +210,12 @@ fn draw(
             push: Push::NONE,
             work: Work::Raster {
                 vertex: shaders::DEPTH_VERT,
-                fragment: Some([shaders::SLICE, shaders::SLICE_LOWER][nth]),
+                fragment: Some(
+                    [
+                        module!("occlusion_textures/slice.frag"),
+                        module!("occlusion_textures/slice_lower.frag"),
+                    ][nth],
+                ),
                 cull: raster.cull,
                 target: Target::Add,
                 draw: Draw::Layer { layer: drawn.layer, view: 0 },
@@ -261,7 +270,7 @@ pub(super) fn declare_mask(
     }
     graph.push(Pass::compute(
         "occlusion_textures.mask",
-        shaders::MASK,
+        module!("occlusion_textures/mask.comp"),
         grid([side; 2]),
         Push::new(&Mask {
             map: side as i32,

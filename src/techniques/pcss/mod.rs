@@ -27,52 +27,21 @@
 //! overlap; blockers beside the light's view of the pixel count in the mean. The error does not vanish with more taps.
 //! The disc's angle differs from pixel to pixel, so that few taps show as grain.
 
+pub mod settings;
 pub mod twin;
+
+pub use settings::Settings;
 
 use super::common::{FinestLevel, one_map, pixel_push, pixel_uses};
 use super::room::{Maps, PassInputs, Room, Shows, Takes};
 use crate::graph::{Access, Graph, Pass, Push, ResourceId, Use};
-use crate::knob::{Field, Knobs};
-use crate::shaders;
+use crate::shaders::module;
 use crate::stages::nearest::nodes_a_row;
 use crate::stages::tiles::Tiles;
 use crate::stages::visibility::grid;
 use smallvec::smallvec;
 
 const NAME: &str = "pcss.visibility";
-
-/// The knobs of percentage-closer soft shadows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Settings {
-    /// The map's side, texels, 1 to 4096; 256 by default.
-    pub map: u32,
-    /// The number of taps of the blocker search, and as many again of the filter, 1 to 64; 16 by default.
-    pub taps: u32,
-    /// Whether tiles of pixels that no occluder can shadow are skipped; on by default.
-    pub classify: bool,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self { map: 256, taps: 16, classify: true }
-    }
-}
-
-impl Knobs for Settings {
-    const NAME: &'static str = "pcss";
-    const FIELDS: &'static [Field<Self>] = &[
-        Field::map(|s| s.map, |s, map| s.map = map),
-        Field::whole(
-            "taps",
-            "taps",
-            [1, 64],
-            "places of the map that a pixel looks at to find blockers, and as many again to filter",
-            |s| s.taps,
-            |s, taps| s.taps = taps,
-        ),
-        Field::classify(|s| s.classify, |s, on| s.classify = on),
-    ];
-}
 
 impl Room for Settings {
     fn takes(&self) -> Takes {
@@ -98,7 +67,7 @@ impl Room for Settings {
 fn declare(graph: &mut Graph, front: ResourceId, settings: &Settings, inputs: &PassInputs) {
     let taps = settings.taps;
     if !settings.classify {
-        one_map(graph, NAME, shaders::PCSS, front, taps, &[], inputs);
+        one_map(graph, NAME, module!("pcss/pcss.comp"), front, taps, &[], inputs);
         return;
     }
     let PassInputs { gbuffer, occluders, visibility, need, .. } = *inputs;
@@ -107,7 +76,7 @@ fn declare(graph: &mut Graph, front: ResourceId, settings: &Settings, inputs: &P
     let nearest = graph.buffer("pcss.nearest", 4 * u64::from(row * row));
     graph.push(Pass::compute(
         "pcss.nearest",
-        shaders::NEAREST,
+        module!("common/nearest.comp"),
         grid([row; 2]),
         Push::new(&FinestLevel { map: map as i32, inv_near: (1.0 / occluders.near) as f32 }),
         smallvec![
@@ -119,8 +88,8 @@ fn declare(graph: &mut Graph, front: ResourceId, settings: &Settings, inputs: &P
     let push = pixel_push(taps, inputs);
     let tiles = Tiles::start(graph, gbuffer.extent, need);
     let nearest = Use::bound(2, nearest, Access::BufferReadCompute);
-    tiles.sort(graph, shaders::PCSS_SORT, push, (&[nearest], visibility), gbuffer, need);
+    tiles.sort(graph, module!("pcss/tiles.comp"), push, (&[nearest], visibility), gbuffer, need);
     let mut uses = pixel_uses(front, gbuffer);
     uses.push(Use::bound(3, visibility, Access::ImageUpdate));
-    tiles.run(graph, (NAME, shaders::PCSS_TILES), push, uses, 4, need);
+    tiles.run(graph, (NAME, module!("pcss/pcss_listed.comp")), push, uses, 4, need);
 }

@@ -61,7 +61,7 @@
 //! Lent occluder maps have the light's centre as their projection point and two layers.
 
 mod passes;
-mod settings;
+pub mod settings;
 pub mod twin;
 
 pub use passes::{Columns, Filter, Level, Pixels, Start};

@@ -2,7 +2,7 @@
 
 use super::settings::{Hash, Layers, Sampling, Search, Settings};
 use crate::graph::{Access, Graph, Need, Owner, Pass, Push, ResourceId, Use, Uses, Work};
-use crate::shaders::{self, Module};
+use crate::shaders::{self, Module, module};
 use crate::stages::depth_layers::{DepthLayers, Eye};
 use crate::stages::nbuffer::{self, Levels};
 use crate::stages::visibility::{self, COLOR_FORMAT, grid};
@@ -28,20 +28,32 @@ fn shaders_of(settings: &Settings, inputs: &PassInputs) -> Shaders {
     let usual = settings.levels == nbuffer::Kind::NBuffer
         && settings.search == Search::Hierarchical
         && settings.layers != Layers::Eye;
-    let (rows, columns) = (shaders::FILTER_ROWS, shaders::FILTER_COLUMNS);
+    let (rows, columns) =
+        (module!("ray_march/filter_rows.comp"), module!("ray_march/filter_columns.comp"));
     match (inputs.light_texture, inputs.color) {
         (Some(_), true) => Shaders {
-            classify: shaders::CLASSIFY_COLOR,
-            trace: shaders::TRACE_COLOR,
-            rows: shaders::FILTER_ROWS_COLOR,
-            columns: shaders::FILTER_COLUMNS_COLOR,
+            classify: module!("ray_march/classify_color.comp"),
+            trace: module!("ray_march/trace_color.comp"),
+            rows: module!("ray_march/filter_rows_color.comp"),
+            columns: module!("ray_march/filter_columns_color.comp"),
         },
         (Some(_), false) => {
-            let (classify, trace) = (shaders::CLASSIFY_ANY, shaders::TRACE_TEXTURED);
+            let (classify, trace) =
+                (module!("ray_march/classify_any.comp"), module!("ray_march/trace_textured.comp"));
             Shaders { classify, trace, rows, columns }
         }
-        _ if usual => Shaders { classify: shaders::CLASSIFY, trace: shaders::TRACE, rows, columns },
-        _ => Shaders { classify: shaders::CLASSIFY_ANY, trace: shaders::TRACE_ANY, rows, columns },
+        _ if usual => Shaders {
+            classify: module!("ray_march/classify.comp"),
+            trace: shaders::TRACE,
+            rows,
+            columns,
+        },
+        _ => Shaders {
+            classify: module!("ray_march/classify_any.comp"),
+            trace: module!("ray_march/trace_any.comp"),
+            rows,
+            columns,
+        },
     }
 }
 
@@ -84,7 +96,7 @@ pub(super) fn declare(
     let surfaces = inputs.color.then(|| image("ray_march.surfaces", COLOR_FORMAT));
     graph.push(Pass::compute(
         "ray_march.start",
-        shaders::START,
+        module!("ray_march/start.comp"),
         [1, 1, 1],
         Push::new(&Start { ndc_from_light: inputs.ndc_from_light }),
         smallvec![
@@ -200,7 +212,7 @@ fn declare_levels(
     let four = layers.inner.is_some();
     graph.push(Pass::compute(
         "ray_march.columns",
-        shaders::COLUMNS,
+        module!("ray_march/columns.comp"),
         grid([map; 2]),
         Push::new(&Columns {
             map: map as i32,
@@ -218,8 +230,8 @@ fn declare_levels(
     ));
     let kind = settings.levels.code();
     let shader = match settings.levels {
-        nbuffer::Kind::NBuffer => shaders::LEVEL,
-        _ => shaders::LEVEL_ANY,
+        nbuffer::Kind::NBuffer => module!("ray_march/level.comp"),
+        _ => module!("ray_march/level_any.comp"),
     };
     for level in 1..=levels.top() {
         graph.push(Pass::compute(

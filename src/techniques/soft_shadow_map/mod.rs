@@ -83,7 +83,7 @@
 mod nodes;
 mod pixels;
 mod receiver_map;
-mod settings;
+pub mod settings;
 pub mod twin;
 
 pub use nodes::{Blocks, Superblocks};

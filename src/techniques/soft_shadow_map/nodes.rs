@@ -2,7 +2,7 @@
 
 use super::settings::{Accumulate, Settings, Sides};
 use crate::graph::{Access, Graph, Pass, Push, ResourceId, STORAGE_BYTES, Use};
-use crate::shaders;
+use crate::shaders::module;
 use crate::stages::depth_layers::DepthLayers;
 use crate::techniques::room::PassInputs;
 use bytemuck::{Pod, Zeroable};
@@ -98,7 +98,7 @@ pub(super) fn declare_nodes(
     };
     graph.push(Pass::compute(
         "soft_shadow_map.blocks",
-        shaders::BLOCKS,
+        module!("soft_shadow_map/blocks.comp"),
         [block_row.div_ceil(8), block_row.div_ceil(8), sides],
         Push::new(&Blocks {
             map: inputs.occluders.side as i32,
@@ -122,7 +122,7 @@ pub(super) fn declare_nodes(
     if superblocks_too {
         graph.push(Pass::compute(
             "soft_shadow_map.superblocks",
-            shaders::SUPERBLOCKS,
+            module!("soft_shadow_map/superblocks.comp"),
             [superblock_row.div_ceil(8), superblock_row.div_ceil(8), sides],
             Push::new(&Superblocks { row: superblock_row as i32 }),
             smallvec![

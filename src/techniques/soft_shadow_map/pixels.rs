@@ -3,7 +3,7 @@
 use super::nodes::{Nodes, scale_of, sides};
 use super::settings::{Settings, Sides, spread_of};
 use crate::graph::{Access, Graph, Pass, Push, Use};
-use crate::shaders;
+use crate::shaders::module;
 use crate::stages::tiles::Tiles;
 use crate::techniques::room::PassInputs;
 use bytemuck::{Pod, Zeroable};
@@ -58,12 +58,33 @@ pub(super) fn gather(graph: &mut Graph, nodes: &Nodes, settings: &Settings, inpu
     if settings.classify {
         let tiles = Tiles::start(graph, gbuffer.extent, inputs.need);
         let families = Use::bound(2, nodes.families, Access::BufferReadCompute);
-        tiles.sort(graph, shaders::TILES, push, (&[families], visibility), gbuffer, inputs.need);
-        tiles.run(graph, (NAME, shaders::GATHER_TILES), push, uses, 6, inputs.need);
+        tiles.sort(
+            graph,
+            module!("soft_shadow_map/tiles.comp"),
+            push,
+            (&[families], visibility),
+            gbuffer,
+            inputs.need,
+        );
+        tiles.run(
+            graph,
+            (NAME, module!("soft_shadow_map/gather_pixels_listed.comp")),
+            push,
+            uses,
+            6,
+            inputs.need,
+        );
     } else {
         // A workgroup of 8×8 invocations handles 2×2 pixels each.
         let groups = [width.div_ceil(16), height.div_ceil(16), 1];
-        graph.push(Pass::compute(NAME, shaders::GATHER_PIXELS, groups, push, uses, inputs.need));
+        graph.push(Pass::compute(
+            NAME,
+            module!("soft_shadow_map/gather_pixels.comp"),
+            groups,
+            push,
+            uses,
+            inputs.need,
+        ));
     }
 }
 

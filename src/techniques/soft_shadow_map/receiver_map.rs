@@ -3,7 +3,7 @@
 use super::nodes::{Nodes, scale_of};
 use super::settings::{Accumulate, Settings, Sides, spread_of};
 use crate::graph::{Access, Draw, Graph, Owner, Pass, Push, ResourceId, Target, Use, Work};
-use crate::shaders;
+use crate::shaders::{self, module};
 use crate::stages::depth_layers::MapView;
 use crate::techniques::room::PassInputs;
 use ash::vk;
@@ -74,7 +74,7 @@ pub(super) fn gather_map(
     let groups = settings.receiver_map.div_ceil(16);
     graph.push(Pass::compute(
         pass_name,
-        shaders::GATHER_MAP,
+        module!("soft_shadow_map/gather_map.comp"),
         [groups, groups, 1],
         Push::new(&GatherMap {
             scale: scale_of(inputs),
@@ -206,7 +206,7 @@ pub(super) fn blend_map(
     let patches = graph.buffer(patches, texels * 8);
     graph.push(Pass::compute(
         count_name,
-        shaders::PATCH_COUNT,
+        module!("soft_shadow_map/patch_count.comp"),
         [groups.div_ceil(64), 1, 1],
         Push::new(&PatchCount { blocks: blocks as i32, side: side as i32 }),
         smallvec![
@@ -217,7 +217,7 @@ pub(super) fn blend_map(
     ));
     graph.push(Pass::compute(
         scan_name,
-        shaders::PATCH_SCAN,
+        module!("soft_shadow_map/patch_scan.comp"),
         [1, 1, 1],
         Push::new(&PatchScan { groups: groups as i32 }),
         smallvec![
@@ -229,7 +229,7 @@ pub(super) fn blend_map(
     ));
     graph.push(Pass::compute(
         emit_name,
-        shaders::PATCH_EMIT,
+        module!("soft_shadow_map/patch_emit.comp"),
         [blocks.div_ceil(64), 1, 1],
         Push::new(&PatchEmit { row: nodes.block_row as i32, side: side as i32 }),
         smallvec![
@@ -259,7 +259,7 @@ pub(super) fn blend_map(
             steps: if settings.accumulate == Accumulate::Blend { BLEND_STEPS } else { 0.0 },
         }),
         work: Work::Raster {
-            vertex: shaders::PATCH_VERT,
+            vertex: module!("soft_shadow_map/patch.vert"),
             fragment: Some(shaders::PATCH_FRAG),
             cull: vk::CullModeFlags::NONE,
             target: Target::Add,
