@@ -3,32 +3,31 @@
 use crate::Error;
 use crate::knob::{Knob, Knobs};
 use crate::techniques::room::{Room, check};
-use crate::techniques::{
-    back_projection, hard, linear_light, many_lights, occlusion_textures, pcss, ray_march,
-    soft_shadow_map,
-};
+use crate::techniques::{linear_light, soft_shadow_map};
 use std::fmt;
 use std::str::FromStr;
 
 macro_rules! techniques {
-    ($($(#[$about:meta])+ $variant:ident($room:ident),)+) => {
+    ($($(#[$about:meta])* $variant:ident($room:ident),)+) => {
         /// How the visible fraction is computed: a technique with its settings.
         ///
         /// As text it is the technique's name and any settings: `"pcss taps=32"`.
         #[derive(Clone, Copy, Debug, PartialEq)]
         #[non_exhaustive]
         pub enum Technique {
-            $($(#[$about])+ $variant($room::Settings),)+
+            $($(#[$about])*
+            #[doc = concat!("\n\nSettings: [`settings::", stringify!($room), "`].")]
+            $variant(crate::techniques::$room::Settings),)+
         }
 
         impl Technique {
             /// The names of all techniques, as on a command line.
             pub const NAMES: &'static [&'static str] =
-                &[$(<$room::Settings as Knobs>::NAME),+];
+                &[$(<crate::techniques::$room::Settings as Knobs>::NAME),+];
 
             /// Every technique with its default settings.
             pub fn all() -> Vec<Self> {
-                vec![$(Self::$variant($room::Settings::default()),)+]
+                vec![$(Self::$variant(Default::default()),)+]
             }
 
             /// The settings as the trait that answers for the technique.
@@ -51,8 +50,8 @@ macro_rules! techniques {
             pub use crate::techniques::$room::settings as $room;)+
         }
 
-        $(impl From<$room::Settings> for Technique {
-            fn from(settings: $room::Settings) -> Self {
+        $(impl From<crate::techniques::$room::Settings> for Technique {
+            fn from(settings: crate::techniques::$room::Settings) -> Self {
                 Self::$variant(settings)
             }
         })+
@@ -179,6 +178,7 @@ impl FromStr for Technique {
 mod tests {
     use super::*;
     use crate::knob::Values;
+    use crate::techniques::many_lights;
 
     fn named(words: &str) -> Technique {
         words.parse().unwrap_or_else(|e| panic!("{words}: {e}"))
