@@ -250,7 +250,7 @@ impl MeshInstance {
 /// Their camera is a perspective that stands at the light's centre, looks along its emission and has
 /// its x and y along the light's half-axes, either way round. Depth may be standard or reversed, the
 /// far plane finite or infinite: window and distances are worked out from the matrix. The images are
-/// square, [`map`](crate::Settings::map) texels a side, of the format that
+/// square, [`map`](crate::Technique::map) texels a side, of the format that
 /// [`Description::occluder_maps`](crate::Description::occluder_maps) says, cleared to the far plane.
 ///
 /// Leave out what lies behind everything, such as a ground: as an occluder it only costs accuracy.

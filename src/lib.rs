@@ -57,7 +57,7 @@
 //! | to … | read |
 //! |---|---|
 //! | host the node | [`embedding`], then [`node`], [`frame`], [`gpu::Host`], [`gpu::Allocator`], [`light`] |
-//! | turn its knobs | [`settings`] |
+//! | choose a technique and its settings | [`Technique`] |
 //! | ask for an error or a time instead | [`auto`], [`effects`] |
 //! | follow a technique | its module: the idea, the paper's sections, where it departs, its limits |
 //! | see what a frame does | [`graph`], [`graph::Plan::table`], [`graph::Plan::graphviz`] |

@@ -245,7 +245,7 @@ impl Description {
 /// | camera | the matrix that the G-buffer was drawn with, its jitter included |
 /// | front faces | their corners run counter-clockwise |
 /// | bounds | `[least, largest]` corners, f32, before the transform; transforms are f64 |
-/// | light | shines along `half_v × half_u`; [`RectangleLight::facing`] takes the direction |
+/// | light | shines along `half_v × half_u`; [`RectangleLight::facing`](crate::RectangleLight::facing) takes the direction |
 ///
 /// What contradicts them is refused by [`plan`], or is one of [`FramePlan::doubts`].
 #[derive(Clone, Copy, Debug)]
