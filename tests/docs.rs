@@ -5,6 +5,8 @@
 
 #[path = "docs/pages.rs"]
 mod pages;
+#[path = "docs/words.rs"]
+mod words;
 
 use antumbra::graph::{Owner, Shape};
 use antumbra::{Description, frame};

@@ -70,7 +70,11 @@ fn same_image(device: &HeadlessDevice, setup: &Setup, words: &str, what: &str) -
             assert_eq!(*v, 1.0, "{what}: {x}, {y} was taken to be lit");
         }
     }
-    println!("{what}: {} of {} tiles listed, {shadowable} shadowable", with.tiles.len(), there.len());
+    println!(
+        "{what}: {} of {} tiles listed, {shadowable} shadowable",
+        with.tiles.len(),
+        there.len()
+    );
     (there.len(), shadowable)
 }
 
@@ -265,7 +269,8 @@ fn nodes_of_a_searched_part_of_the_map() {
 #[test]
 fn the_list_holds_every_tile_of_the_largest_image() {
     let device = device();
-    let glue = "uint word(int x, int y, bool shadowable) { return tile_word(ivec2(x, y), shadowable); }";
+    let glue =
+        "uint word(int x, int y, bool shadowable) { return tile_word(ivec2(x, y), shadowable); }";
     Function::new("common/lists.glsl", "uint word(int x, int y, bool shadowable)")
         .glue(glue)
         .case((4095, 4095, true))

@@ -79,7 +79,7 @@ vec4 sums_within(int block, ivec2 lo, ivec2 hi)
 }
 
 // Removes the first texel from a mask that has one, and returns its index. The caller tests whether there is one:
-// tested here, with `?:`, in code that stands eight times in a row, SwiftShader's compiler needs over 24 GB.
+// tested here, with `?:`, in code that stands there eight times, SwiftShader's compiler needs over 24 GB.
 int take_texel(inout uvec2 todo)
 {
     bool first = todo.x != 0u;

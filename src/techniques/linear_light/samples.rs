@@ -136,7 +136,9 @@ fn drawn(
 ) -> Pass {
     let Raster { cull, clear, compare } = depth_layers::raster_of(layer);
     let mut uses = smallvec![Use::fixed(image, Access::DepthTarget)];
-    uses.extend(sample.map(|_| Use::bound(0, ctx.resources.layers.samples, Access::BufferReadVertex)));
+    uses.extend(
+        sample.map(|_| Use::bound(0, ctx.resources.layers.samples, Access::BufferReadVertex)),
+    );
     Pass {
         name,
         uses,
@@ -185,7 +187,11 @@ pub(super) fn copy(ctx: &LineContext, layer: u32) -> Pass {
             map: ctx.settings.map as i32,
             layer: layer as i32,
         }),
-        work: Work::Indirect { shader: shaders::LINE_COPY, arguments: ctx.resources.groups, offset: 0 },
+        work: Work::Indirect {
+            shader: shaders::LINE_COPY,
+            arguments: ctx.resources.groups,
+            offset: 0,
+        },
         need: *ctx.inputs.need,
     }
 }

@@ -112,7 +112,11 @@ fn skins(graph: &mut Graph, ctx: &LineContext, skins: &SkinSide) {
     let map = settings.map as i32;
     graph.push(Pass {
         name: skins.edges,
-        work: Work::Indirect { shader: shaders::EDGES, arguments: resources.groups, offset: SEGMENT },
+        work: Work::Indirect {
+            shader: shaders::EDGES,
+            arguments: resources.groups,
+            offset: SEGMENT,
+        },
         push: Push::new(&Edges { u_window: line.u_window(), map, side: skins.side }),
         uses: smallvec![
             Use::fixed(resources.groups, Access::Indirect),
