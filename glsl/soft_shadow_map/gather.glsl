@@ -136,7 +136,7 @@ vec4 gather(Map map, int side, Receivers r)
 {
     Tile tile = tile_of(r);
     vec4 sum = vec4(0.0);
-    // Sums are kept for a superblock, for a row of them and for the whole map: thousands of equal numbers added to one
+    // Sums are kept for a superblock, for a row of superblocks and for the whole map: thousands of equal numbers added to one
     // float round the same way each time (docs/rounding.md).
     vec4 sum_of_row = vec4(0.0);
     vec4 sum_of_superblock = vec4(0.0);
