@@ -136,8 +136,8 @@ vec4 gather(Map map, int side, Receivers r)
 {
     Tile tile = tile_of(r);
     vec4 sum = vec4(0.0);
-    // Sums are kept for a superblock, for a row of superblocks and for the whole map: thousands of equal numbers added to one
-    // float round the same way each time (docs/rounding.md).
+    // Sums are kept for a superblock, for a row of superblocks and for the whole map: thousands of equal numbers that
+    // are added to one float round the same way each time (docs/rounding.md).
     vec4 sum_of_row = vec4(0.0);
     vec4 sum_of_superblock = vec4(0.0);
     if (tile.w.x >= map.w_max) {

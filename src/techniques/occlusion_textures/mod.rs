@@ -39,21 +39,21 @@
 //! (eq. 5), as if slices were independent; `sum` and `max` are the paper's others. But a closed solid lies in two
 //! slices at least, and these hide the same part of the light: the product counts it twice. Where we depart
 //! (`combine=correlated`, the default):
-//! * Fronts and backs are counted apart. Matter lies where more has been entered than left: a solid blocks in each slice
-//! from its front to its back. A column in which not everything entered is left goes through an open mesh, and only its
-//! faces block. Both sides of a double-sided face are counted, so that it is a sheet.
-//! * The model: over the kernel's rectangle, let a be the share of texels that the slice blocks, b the share that any slice
-//! nearer the light blocks, and j the share of both. j is ab where they are independent, min(a, b) where one lies
-//! behind the other, max(0, a + b − 1) where they are side by side. Where j lies between these bounds is the
-//! correlation. The part of the light that is already hidden, h, was seen through other rectangles; the overlap of a
-//! and h is put at the same place between their bounds, and h grows by a less the overlap. That is right for
-//! independent, nested and disjoint slices, however many, up to a constant that keeps small shares from being divided
-//! (`FEW`). A window that is covered wholly or not at all gives no correlation; then the part that may continue from
-//! the slice right above decides. The share that any slice above the next one blocks is a + b − j, so two slices and
-//! three sums of the slices above them describe a pair: five sums of 25 bits in the 128 of a texel, exact up to 4096²,
-//! at no further fetch for a slice.
-//! * A slice's texture lies in its middle instead of its lower plane, or (`placement=fitted`) at the mean
-//!   distance of its nearest and furthest faces.
+//! * Fronts and backs are counted apart. Matter lies where more has been entered than left: a solid blocks in each
+//!   slice from its front to its back. A column in which not everything entered is left goes through an open mesh, and
+//!   only its faces block. Both sides of a double-sided face are counted, so that it is a sheet.
+//! * The model: over the kernel's rectangle, let a be the share of texels that the slice blocks, b the share that any
+//!   slice nearer the light blocks, and j the share of both. j is ab where they are independent, min(a, b) where one
+//!   lies behind the other, max(0, a + b − 1) where they are side by side. Where j lies between these bounds is the
+//!   correlation. The part of the light that is already hidden, h, was seen through other rectangles; the overlap of a
+//!   and h is put at the same place between their bounds, and h grows by a less the overlap. That is right for
+//!   independent, nested and disjoint slices, however many, up to a constant that keeps small shares from being
+//!   divided (`FEW`). A window that is covered wholly or not at all gives no correlation; then the part that may
+//!   continue from the slice right above decides. The share that any slice above the next one blocks is a + b − j, so
+//!   two slices and three sums of the slices above them describe a pair: five sums of 25 bits in the 128 of a texel,
+//!   exact up to 4096², at no further fetch for a slice.
+//! * A slice's texture lies in its middle instead of its lower plane, or (`placement=fitted`) at the mean distance of
+//!   its nearest and furthest faces.
 //!
 //! **Placement.** Uniform as published, or, the default and the authors' future work (section 5), by a histogram of
 //! the distances of nearest and furthest faces, made on the device: half of a slice's share is distance, half is
