@@ -49,7 +49,7 @@ ivec2 first_pixel(uint word)
     return ivec2(word & 0x7fffu, word >> 15u & 0x7fffu) * TILE;
 }
 
-// Tiles in a row of an image's grid of tiles.
+// The number of tiles along x that cover an image.
 int tiles_a_row(ivec2 extent)
 {
     return (extent.x + TILE - 1) / TILE;

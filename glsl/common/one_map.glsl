@@ -14,7 +14,7 @@ layout(push_constant) uniform Push {
     vec2 texels_per_uv; // map texels a unit of u and v
     vec2 first;         // texel coordinates of u = v = 0
     vec2 half_light;    // half the light's width and height, m
-    ivec2 extent;       // of the G-buffer
+    ivec2 extent;       // the G-buffer's width and height
     float background;
     float inv_near;     // 1 over the map's near plane, 1/m; no occluder is nearer
     float snap;         // how far a raster moves a vertex, in texels

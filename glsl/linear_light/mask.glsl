@@ -8,7 +8,8 @@
 #ifndef LINEAR_LIGHT_MASK_GLSL
 #define LINEAR_LIGHT_MASK_GLSL
 
-// The grid of receivers in the map of the line's middle. It is finer along rows, where visibility changes most.
+// The grid of receivers in the map of the line's middle. It is finer along rows of texels, where visibility changes
+// most.
 const ivec2 RECEIVERS = ivec2(128, 32);
 
 const uint ALL = 0xffffffffu;

@@ -11,7 +11,7 @@ layout(set = 0, binding = 0, rgba16f) uniform image2DArray levels;
 
 layout(push_constant) uniform Push {
     int map;   // the map's side in texels
-    int kind;  // of levels
+    int kind;  // the kind of the levels' windows
     int level; // the one to make
 } push;
 

@@ -3,8 +3,8 @@
 #extension GL_GOOGLE_include_directive : require
 #include "occlusion_textures/tile.glsl"
 
-// Summed-area tables, second half: adds to every sum of a row those above it. One invocation handles one column of a
-// tile. In whole numbers a table of any map is exact: 4096 x 4096 ones are 2^24.
+// Summed-area tables, second half: adds to every sum along a row of texels those above it. One invocation handles
+// one column of a tile. In whole numbers a table of any map is exact: 4096 x 4096 ones are 2^24.
 
 layout(local_size_x = 64) in;
 

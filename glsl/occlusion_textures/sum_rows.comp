@@ -5,7 +5,7 @@
 #include "occlusion_textures/tile.glsl"
 
 // Summed-area tables, first half: adds to every texel those before it in its row of texels. One invocation handles one
-// row of a tile.
+// row of a tile's texels.
 
 layout(local_size_x = 64) in;
 

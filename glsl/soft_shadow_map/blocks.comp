@@ -46,7 +46,7 @@ float w_at(ivec2 p, uint side)
 // Patches of a surface parallel to the light join without gap or overlap (Atty 2006, eq. 3), so there is
 // nothing for a back face to cancel where the front is flatter than it by this factor; the gaps of a steep
 // one, such as the side of a box under its top, would only add (mean error of the tall box, L = 0.4: 0.5 %,
-// 4.3 % without). From 15 to 50 no scene tells the difference; at 6 the bunny's error grows by a seventh.
+// 4.3 % without). From 15 to 50 no scene's error differs; at 6 the bunny's grows by a seventh.
 const float FLATTER = 30.0;
 // The largest step that a raster's rounding gives the depth of a flat face.
 const float ROUNDING = 1.0e-4;

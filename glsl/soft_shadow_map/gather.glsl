@@ -79,7 +79,7 @@ vec4 sums_within(int block, ivec2 lo, ivec2 hi)
 }
 
 // Removes the first texel from a mask that has one, and returns its index. The caller tests whether there is one:
-// tested here, with `?:`, in code that stands eight times in a row, SwiftShader's compiler needs over 24 GB.
+// tested here, with `?:`, in code that stands there eight times, SwiftShader's compiler needs over 24 GB.
 int take_texel(inout uvec2 todo)
 {
     bool first = todo.x != 0u;
@@ -136,8 +136,8 @@ vec4 gather(Map map, int side, Receivers r)
 {
     Tile tile = tile_of(r);
     vec4 sum = vec4(0.0);
-    // Sums are kept for a superblock, for a row of them and for the whole map: thousands of equal numbers added to one
-    // float round the same way each time (docs/rounding.md).
+    // Sums are kept for a superblock, for a row of superblocks and for the whole map: thousands of equal numbers that
+    // are added to one float round the same way each time (docs/rounding.md).
     vec4 sum_of_row = vec4(0.0);
     vec4 sum_of_superblock = vec4(0.0);
     if (tile.w.x >= map.w_max) {

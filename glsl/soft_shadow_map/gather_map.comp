@@ -50,7 +50,7 @@ int plane_side(Node node, vec2 lo, float side, Receivers r)
 
 void main()
 {
-    // Invocations that run in step lie in a square rather than a row, so that they open the same nodes.
+    // Invocations that run in step have a square of texels rather than a row of them, so that they open the same nodes.
     uint l = gl_LocalInvocationIndex;
     uvec2 within = uvec2((l & 1u) | ((l >> 1) & 2u) | ((l >> 2) & 4u),
                          ((l >> 1) & 1u) | ((l >> 2) & 2u) | ((l >> 3) & 4u));

@@ -44,7 +44,7 @@ vec4 series(vec4 s, float mean, vec4 w_r)
 uvec2 rectangle_mask(ivec2 lo, ivec2 hi)
 {
     uint columns = ((1u << hi.x) - (1u << lo.x)) * 0x01010101u;
-    // Rows 0 to 3 are in x, 4 to 7 in y; a shift by 32 is undefined.
+    // Rows of texels 0 to 3 are in x, 4 to 7 in y; a shift by 32 is undefined.
     ivec2 from = clamp(lo.y - ivec2(0, 4), 0, 4);
     ivec2 to = clamp(hi.y - ivec2(0, 4), 0, 4);
     uvec2 below_from = uvec2(from.x == 4 ? 0xffffffffu : (1u << (8 * from.x)) - 1u,

@@ -13,7 +13,7 @@ use crate::stages::visibility::GBuffer;
 use crate::{Error, graph};
 use glam::DMat4;
 
-/// What a host may give a light with these settings, beyond a rectangle and meshes in buffers.
+/// The inputs that a technique accepts with these settings, beyond a rectangle and meshes in buffers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Takes {
     /// Whether the light may be a line, without a height.
@@ -67,11 +67,11 @@ pub struct Shows {
     pub slices: Option<bool>,
     /// Whether the rays read a third depth map, of what the eye sees.
     pub eye_layer: bool,
-    /// What the technique does about noise.
+    /// The technique's treatment of noise.
     pub noise: Noise,
 }
 
-/// What a technique does about noise.
+/// How a technique treats noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Noise {
     /// The technique makes no noise.

@@ -60,7 +60,8 @@ fn manifest() -> String {
     // Examples and benches stay behind, and so does what they alone depend on.
     let (_, lints) = rest.split_once("[lints]").unwrap();
     // One small image needs no optimized library.
-    let lints = lints.replace("package.antumbra]\nopt-level = 2", "package.antumbra]\nopt-level = 0");
+    let lints =
+        lints.replace("package.antumbra]\nopt-level = 2", "package.antumbra]\nopt-level = 0");
     format!("{head}{members}{before}[lints]{lints}")
 }
 

@@ -1,6 +1,8 @@
 //! What docs/embedding.md says in tables is what the code does, and what deny.toml allows is what is used.
 
 mod pages;
+#[path = "docs/words.rs"]
+mod words;
 
 use antumbra::graph::{Owner, Shape};
 use antumbra::{Description, frame};

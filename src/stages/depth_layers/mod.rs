@@ -170,7 +170,7 @@ pub(crate) fn hard(graph: &mut Graph, side: u32, need: &Need) -> ResourceId {
 pub struct Raster {
     /// The faces that are culled.
     pub cull: vk::CullModeFlags,
-    /// What the layer is cleared to.
+    /// The depth that the layer is cleared to.
     pub clear: f32,
     /// The depth comparison: a new depth replaces an old one where new `compare` old.
     pub compare: vk::CompareOp,

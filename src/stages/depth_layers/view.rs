@@ -11,15 +11,13 @@ const MAX_TANGENT: f64 = 10.0;
 /// The least distance of the near plane, as a share of the furthest distance in the view.
 const MIN_NEAR: f64 = 1e-4;
 
-/// The margin between the near plane and the nearest point, as a share of the range of distances, so that stored depths
-/// stay under 1.
+/// The margin before the nearest point, as a share of the range of distances, that keeps stored depths under 1.
 const NEAR_MARGIN: f64 = 1e-3;
 
 /// The least range of distances in a view, as a share of the furthest: floats distinguish a thousand steps of it.
 const LEAST_SPAN: f64 = 1e-3;
 
-/// The rounding of a vertex's distance, 64 roundings of f32, as a share of the largest summand; it bounds the range
-/// too.
+/// The rounding of a vertex's distance, 64 roundings of f32, as a share of its largest summand.
 const ROUNDING: f64 = 64.0 * 5.960_464_477_539_063e-8;
 
 /// The point that a map is seen from.
@@ -40,11 +38,9 @@ pub struct MapView {
     pub min: [f64; 2],
     /// Largest u and v.
     pub max: [f64; 2],
-    /// Distance of the near plane from the eye, or from the light's plane where the eye is infinitely
-    /// far; metres.
+    /// Distance of the near plane, metres; from the eye, or from the light's plane for an eye at infinity.
     pub near: f64,
-    /// The distance of the furthest point in the view, metres; counted from the eye or from the light's plane, as
-    /// `near` is.
+    /// Distance of the furthest point in the view, metres, counted like `near`.
     pub far: f64,
     /// The map's side in texels.
     pub side: u32,
@@ -116,8 +112,7 @@ fn tangents(boxes: &[LightBox], near: f64) -> Option<([f64; 2], [f64; 2])> {
     extents(boxes, near, |p| [p.x, p.y].map(|x| (x / p.z).clamp(-MAX_TANGENT, MAX_TANGENT)))
 }
 
-/// The least and largest u and v under which the light's centre sees the parts of meshes beyond `near`; none where no
-/// part is.
+/// The least and largest u and v under which the light's centre sees meshes beyond `near`; none without any.
 pub(crate) fn tangents_of(
     light: &RectangleLight,
     meshes: &[(MeshBounds, DMat4)],
@@ -181,8 +176,7 @@ fn extents(
     (window.0[0] <= window.1[0]).then_some(window)
 }
 
-/// Widens a window by one texel on each side, or by half of its width where a map has fewer than three texels; a window
-/// without width gets some.
+/// Widens a window by one texel on each side, or by half where a map has under three; no width becomes some.
 fn pad(min: &mut [f64; 2], max: &mut [f64; 2], side: u32) {
     let wider = if side > 2 { f64::from(side) / (f64::from(side) - 2.0) } else { 2.0 };
     for i in 0..2 {

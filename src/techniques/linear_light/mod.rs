@@ -3,7 +3,7 @@
 //! ```text
 //!   ●─────●─────●  samples of a line                      a line       middle…, mask, place   where its samples are
 //!    \  . skin /   a skin: the second one's ray past      each sample  occluders, receivers   what it sees
-//!     \  ─■── /    an edge the first one sees it from                  start, take            …and which rows run
+//!     \  ─■── /    an edge the first one sees it from                  start, copy            …and which passes run
 //!      \   . \/    the edge to where it meets the         each segment edges                  where occluders end
 //!    ───●──●───    receiver; what lies behind it                       skins                  drawn as the neighbour sees
 //!                  sees a part                            each sample  keep                   both its channels

@@ -18,7 +18,7 @@ fn uniform(seed: u32, point: u32, axis: u32) -> f64 {
 
 /// A cell of the light: its place among all cells, and its point's place in it.
 struct Cell {
-    /// The number of points before the row's first one, and before the next row's.
+    /// The number of points before the first cell of the row, and before that of the next row.
     row: [u32; 2],
     /// The point's number among all.
     point: u32,

@@ -25,7 +25,7 @@ fn points_are_spread_evenly_for_any_number_and_shape() {
             }
         }
     }
-    // On a line they are one row, evenly.
+    // On a line they are one row of cells, evenly spaced.
     for (i, [x, y]) in places([2.0, 0.0], 256, 3).into_iter().enumerate() {
         let cell = (x / 2.0 + 1.0) * 128.0;
         assert!(y == 0.0 && (i as f64..=i as f64 + 1.0).contains(&cell), "{i}: {x} {y}");

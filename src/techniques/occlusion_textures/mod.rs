@@ -12,23 +12,22 @@
 //!   - - - - - -│- - - - - - -   ┘
 //!              ● pixel
 //! ```
-//! The light's rays to a point fill a rectangle in every plane between them (section 3.1, eq. 4); what of it a
-//! flattened slice covers is what that slice hides of the light. The mean of a rectangle of any size costs the
-//! same, so the cost does not grow with the light, and there is no noise.
+//! The light's rays to a point fill a rectangle in every plane between them (section 3.1, eq. 4); the share of it that
+//! a flattened slice covers is the share of the light that the slice hides. The mean of a rectangle costs the same for
+//! any size, so the cost does not grow with the light, and there is no noise.
 //!
-//! **Slices** (section 3.4). The map is seen from so far behind the light that the light fits its window. Every
-//! face is counted, whatever lies in front of it: four times four channels of eight bits are drawn into at once
-//! and blending adds, which every device can; from the seventeenth slice on by a second draw. Then a texel is
-//! one number, a bit a slice, and filling a slice into the next one (`fill=on`) is a shift. The product takes
-//! what is filled as more that hides the light, which doubles its error; `correlated` sees that it is the same,
-//! and its error stays as it is.
+//! **Slices** (section 3.4). The map is seen from so far behind the light that the light fits its window. Every face is
+//! counted, whatever lies in front of it: faces are drawn into four times four channels of eight bits at once and
+//! blending adds, which every device can; a second draw counts from the seventeenth slice on. Then a texel is one
+//! number, a bit a slice, and filling a slice into the next one (`fill=on`) is a shift. The product counts a filled
+//! slice twice, which doubles its error; `correlated` recognizes the overlap, and its error stays as it is.
 //!
-//! **Filtering** (section 3.2). `prefilter=sat`, the default: summed-area tables of whole numbers, exact for
-//! maps up to 4096², and with parts of texels at a rectangle's rim counted in proportion, so that nothing jumps.
-//! `n-buffer` and `mip` interpolate between levels of windows of 2^k × 2^k texels as published; a rectangle
-//! that is longer than wide is covered by up to eight windows side by side. The authors
-//! prefer N-buffers, for their speed; on the driver measured the table is not only the exact one of the three but
-//! the fastest to ask, as it mostly takes four fetches and the others eight (their Fig. 2, four slices, lavapipe):
+//! **Filtering** (section 3.2). `prefilter=sat`, the default: summed-area tables of whole numbers, exact for maps up to
+//! 4096², and with parts of texels at a rectangle's rim counted in proportion, so that nothing jumps. `n-buffer` and
+//! `mip` interpolate between levels of windows of 2^k × 2^k texels as published; a rectangle that is longer than wide
+//! is covered by up to eight windows side by side. The authors prefer N-buffers, for their speed; on the driver
+//! measured the table is not only the exact one of the three but also the fastest to query, with four fetches in most
+//! cases where the others take eight (their Fig. 2, four slices, lavapipe):
 //!
 //! | to make, and 480² pixels, ms | mip | table | N-buffer |
 //! |---|---|---|---|
@@ -36,44 +35,43 @@
 //! | 512² | 2.6 + 134 | 3.2 + 50 | 36 + 192 |
 //! | 1024² | 8.4 + 137 | 19 + 61 | 231 + 199 |
 //!
-//! **Combination** (section 3.3). As published the visible fraction is the product of what each slice lets
-//! through (eq. 5), as if slices were independent; `sum` and `max` are the papers' others. But a closed solid
-//! lies in two slices at least, and these hide the same part of the light: the product counts it twice. Where
-//! we depart (`combine=correlated`, the default):
-//! * Fronts and backs are counted apart. What is entered and not yet left is inside: a solid blocks in each
-//!   slice from its front to its back. A column in which not everything entered is left goes through an open
-//!   mesh, and only its faces block. Both sides of a double-sided face are counted, so that it is a sheet.
-//! * The model: over the kernel's rectangle, let a be the share of texels that the slice blocks, b the share
-//!   that any slice nearer the light blocks, and j the share of both. j is ab where they are independent,
-//!   min(a, b) where one lies behind the other, max(0, a + b − 1) where they are side by side. Where j lies
-//!   between these is how they are correlated, and so far between the same bounds for a and h is what the slice
-//!   has in common with what is already hidden, h, which was seen through other rectangles: h grows by a less
-//!   that. It is right for independent, nested and disjoint slices, however many, to within what keeps shares of
-//!   little or nothing from being divided (`FEW`). Where the window does not
-//!   tell (it is all covered, or not at all) what may go on from the slice right above decides.
-//!   What any slice above the next one blocks is a + b − j, so two slices and three sums of what is above them
-//!   are all there is to know of a pair: five sums of 25 bits in the 128 of a texel, exact up to 4096², so that
-//!   nothing of it costs a slice another fetch.
-//! * A slice's texture lies in its middle instead of its lower plane, or (`placement=fitted`) at the mean
-//!   distance of its nearest and furthest faces.
+//! **Combination** (section 3.3). As published the visible fraction is the product of what each slice lets through
+//! (eq. 5), as if slices were independent; `sum` and `max` are the paper's others. But a closed solid lies in two
+//! slices at least, and these hide the same part of the light: the product counts it twice. Where we depart
+//! (`combine=correlated`, the default):
+//! * Fronts and backs are counted apart. Matter lies where more has been entered than left: a solid blocks in each
+//!   slice from its front to its back. A column in which not everything entered is left goes through an open mesh, and
+//!   only its faces block. Both sides of a double-sided face are counted, so that it is a sheet.
+//! * The model: over the kernel's rectangle, let a be the share of texels that the slice blocks, b the share that any
+//!   slice nearer the light blocks, and j the share of both. j is ab where they are independent, min(a, b) where one
+//!   lies behind the other, max(0, a + b − 1) where they are side by side. Where j lies between these bounds is the
+//!   correlation. The part of the light that is already hidden, h, was seen through other rectangles; the overlap of a
+//!   and h is put at the same place between their bounds, and h grows by a less the overlap. That is right for
+//!   independent, nested and disjoint slices, however many, up to a constant that keeps small shares from being
+//!   divided (`FEW`). A window that is covered wholly or not at all gives no correlation; then the part that may
+//!   continue from the slice right above decides. The share that any slice above the next one blocks is a + b − j, so
+//!   two slices and three sums of the slices above them describe a pair: five sums of 25 bits in the 128 of a texel,
+//!   exact up to 4096², at no further fetch for a slice.
+//! * A slice's texture lies in its middle instead of its lower plane, or (`placement=fitted`) at the mean distance of
+//!   its nearest and furthest faces.
 //!
 //! **Placement.** Uniform as published, or, the default and the authors' future work (section 5), by a histogram of
 //! the distances of nearest and furthest faces, made on the device: half of a slice's share is distance, half is
 //! faces. `combine=product placement=uniform` is what was published, and a test holds it against an independent
 //! version.
 //!
-//! **Self-shadowing** (section 3.4). There is no split into occluders and receivers. A point's own slice does
-//! not count, and the slice above fades in as the point goes away from it: what is nearer than a slice's
-//! thickness shadows too little or not at all: creases and contacts of an occluder with itself are too light.
-//! The part of the light below the pixel's own plane is a closed form, as for the other techniques
-//! here. Where we depart (`correlated` only): pixels that receive and do not block, as a ground does, are in no
-//! slice, and all that is nearer the light than they are counts (what the authors suggest in section 4.1).
+//! **Self-shadowing** (section 3.4). There is no split into occluders and receivers. A point's own slice does not
+//! count, and the slice above fades in with the point's distance from it: an occluder nearer than a slice's thickness
+//! shadows too little or not at all, so creases and contacts of an occluder with itself are too light. The part of the
+//! light below the pixel's own plane is a closed form, as for the other techniques here. Where we depart (`correlated`
+//! only): pixels that receive and do not block, as a ground does, are in no slice, and everything nearer the light
+//! counts (which the authors suggest in section 4.1).
 //!
-//! **Tiles.** A tile of pixels whose kernels touch nothing in any slice that counts for them is lit: by the summed-area
-//! table, with one rectangle a slice that holds the kernels of all its pixels; by squares of the mask where means come
-//! from levels, as windows around a kernel reach further than it does, and a mean does not tell nothing from little.
-//! The other tiles are listed (`visibility/tiles.rs`) with the slices that they may meet, a bit each: their pixels ask
-//! for no others. The image is the same to the bit.
+//! **Tiles.** A tile whose pixels' kernels touch nothing in any slice that counts for them is lit. With summed-area
+//! tables one rectangle a slice that holds the kernels of all its pixels decides. With levels squares of the mask
+//! decide, because windows around a kernel reach further than the kernel, and a mean does not distinguish nothing from
+//! little. The other tiles are listed (`stages/tiles`) with a bit for each slice that they may meet: their pixels
+//! query no others. The image is the same to the bit.
 //!
 //! **A sun** is a rectangle of its angular size a thousand radii away ([`crate::RectangleLight::sun`]); slices are
 //! between the occluders' own planes, so they are as thin as near a lamp.

@@ -39,7 +39,7 @@ pub enum Combine {
     Sum,
     /// The maximum of what slices hide, for nested slices.
     Max,
-    /// By the slices' measured overlap in the kernel's window.
+    /// The slices' measured overlap in the kernel's window.
     #[default]
     Correlated,
 }

@@ -25,7 +25,7 @@ pub(super) struct Nodes {
     pub sums: ResourceId,
     /// Superblocks with their blocks.
     pub families: ResourceId,
-    /// Blocks a row, a multiple of a superblock's.
+    /// The number of blocks in a row of the map, a multiple of a superblock's.
     pub block_row: u32,
     pub superblock_row: u32,
 }
@@ -53,7 +53,7 @@ pub(super) fn scale_of(inputs: &PassInputs) -> [f32; 2] {
 pub struct Blocks {
     /// The map's side in texels.
     pub map: i32,
-    /// Blocks a row.
+    /// The number of blocks in a row of the map.
     pub row: i32,
     /// 1 over the near plane's distance, 1/m.
     pub inv_near: f32,
@@ -66,7 +66,7 @@ pub struct Blocks {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Superblocks {
-    /// Superblocks a row.
+    /// The number of superblocks in a row of the map.
     pub row: i32,
 }
 

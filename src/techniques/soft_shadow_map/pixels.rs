@@ -33,7 +33,7 @@ pub struct GatherPixels {
     pub spread: f32,
     /// How far a raster moves a vertex, in texels.
     pub snap: f32,
-    /// Superblocks a row.
+    /// The number of superblocks in a row of the map.
     pub row: i32,
     /// Bit 0: there is a mask; bit 1: two sides; bit 2: their mean.
     pub flags: i32,

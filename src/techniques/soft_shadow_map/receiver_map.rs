@@ -47,7 +47,7 @@ pub struct GatherMap {
     pub receiver_inv_near: f32,
     /// The receiver map's side in texels.
     pub receiver_map: i32,
-    /// Superblocks a row.
+    /// The number of superblocks in a row of the map.
     pub row: i32,
     /// 0 front, 1 back.
     pub side: i32,
@@ -124,7 +124,7 @@ pub struct PatchScan {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct PatchEmit {
-    /// Blocks a row.
+    /// The number of blocks in a row of the map.
     pub row: i32,
     /// 0 front, 1 back.
     pub side: i32,
