@@ -1,4 +1,4 @@
-//! How a pass touches a resource, and what that means to Vulkan.
+//! The ways in which a pass accesses a resource, with their Vulkan stages, access bits and layouts.
 
 use ash::vk;
 
@@ -12,7 +12,7 @@ pub(super) const WRITES: vk::AccessFlags = vk::AccessFlags::from_raw(
         | vk::AccessFlags::MEMORY_WRITE.as_raw(),
 );
 
-/// One way of touching a resource.
+/// One way in which a pass accesses a resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Access {
     /// An image fetched by a compute shader, without a sampler.
@@ -42,15 +42,15 @@ pub enum Access {
 /// Stages and access bits of one use, and the layout an image must be in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scope {
-    /// The pipeline stages that touch it.
+    /// The pipeline stages that access the resource.
     pub stage: vk::PipelineStageFlags,
-    /// How they touch it.
+    /// The access bits of these stages.
     pub access: vk::AccessFlags,
-    /// The layout for images; `UNDEFINED` for buffers.
+    /// The image's layout; `UNDEFINED` for buffers.
     pub layout: vk::ImageLayout,
 }
 
-/// The uses that hosts have most; others are written out.
+/// The scopes that hosts use most.
 impl Scope {
     const fn of(
         stage: vk::PipelineStageFlags,
@@ -60,7 +60,7 @@ impl Scope {
         Self { stage, access, layout }
     }
 
-    /// Never used: a new image, whose content is undefined.
+    /// A new image that was never used: its content is undefined.
     pub const UNUSED: Self = Self::of(
         vk::PipelineStageFlags::TOP_OF_PIPE,
         vk::AccessFlags::empty(),
@@ -78,13 +78,13 @@ impl Scope {
         vk::AccessFlags::COLOR_ATTACHMENT_WRITE,
         vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
     );
-    /// Sampled or fetched by fragment shaders.
+    /// An image that fragment shaders sample or fetch.
     pub const FRAGMENT_SAMPLED: Self = Self::of(
         vk::PipelineStageFlags::FRAGMENT_SHADER,
         vk::AccessFlags::SHADER_READ,
         vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
     );
-    /// Sampled or fetched by compute shaders.
+    /// An image that compute shaders sample or fetch.
     pub const COMPUTE_SAMPLED: Self = Self::of(
         vk::PipelineStageFlags::COMPUTE_SHADER,
         vk::AccessFlags::SHADER_READ,
@@ -96,25 +96,25 @@ impl Scope {
         vk::AccessFlags::SHADER_WRITE,
         vk::ImageLayout::GENERAL,
     );
-    /// The source of a copy.
+    /// An image that a transfer command copies from.
     pub const COPIED_FROM: Self = Self::of(
         vk::PipelineStageFlags::TRANSFER,
         vk::AccessFlags::TRANSFER_READ,
         vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
     );
 
-    /// Whether any of its accesses writes.
+    /// Whether any access of the scope writes.
     pub fn writes(&self) -> bool {
         self.access.intersects(WRITES)
     }
 
-    /// The same use in another layout.
+    /// The scope with another layout.
     #[must_use]
     pub const fn in_layout(self, layout: vk::ImageLayout) -> Self {
         Self { layout, ..self }
     }
 
-    /// The same use of content that is not wanted any more, in whatever layout it is.
+    /// The scope with the layout `UNDEFINED`, which discards the image's content.
     #[must_use]
     pub const fn forgotten(self) -> Self {
         self.in_layout(vk::ImageLayout::UNDEFINED)
@@ -122,7 +122,7 @@ impl Scope {
 }
 
 impl Access {
-    /// Every access, for tests by table.
+    /// Every access, in the order of the variants.
     pub const ALL: [Self; 11] = [
         Self::SampledCompute,
         Self::SampledFragment,
@@ -137,7 +137,7 @@ impl Access {
         Self::ColorTarget,
     ];
 
-    /// Whether it writes.
+    /// Whether the access writes.
     pub fn writes(self) -> bool {
         matches!(
             self,
@@ -150,12 +150,12 @@ impl Access {
         )
     }
 
-    /// Whether what it finds there matters: an earlier pass of the frame must have written it.
+    /// Whether the access depends on the present content, which an earlier pass of the frame must have written.
     pub fn reads(self) -> bool {
         matches!(self, Self::ImageUpdate | Self::BufferUpdate) || !self.writes()
     }
 
-    /// The stages, access bits and layout of it.
+    /// The stages, access bits and layout of the access.
     pub fn scope(self) -> Scope {
         use vk::{AccessFlags as A, ImageLayout as L, PipelineStageFlags as S};
         let (stage, access, layout) = match self {
@@ -188,7 +188,7 @@ impl Access {
         Scope { stage, access, layout }
     }
 
-    /// What an image must have been created for.
+    /// The usage that an image needs for the access; empty for an access to buffers.
     pub fn image_usage(self) -> vk::ImageUsageFlags {
         match self {
             Self::SampledCompute | Self::SampledFragment => vk::ImageUsageFlags::SAMPLED,
@@ -199,7 +199,7 @@ impl Access {
         }
     }
 
-    /// What a buffer must have been created for.
+    /// The usage that a buffer needs for the access; empty for an access to images.
     pub fn buffer_usage(self) -> vk::BufferUsageFlags {
         match self {
             Self::BufferReadCompute
@@ -211,7 +211,7 @@ impl Access {
         }
     }
 
-    /// The descriptor a shader sees it through; none for attachments and indirect arguments.
+    /// The type of descriptor that a shader accesses the resource through; `None` for attachments and indirect arguments.
     pub fn descriptor(self) -> Option<vk::DescriptorType> {
         match self {
             Self::SampledCompute | Self::SampledFragment => Some(vk::DescriptorType::SAMPLED_IMAGE),
@@ -224,7 +224,7 @@ impl Access {
         }
     }
 
-    /// The shader stage that a descriptor of it is visible to.
+    /// The shader stage that the access's descriptor must be visible to.
     pub fn shader_stage(self) -> vk::ShaderStageFlags {
         match self {
             Self::SampledFragment => vk::ShaderStageFlags::FRAGMENT,
