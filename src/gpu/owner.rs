@@ -1,4 +1,4 @@
-//! The one owner of Vulkan objects: it destroys what it keeps in the reverse order of creation.
+//! The owner of all Vulkan objects, which destroys them in the reverse order of creation.
 
 use super::host::Host;
 use super::memory::{Allocator, MemoryBlock, MemoryRequest};
@@ -65,7 +65,7 @@ impl ObjectOwner {
         handle
     }
 
-    /// The number of objects, memory apart.
+    /// The number of objects, without memory objects.
     pub fn count(&self) -> usize {
         self.0.len()
     }
@@ -117,8 +117,8 @@ impl<'a> Maker<'a> {
         self.owner.keep(handle)
     }
 
-    /// Keeps an image or a buffer, and allocates its memory, which the caller binds: the memory object,
-    /// and the offset in it.
+    /// Keeps an image or a buffer, allocates its memory, and returns the memory object and the offset in it for the caller
+    /// to bind.
     pub fn allocate(
         &mut self,
         handle: impl Into<Made>,
@@ -146,7 +146,7 @@ mod tests {
     use std::ptr;
 
     thread_local! {
-        /// What was destroyed or given back, in order.
+        /// The objects that were destroyed and the memory that was freed, in order.
         static GONE: RefCell<Vec<String>> = const { RefCell::new(Vec::new()) };
     }
 
@@ -200,7 +200,7 @@ mod tests {
         }
     }
 
-    /// Images of these numbers, with memory and a view each.
+    /// Creates images with these numbers as handles, with memory and a view each.
     fn images(maker: &mut Maker, numbers: &[u64]) -> Result<(), Error> {
         for &number in numbers {
             let requirements = vk::MemoryRequirements::default();
