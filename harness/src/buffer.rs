@@ -85,7 +85,7 @@ impl HostBuffer {
     /// A buffer that holds `data`.
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// See [`Self::new`].
     pub fn with_data<T: bytemuck::NoUninit>(
         device: &HeadlessDevice,
         name: &str,

@@ -127,7 +127,7 @@ impl OwnedImage {
     /// Reads every texel, row by row; see [`read_image`].
     ///
     /// # Errors
-    /// As [`read_image`].
+    /// See [`read_image`].
     pub fn read<T: bytemuck::AnyBitPattern>(
         &self,
         layout: vk::ImageLayout,

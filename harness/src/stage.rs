@@ -161,7 +161,7 @@ impl Stage {
     /// Plans a frame under the light's whole rectangle; `window` fixes the occluder map's tangents.
     ///
     /// # Errors
-    /// As [`ShadowNode::plan`].
+    /// See [`ShadowNode::plan`].
     pub fn plan(
         &mut self,
         light: &RectangleLight,
@@ -173,7 +173,7 @@ impl Stage {
     /// Plans a frame under a scene's light: its polygon, where it has one.
     ///
     /// # Errors
-    /// As [`ShadowNode::plan`].
+    /// See [`ShadowNode::plan`].
     pub fn plan_under(
         &mut self,
         light: &AreaLight,
@@ -188,7 +188,7 @@ impl Stage {
     /// Plans what `change` makes of a frame.
     ///
     /// # Errors
-    /// As [`ShadowNode::plan`].
+    /// See [`ShadowNode::plan`].
     pub fn plan_with<'f>(
         &'f mut self,
         light: &RectangleLight,
@@ -204,7 +204,7 @@ impl Stage {
     /// Plans together what `change` makes of a frame of each light, by its place.
     ///
     /// # Errors
-    /// As [`ShadowNode::plan_all`].
+    /// See [`ShadowNode::plan_all`].
     pub fn plan_all_with<'f>(
         &'f mut self,
         lights: &[RectangleLight],
@@ -232,7 +232,7 @@ impl Stage {
     /// What `auto` chooses for a scene's light; the node stays as it is.
     ///
     /// # Errors
-    /// As [`Auto::choose`].
+    /// See [`Auto::choose`].
     pub fn choose(&mut self, auto: &mut Auto, light: &AreaLight) -> Result<Choice, Error> {
         let frame = Frame { outline: light.outline(), ..self.frame(&light.light) };
         let node =
@@ -251,7 +251,7 @@ impl Stage {
     /// Records plans one behind the other into one command buffer, submits it and waits.
     ///
     /// # Errors
-    /// As [`Self::run`].
+    /// See [`Self::run`].
     pub fn run_all(&mut self, plans: &[FramePlan]) -> Result<FrameTimes, Error> {
         let device = self.device.clone();
         let node = self.node()?;
@@ -268,7 +268,7 @@ impl Stage {
     /// Runs a plan and counts what its shaders do; none where [`HeadlessDevice::count`] counts nothing.
     ///
     /// # Errors
-    /// As [`Self::run`].
+    /// See [`Self::run`].
     pub fn count(&mut self, plan: &FramePlan) -> Result<Option<Invocations>, Error> {
         let device = self.device.clone();
         let node = self.node()?;
@@ -278,7 +278,7 @@ impl Stage {
     /// Reads the visible fraction of every pixel, row by row, under light 0.
     ///
     /// # Errors
-    /// As [`read_image`].
+    /// See [`read_image`].
     pub fn visibility(&mut self) -> Result<Vec<f32>, Error> {
         self.visibility_under(0)
     }
@@ -286,7 +286,7 @@ impl Stage {
     /// The same under any of the description's lights.
     ///
     /// # Errors
-    /// As [`read_image`].
+    /// See [`read_image`].
     pub fn visibility_under(&mut self, light_index: u32) -> Result<Vec<f32>, Error> {
         let result = self.node()?.visibility();
         let source = ImageSource {
@@ -302,7 +302,7 @@ impl Stage {
     /// for color.
     ///
     /// # Errors
-    /// As [`read_image`].
+    /// See [`read_image`].
     pub fn visibility_of_color(&mut self) -> Result<Vec<[f32; 4]>, Error> {
         let result = self.node()?.visibility();
         let (format, extent) = (visibility::COLOR_FORMAT, result.extent);

@@ -31,7 +31,7 @@ impl HeadlessDevice {
     /// [`crate::HeadlessOptions::statistics`] did not ask for them.
     ///
     /// # Errors
-    /// As [`Self::submit_and_wait`].
+    /// See [`Self::submit_and_wait`].
     pub fn count(
         &self,
         record: impl FnOnce(vk::CommandBuffer) -> Result<(), Error>,

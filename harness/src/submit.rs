@@ -50,7 +50,7 @@ impl HeadlessDevice {
     /// As [`Self::submit_and_wait`], with the time from the submit to the fence.
     ///
     /// # Errors
-    /// As [`Self::submit_and_wait`].
+    /// See [`Self::submit_and_wait`].
     pub fn submit_timed<T>(
         &self,
         record: impl FnOnce(vk::CommandBuffer) -> Result<T, Error>,
@@ -62,7 +62,7 @@ impl HeadlessDevice {
     /// Records a command buffer and submits it without waiting: a frame in flight.
     ///
     /// # Errors
-    /// As [`Self::submit_and_wait`].
+    /// See [`Self::submit_and_wait`].
     pub fn submit<T>(
         &self,
         record: impl FnOnce(vk::CommandBuffer) -> Result<T, Error>,
