@@ -26,13 +26,13 @@ use std::time::Duration;
 pub struct Forward {
     stage: Stage,
     plan: FramePlan,
-    /// With the node's push constants and its windows bound.
+    /// The painter, with the node's push constants and its windows bound.
     painter: Painter,
     gbuffer_painter: GBufferPainter,
     draws: Vec<SceneDraw>,
     visible: OwnedImage,
     depth: OwnedImage,
-    /// What the painter's set reads.
+    /// The buffer that the painter's set reads.
     _push: HostBuffer,
 }
 

@@ -113,7 +113,7 @@ impl GBufferPainter {
         self.paint_draws(gbuffer, &draws(scene, buffers, view, keep)).map(drop)
     }
 
-    /// As [`Self::paint`], what is ready to be drawn; how long it took.
+    /// Paints draws that are ready, and returns the time from the submit to the fence; see [`Self::paint`].
     pub(crate) fn paint_draws(
         &self,
         gbuffer: &GBuffer,

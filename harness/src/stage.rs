@@ -17,12 +17,12 @@ use antumbra::{
 use std::sync::PoisonError;
 use std::time::{Duration, Instant};
 
-/// What one frame of the node took.
+/// The times of one frame of the node.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameTimes {
-    /// From the submit to the fence.
+    /// The time from the submit to the fence.
     pub frame: Duration,
-    /// Recording on the CPU.
+    /// The time of recording on the CPU.
     pub record: Duration,
     /// Name and milliseconds of each pass, by timestamps; empty where there are none.
     pub passes: Vec<(&'static str, f64)>,
@@ -102,15 +102,15 @@ impl Stage {
     /// Makes the node anew with other settings.
     ///
     /// # Errors
-    /// As [`ShadowNode::new`]; the stage then has no node until settings that work are given.
+    /// See [`ShadowNode::new`]; the stage then has no node until settings that work are given.
     pub fn configure(&mut self, settings: Technique) -> Result<(), Error> {
         self.configure_with(settings, |_| {})
     }
 
-    /// As [`Self::configure`], with what `change` makes of the description.
+    /// Makes the stage's node anew for a technique, with a description that `change` has changed.
     ///
     /// # Errors
-    /// As [`ShadowNode::new`]; the stage then has no node until settings that work are given.
+    /// See [`ShadowNode::new`]; the stage then has no node until settings that work are given.
     pub fn configure_with(
         &mut self,
         settings: Technique,
@@ -140,7 +140,7 @@ impl Stage {
         &self.gbuffer
     }
 
-    /// How its pixels look at the scene.
+    /// The camera of the stage's image.
     pub(crate) fn view(&self) -> &View {
         &self.view
     }
@@ -185,7 +185,7 @@ impl Stage {
         })
     }
 
-    /// Plans what `change` makes of a frame.
+    /// Plans a frame that `change` has changed.
     ///
     /// # Errors
     /// See [`ShadowNode::plan`].
@@ -201,7 +201,7 @@ impl Stage {
         node.plan(&frame)
     }
 
-    /// Plans together what `change` makes of a frame of each light, by its place.
+    /// Plans the frames of all lights together; `change` changes each frame, by the light's index.
     ///
     /// # Errors
     /// See [`ShadowNode::plan_all`].
@@ -229,7 +229,7 @@ impl Stage {
         }
     }
 
-    /// What `auto` chooses for a scene's light; the node stays as it is.
+    /// The choice of `auto` for a scene's light; the node stays as it is.
     ///
     /// # Errors
     /// See [`Auto::choose`].
@@ -243,7 +243,7 @@ impl Stage {
     /// Records a plan, submits it and waits.
     ///
     /// # Errors
-    /// As [`ShadowNode::record`] and [`HeadlessDevice::submit_and_wait`].
+    /// See [`ShadowNode::record`] and [`HeadlessDevice::submit_and_wait`].
     pub fn run(&mut self, plan: &FramePlan) -> Result<FrameTimes, Error> {
         self.run_all(std::slice::from_ref(plan))
     }
@@ -283,7 +283,7 @@ impl Stage {
         self.visibility_under(0)
     }
 
-    /// The same under any of the description's lights.
+    /// Reads the visible fraction of every pixel, row by row, under any of the description's lights.
     ///
     /// # Errors
     /// See [`read_image`].
@@ -333,7 +333,7 @@ impl Stage {
         Ok((read_image(&self.device, &source, image.layout)?, image.extent))
     }
 
-    /// The same of one of its buffers.
+    /// Reads one of the node's own buffers that a plan uses.
     ///
     /// # Errors
     /// [`Error::Frame`] where the plan has no buffer of that name; otherwise as [`HostBuffer::new`].

@@ -38,7 +38,7 @@ impl HeadlessDevice {
     /// All writes are visible to the host and to later submits afterwards.
     ///
     /// # Errors
-    /// What `record` returns, and then nothing is submitted; [`Error::Vulkan`] if the driver
+    /// The error that `record` returns, and then nothing is submitted; [`Error::Vulkan`] if the driver
     /// refuses.
     pub fn submit_and_wait<T>(
         &self,
@@ -47,7 +47,7 @@ impl HeadlessDevice {
         self.submit_timed(record).map(|(value, _)| value)
     }
 
-    /// As [`Self::submit_and_wait`], with the time from the submit to the fence.
+    /// Submits commands, waits, and returns the time from the submit to the fence too; see [`Self::submit_and_wait`].
     ///
     /// # Errors
     /// See [`Self::submit_and_wait`].

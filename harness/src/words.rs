@@ -18,7 +18,7 @@ pub fn technique_of(words: &str) -> Result<Technique, Error> {
 /// A technique by its name and settings, as in `"pcss taps=8"`.
 ///
 /// # Panics
-/// Where there is none: the words stand in a test or a bench.
+/// Panics where the words are no technique: they are written in a test or a bench.
 pub fn technique(words: &str) -> Technique {
     words.parse().unwrap_or_else(|e| panic!("{words}: {e}"))
 }
