@@ -1,5 +1,8 @@
 //! Techniques in words, as tests and benches write them.
 
+// Words in a test or a bench that are wrong end it.
+#![allow(clippy::panic)]
+
 use antumbra::{Error, Technique};
 
 /// A technique from `key=value` words. `technique=NAME` as the first of them names the technique, which is the default
