@@ -1,6 +1,6 @@
 //! The crate's one error type: each variant names the file, node, option, pass or resource.
 
-/// What went wrong, as one sentence that says what would be right.
+/// An error, as one sentence that says what is wrong and what would be right.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -9,7 +9,7 @@ pub enum Error {
     File {
         /// The file as it was named.
         path: String,
-        /// What is wrong, and what would be right.
+        /// The end of the sentence: what is wrong, and what would be right.
         problem: String,
     },
     /// A light that no technique can work with.
@@ -23,26 +23,26 @@ pub enum Error {
     Setting {
         /// The setting's key, as in `--set key=value`.
         key: String,
-        /// What is wrong, and the values that would be right.
+        /// The end of the sentence: what is wrong, and which values would be right.
         problem: String,
     },
     /// No device to run on: the loader, a driver, a layer or the named device is missing.
     #[error("no Vulkan device: {0}")]
     NoDevice(String),
-    /// A device that lacks something the node needs; lists every gap.
+    /// A device that lacks something the node needs; the error lists everything.
     #[error("the device {device} cannot run antumbra: {}", gaps.join("; "))]
     Device {
         /// The device's name.
         device: String,
-        /// Each missing thing, as a short phrase.
+        /// Everything that the device lacks, as short phrases.
         gaps: Vec<String>,
     },
     /// A Vulkan call that failed.
     #[error("{doing} failed: {result:?}")]
     Vulkan {
-        /// What was being done, with the pass or resource it was done for.
+        /// The action that failed, with the pass or resource it was for.
         doing: String,
-        /// The driver's answer.
+        /// The driver's result code.
         result: ash::vk::Result,
     },
     /// The device is gone, and with it everything made from it.
@@ -51,17 +51,17 @@ pub enum Error {
          and start anew with another"
     )]
     DeviceLost {
-        /// What was being done when that showed.
+        /// The action during which the loss was detected.
         doing: String,
     },
-    /// Memory that could not be had.
+    /// Memory that could not be allocated.
     #[error("no memory for {resource} ({bytes} bytes): {problem}")]
     Memory {
-        /// The resource that wanted it.
+        /// The resource that needs the memory.
         resource: String,
-        /// How much it wanted.
+        /// The bytes that it needs.
         bytes: u64,
-        /// The allocator's answer.
+        /// The allocator's error.
         problem: String,
     },
     /// A plan that the node does not take any more: plan the frame again, and record that.
@@ -88,10 +88,10 @@ impl Error {
     }
 }
 
-/// How many characters of a name a sentence shows.
+/// The most characters of a name that a sentence shows.
 pub(crate) const NAME_SHOWN: usize = 60;
 
-/// A name from a file or a command line as a sentence shows it: in quotes, on one line, not endless.
+/// A name from a file or a command line for a sentence: in quotes, on one line, cut after [`NAME_SHOWN`] characters.
 pub(crate) fn quoted(name: &str) -> String {
     let shown: String = name.chars().take(NAME_SHOWN).collect();
     let rest = if shown.len() < name.len() { "…" } else { "" };

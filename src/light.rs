@@ -9,10 +9,10 @@ mod shape;
 
 pub use shape::Light;
 
-/// How far from perpendicular two half-axes may be (cosine of the angle between them).
+/// The largest cosine of the angle between two half-axes that count as perpendicular.
 const MAX_SKEW: f64 = 1e-4;
 
-/// How far away a sun is, in radii of what it shines on.
+/// The distance of a sun, in radii of the sphere that it lights.
 const SUN_DISTANCE: f64 = 1000.0;
 
 /// The largest angular size of a sun, radians.
@@ -188,19 +188,19 @@ impl RectangleLight {
         Self { center: DVec3::ZERO, axes: DMat3::IDENTITY, half_extents: [0.5; 2] }
     }
 
-    /// The same light with its centre at a point of its own plane, in metres along its x and y.
+    /// The light with its centre moved within its plane, by metres along its x and y.
     pub(crate) fn moved(&self, [x, y]: [f64; 2]) -> Self {
         Self { center: self.center + self.axes * DVec3::new(x, y, 0.0), ..*self }
     }
 
-    /// The same light with its x along a unit vector of its own plane.
+    /// The light with its x axis turned to a unit vector of its plane.
     pub(crate) fn turned(&self, along: DVec2) -> Self {
         let [x, y, z] = [self.axes.x_axis, self.axes.y_axis, self.axes.z_axis];
         let turned = along.x * x + along.y * y;
         Self { axes: DMat3::from_cols(turned, z.cross(turned), z), ..*self }
     }
 
-    /// The same light with its x along what was its y.
+    /// The light turned by a quarter, so that its x axis lies where its y axis was.
     pub(crate) fn quarter_turned(&self) -> Self {
         let [x, y, z] = [self.axes.x_axis, self.axes.y_axis, self.axes.z_axis];
         let [a, b] = self.half_extents;

@@ -9,7 +9,7 @@ use antumbra::{RectangleLight, VisibilityImage};
 use ash::vk;
 use glam::{DMat4, DVec3};
 
-/// What every device can write from a compute shader.
+/// The picture's format, which every device can write from a compute shader.
 const PICTURE: vk::Format = vk::Format::R8G8B8A8_UNORM;
 
 /// Fetched images; the picture is the binding after them.

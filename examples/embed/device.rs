@@ -9,10 +9,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 const VALIDATION_LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
 
-/// How many warnings and errors the validation layer has reported.
+/// The number of warnings and errors that the validation layer has reported.
 static MESSAGES: AtomicUsize = AtomicUsize::new(0);
 
-/// How many warnings and errors the validation layer has reported so far.
+/// The number of warnings and errors that the validation layer has reported so far.
 pub fn messages() -> usize {
     MESSAGES.load(Ordering::Relaxed)
 }
@@ -50,7 +50,7 @@ impl Gpu {
         let create = vk::DeviceCreateInfo::default().queue_create_infos(&queues);
         // SAFETY: the device and the family were listed by this instance.
         let device = unsafe { instance.create_device(physical_device, &create, None) }?;
-        // SAFETY: one queue of this family was asked for above.
+        // SAFETY: one queue of this family was requested above.
         let queue = unsafe { device.get_device_queue(queue_family, 0) };
         let create = vk::PipelineCacheCreateInfo::default();
         // SAFETY: the device lives. (An engine would start from the bytes of its last run.)
@@ -87,13 +87,13 @@ impl Gpu {
         Ok(unsafe { self.device.create_shader_module(&create, None) }?)
     }
 
-    /// Records a barrier that a plan asks for.
+    /// Records a barrier of a plan.
     pub fn place(&self, cmd: vk::CommandBuffer, barrier: &ImageBarrier) {
         let (before, after) = (barrier.before.stage, barrier.after.stage);
         let none = vk::DependencyFlags::empty();
         let barrier = [barrier.vk()];
-        // SAFETY: `cmd` is recording outside a render pass; the image is in the layout that the plan
-        // was told.
+        // SAFETY: `cmd` is recording outside a render pass; the image is in the layout that the frame
+        // names.
         unsafe {
             self.device.cmd_pipeline_barrier(cmd, before, after, none, &[], &[], &barrier);
         }

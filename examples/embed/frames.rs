@@ -7,15 +7,15 @@ use ash::vk;
 use gpu_allocator::MemoryLocation;
 use std::time::Duration;
 
-/// How many frames are recorded before the first of them must be done.
+/// The number of frames that are recorded before the device must have completed the first of them.
 pub const FRAMES_IN_FLIGHT: usize = 2;
 
-/// What is told about a frame once it is done.
+/// The notes on a frame that are printed once it is complete.
 #[derive(Clone, Copy)]
 pub struct FrameNotes {
     pub number: u64,
     pub extent: [u32; 2],
-    /// What the node took of the processor.
+    /// The processor's time for planning.
     pub plan: Duration,
     pub record: Duration,
     /// Passes that the node recorded.

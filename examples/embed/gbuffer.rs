@@ -30,13 +30,13 @@ pub struct Push {
     /// Three columns, 16 bytes apart.
     pub world_from_normal: [[f32; 4]; 3],
     pub albedo_role: [u8; 4],
-    /// How far a jelly swells, in metres, and where it is in its swing.
+    /// The distance, in metres, that a jelly swells; `phase` is where it is in its swing.
     pub swell: f32,
     pub phase: f32,
     pub unused: f32,
 }
 
-/// What is the same at any size.
+/// The objects that do not depend on the image's size.
 pub struct GBufferPass {
     render_pass: vk::RenderPass,
     layout: vk::PipelineLayout,

@@ -59,12 +59,12 @@ impl Model {
         })
     }
 
-    /// Where it stands at a time.
+    /// The model's transform at a time.
     pub fn world_from_mesh(&self, seconds: f64) -> DMat4 {
         self.object.world_from_mesh(seconds)
     }
 
-    /// Its push constants but for the camera's.
+    /// The model's push constants, without the camera's matrix.
     pub fn push(&self, seconds: f64) -> Push {
         let normals = DMat3::from_mat4(self.world_from_mesh(seconds)).inverse().transpose();
         let columns = [normals.x_axis, normals.y_axis, normals.z_axis];

@@ -43,7 +43,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 use world::{Seen, World};
 
-/// What goes wrong in an example is told and ends it.
+/// A result whose error, of any kind, is printed and ends the example.
 type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
 
 /// A small engine that hosts antumbra's node: an animation without a window, a few frames as PNG.
@@ -86,7 +86,7 @@ struct Targets {
     picture: Image,
 }
 
-/// What a resize replaced, and the last frame that may use it.
+/// The objects that a resize replaced, and the last frame that may use them.
 struct Replaced {
     last_frame: u64,
     targets: Targets,
@@ -188,7 +188,7 @@ fn run(options: &Options) -> Outcome<()> {
         shadows.record(&gpu, cmd, &plan, &seen)?;
         let record_time = started.elapsed();
 
-        // Depth and visibility are ready to be fetched: the plan was told so. The rest is the engine's.
+        // Depth and visibility are ready to be fetched, as the frame says. The engine takes care of the rest.
         for image in [&gbuffer.albedo, &gbuffer.normal] {
             barrier(&gpu, cmd, image, COLOR_DRAWN, COMPOSE_READS);
         }
@@ -242,7 +242,7 @@ fn run(options: &Options) -> Outcome<()> {
     Ok(())
 }
 
-/// How many resizes come before a frame: they are spread over the run.
+/// The number of resizes that come before a frame: they are spread over the run.
 fn resizes_due(options: &Options, number: u64) -> u64 {
     let steps = (options.frames - 1).max(1);
     (options.resizes * number + steps / 2) / steps

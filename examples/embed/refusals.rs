@@ -1,4 +1,4 @@
-//! What the node says to an engine that gets something wrong: one sentence each, in the engine's
+//! The node's errors for an engine that gets something wrong: one sentence each, in the engine's
 //! words, with nothing recorded and nothing lost.
 
 #![allow(clippy::unwrap_used, reason = "a test says what went wrong by panicking")]
@@ -152,7 +152,7 @@ thread_local! {
     static CREATE_IMAGE: Cell<Option<vk::PFN_vkCreateImage>> = const { Cell::new(None) };
 }
 
-/// As a driver answers once its device is lost.
+/// Answers as a driver does once its device is lost.
 unsafe extern "system" fn create_image(
     device: vk::Device,
     info: *const vk::ImageCreateInfo<'_>,

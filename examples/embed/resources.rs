@@ -8,15 +8,15 @@ use ash::vk;
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
 
-/// As the G-buffer's render pass leaves depth.
+/// The scope of the G-buffer's render pass on depth.
 pub const DEPTH_DRAWN: Scope = Scope::DEPTH_DRAWN;
-/// As the G-buffer's render pass leaves colors.
+/// The scope of the G-buffer's render pass on colors.
 pub const COLOR_DRAWN: Scope = Scope::COLOR_DRAWN;
-/// As the compose pass fetches its inputs.
+/// The scope of the compose pass on its inputs.
 pub const COMPOSE_READS: Scope = Scope::COMPUTE_SAMPLED;
-/// As the compose pass writes the picture.
+/// The scope of the compose pass on the picture.
 pub const COMPOSE_WRITES: Scope = Scope::COMPUTE_WRITTEN;
-/// As pictures are copied out.
+/// The scope of the copy that reads the picture.
 pub const COPY_READS: Scope = Scope::COPIED_FROM;
 
 /// Moves an image on from one use to the next.
@@ -142,7 +142,7 @@ impl Buffer {
         Ok(new)
     }
 
-    /// What it holds; no running frame may write it.
+    /// The buffer's content; no running frame may write it.
     pub fn read(&self) -> Outcome<&[u8]> {
         Ok(self.allocation.mapped_slice().ok_or("the buffer is not mapped")?)
     }

@@ -50,7 +50,7 @@ impl Shadows {
         Ok(Self { node, jelly, border_barriers })
     }
 
-    /// What the node will do this frame, from what the engine says of it.
+    /// Plans the node's work for this frame.
     pub fn plan(&self, seen: &Seen) -> Result<FramePlan, Error> {
         let meshes = seen.models.iter().zip(0..).map(|(model, n)| mesh(model, n, seen.seconds));
         let meshes: Vec<_> = meshes.collect();
@@ -77,7 +77,7 @@ impl Shadows {
         plan: &FramePlan,
         seen: &Seen,
     ) -> Result<(), Error> {
-        // Only where the engine asked to place the barriers itself.
+        // Only where the engine chose to record the barriers itself.
         let host = self.border_barriers == BorderBarriers::Host;
         let place = |barrier| {
             if host {
@@ -105,7 +105,7 @@ fn lend(image: &Image, before: Scope) -> HostImage {
     HostImage::new((image, view), format, extent, usage, before, COMPOSE_READS)
 }
 
-/// A model as the node takes it: its buffers, or, for a jelly, the number by which it is asked for.
+/// A model as a mesh of the node: its buffers, or, for a jelly, the number that the draw callback gets.
 fn mesh(model: &Model, number: u64, seconds: f64) -> MeshInstance {
     let (vertices, indices) = (model.vertices.raw, model.indices.raw);
     let geometry = match model.object.jelly {

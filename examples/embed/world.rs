@@ -1,4 +1,4 @@
-//! What there is to see: a few objects under a light that goes round, or a scene from a file.
+//! The world of the example: a few objects under a light that goes round, or a scene from a file.
 
 use crate::Outcome;
 use crate::gbuffer::GBuffer;
@@ -9,7 +9,7 @@ use glam::{DMat3, DMat4, DVec3, DVec4};
 use std::f64::consts::TAU;
 use std::path::Path;
 
-/// What a frame shows, and where it is drawn.
+/// The inputs of a frame, and the images it is drawn into.
 pub struct Seen<'a> {
     pub light: &'a Light,
     pub clip_from_world: &'a DMat4,
@@ -22,17 +22,17 @@ pub struct Seen<'a> {
 /// An object of the world.
 pub struct Object {
     pub mesh: Mesh,
-    /// Where it stands; it turns with `turns` turns a second round its y axis.
+    /// The object's transform at rest; it turns with `turns` turns a second round its y axis.
     pub stand: DMat4,
     pub turns: f64,
-    /// How far it swells and shrinks along its normals, in metres, where it is a jelly.
+    /// The distance, in metres, that a jelly swells and shrinks along its normals; `None` for a rigid object.
     pub jelly: Option<f32>,
     pub role: Role,
     pub albedo: [u8; 3],
 }
 
 impl Object {
-    /// Where it is at a time.
+    /// The object's transform at a time.
     pub fn world_from_mesh(&self, seconds: f64) -> DMat4 {
         self.stand * DMat4::from_rotation_y(self.turns * TAU * seconds)
     }
@@ -70,7 +70,7 @@ impl World {
         Ok(Self { objects, fixed: Some((light, camera)) })
     }
 
-    /// The light at a time; to the sky if asked, where it can go there.
+    /// The light at a time; with `to_the_sky` it shines at the sky, where it can move there.
     pub fn light(&self, seconds: f64, to_the_sky: bool) -> Outcome<Light> {
         match &self.fixed {
             Some((light, _)) => Ok(light.shape()?),
@@ -118,7 +118,7 @@ fn objects() -> Vec<Object> {
     ]
 }
 
-/// What the lamp emits, per square metre and steradian.
+/// The lamp's radiance, per square metre and steradian.
 pub const RADIANCE: f32 = 40.0;
 
 /// The light at a time: 0.9 × 0.6 m, on a circle over the objects, turned towards them, or towards

@@ -1,14 +1,14 @@
-//! What passes cost on a device: measured at its first use, and kept by its name.
+//! The times of passes on a device, measured at its first use and stored by its name.
 
 use antumbra::Error;
 use antumbra::auto::{Costs, Table};
 use antumbra_harness::{HeadlessDevice, measure_costs};
 use std::path::PathBuf;
 
-/// Kept from an earlier run, or measured now. What cannot be kept is measured again next time.
+/// Reads the costs of an earlier run, or measures them now. Costs that cannot be stored are measured again next time.
 ///
 /// # Errors
-/// Whatever the device refuses.
+/// Any error of the device.
 pub fn of(device: &HeadlessDevice) -> Result<Costs, Error> {
     let path = path(device.name());
     let kept = path.as_ref().and_then(|p| std::fs::read_to_string(p).ok());

@@ -1,4 +1,4 @@
-//! What a person should know of a run that goes well, and might not see in the picture.
+//! Notes on a run that goes well: facts that the picture may not show.
 
 use crate::options::Options;
 use antumbra::FramePlan;
@@ -32,20 +32,20 @@ pub fn percent(fraction: f64) -> String {
     format!("{} %", (percent * scale).round() / scale)
 }
 
-/// That the frames took longer than was asked for, where nothing has been said of it before.
+/// A note that the frames took longer than the budget allows, unless the choice has said so already.
 pub fn too_slow(options: &Options, choice: Option<&Choice>, measured_ms: f64) -> Option<String> {
     let most = options.auto?.max_ms?;
-    let told = choice?.problem.is_some();
-    (measured_ms > most && !told)
+    let known = choice?.problem.is_some();
+    (measured_ms > most && !known)
         .then(|| format!("auto: {measured_ms:.1} ms were measured, and {most} ms asked for"))
 }
 
-/// The error that a budget asks for; none where it asks for the best that its time buys.
+/// The error that a budget allows; `None` where it wants the least error that its time allows.
 pub fn asked_error(budget: &Budget) -> Option<f64> {
     budget.max_error.or(budget.max_ms.is_none().then_some(Budget::DEFAULT_ERROR))
 }
 
-/// What of the budget cannot be met.
+/// A note on a budget that cannot be met.
 fn unmet(options: &Options, choice: Option<&Choice>) -> Option<String> {
     let (budget, choice) = (options.auto?, choice?);
     let problem = choice.problem.as_ref()?;

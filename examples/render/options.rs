@@ -49,12 +49,12 @@ struct Arguments {
     max_ms: Option<String>,
 }
 
-/// What to render, checked.
+/// The checked options of a run.
 #[derive(Debug)]
 pub struct Options {
     pub scene: PathBuf,
     pub out: PathBuf,
-    /// What technique and settings are chosen by; none where they are given.
+    /// The budget that technique and settings are chosen by; `None` where they are given.
     pub auto: Option<Budget>,
     /// The most that leaving out one effect may add to the error, where a technique is named.
     pub max_error: Option<f64>,
@@ -111,7 +111,7 @@ fn knobs() -> String {
 /// Reads and checks a command line.
 ///
 /// # Errors
-/// The help text where it was asked for; one line for anything wrong.
+/// The help text where it was requested; one line for anything wrong.
 pub fn parse(arguments: impl Iterator<Item = OsString>) -> Result<Options, Stop> {
     let technique = format!(
         "How the visible fraction is computed: {}; auto without it, or, with --set, the technique that has these settings",
@@ -163,7 +163,7 @@ pub fn parse(arguments: impl Iterator<Item = OsString>) -> Result<Options, Stop>
     })
 }
 
-/// What clap says as one line: its first paragraph, which names the argument, and its tips. The usage is left out.
+/// An error of clap as one line: its first paragraph, which names the argument, and its tips. The usage is left out.
 fn sentence(text: &str) -> String {
     let lines = || text.lines().map(str::trim);
     let first: Vec<_> = lines().take_while(|line| !line.is_empty()).collect();
@@ -218,7 +218,7 @@ fn assignments(a: &Arguments) -> Result<Vec<(&str, &str)>, Stop> {
     a.settings.iter().map(|text| pair(text.as_str())).collect()
 }
 
-/// The budget of `auto`, or the technique that was asked for: by its name, or by settings that it has.
+/// The budget of `auto`, or the technique that was given: by its name, or by settings that it has.
 fn technique_of(a: &Arguments, budget: Budget) -> Result<(Option<Budget>, Technique), Stop> {
     let given = assignments(a)?;
     match (a.technique.as_deref(), &given[..]) {

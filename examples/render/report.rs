@@ -1,4 +1,4 @@
-//! What ran, what did not, why, and what it cost.
+//! The report of a run: which passes ran or did not, why, and what they cost.
 
 use crate::notes;
 use crate::options::Options;
@@ -11,14 +11,14 @@ use antumbra_harness::{FrameTimes, HeadlessDevice};
 use serde_json::{Map, Value, json};
 use std::time::Duration;
 
-/// What single precision may add to an error that was asked for, as a share of it.
+/// The rounding of an allowed error in single precision, as a share of it.
 const ROUNDING: f64 = 1e-4;
 
 /// Everything the report is made of.
 pub struct Report<'a> {
     pub device: &'a HeadlessDevice,
     pub options: &'a Options,
-    /// What ran: given, or chosen.
+    /// The technique that ran, given or chosen.
     pub settings: &'a Technique,
     pub choice: Option<&'a Choice>,
     pub scene: &'a Scene,
@@ -143,7 +143,7 @@ impl Report<'_> {
         format!("{report:#}\n")
     }
 
-    /// Where to look and what it cost, for a person.
+    /// A summary for people: the files to look at, and the times.
     pub fn summary(&self) -> String {
         let [width, height] = self.options.size;
         let frames = match self.frames.len() {

@@ -85,7 +85,7 @@ impl HostBuffer {
     /// A buffer that holds `data`.
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// See [`Self::new`].
     pub fn with_data<T: bytemuck::NoUninit>(
         device: &HeadlessDevice,
         name: &str,
@@ -138,12 +138,12 @@ impl HostBuffer {
         self.buffer
     }
 
-    /// Its size in bytes.
+    /// The buffer's size in bytes.
     pub fn bytes(&self) -> u64 {
         self.bytes
     }
 
-    /// Its name.
+    /// The buffer's name.
     pub fn name(&self) -> &str {
         &self.name
     }

@@ -8,9 +8,9 @@ use antumbra::effects::Effect;
 use antumbra::scene::{Mesh, Role, Scene, generate};
 use glam::{DMat4, DVec3};
 
-/// A scene made to need something, or not to.
+/// A scene made to need some effects and not others.
 pub struct Case {
-    /// Its name, for tables.
+    /// The case's name, for tables.
     pub name: &'static str,
     /// The scene.
     pub scene: Scene,
@@ -18,9 +18,9 @@ pub struct Case {
     pub words: &'static str,
     /// Half the side of the ground that pixels see, metres.
     pub half: f64,
-    /// The kinds of row that run, in order.
+    /// The kinds of pass that run, in order.
     pub runs: &'static [&'static str],
-    /// What is left out beyond what nobody would look for.
+    /// The effects that are left out, beside those that are left out in most scenes.
     pub left_out: &'static [Effect],
 }
 
@@ -28,7 +28,7 @@ fn light(side: f64) -> RectangleLight {
     generate::square_light(side).unwrap()
 }
 
-/// Over the ground, under a square light of this side at 4 m: meshes and the places of their middles.
+/// A scene of meshes over the ground, each with its centre's place, under a square light of side `side` at 4 m.
 fn over_ground<const N: usize>(side: f64, occluders: [(Mesh, DVec3); N]) -> Scene {
     let mut scene = generate::stage(light(side));
     for (i, (mesh, at)) in occluders.into_iter().enumerate() {

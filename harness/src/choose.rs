@@ -1,9 +1,9 @@
-//! Which of the machine's devices to use: a pure choice over plain data.
+//! Chooses one of the machine's devices: a pure function over plain data.
 
 use antumbra::Error;
 use ash::vk;
 
-/// What the choice needs to know of a device.
+/// The properties of a device that the choice depends on.
 #[derive(Clone, Debug)]
 pub(crate) struct Candidate {
     pub name: String,

@@ -92,7 +92,7 @@ impl ComputeProgram {
     /// Runs one dispatch and waits. The buffers given to [`Self::new`] must live still.
     ///
     /// # Errors
-    /// As [`Self::record`]; [`Error::Vulkan`] if the driver refuses.
+    /// See [`Self::record`]; [`Error::Vulkan`] if the driver refuses.
     pub fn run(&self, push: &[u8], groups: [u32; 3]) -> Result<(), Error> {
         self.device.submit_and_wait(|cmd| {
             // SAFETY: `cmd` records outside a render pass; the program lives until

@@ -1,14 +1,14 @@
-//! What passes cost on a device, by a small frame of it: under half a second.
+//! Measures the times of passes on a device by small frames, in under half a second.
 
 use crate::{HeadlessDevice, Stage, View};
 use antumbra::Error;
 use antumbra::auto::{Costs, Measured, Table};
 use antumbra::scene::{Camera, generate};
 
-/// The probe's pixels.
+/// The image's size in pixels.
 const EXTENT: [u32; 2] = [256, 192];
 
-/// Frames of which the median is taken; one before them warms the driver up.
+/// The number of frames whose median is the result; one before them warms the driver up.
 const FRAMES: usize = 3;
 
 /// The factors between this device and the one that measured the table that `auto` chooses by.

@@ -13,35 +13,35 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// The environment variable that picks a device by a part of its name.
 const DRIVER_VARIABLE: &str = "ANTUMBRA_DRIVER";
 
-/// How to make a [`HeadlessDevice`].
+/// The options of a [`HeadlessDevice`].
 #[derive(Clone, Debug, Default)]
 pub struct HeadlessOptions {
-    /// Run under the Khronos validation layer with synchronization checks; off by default.
+    /// Whether to run under the Khronos validation layer with synchronization checks; off by default.
     pub validation: bool,
     /// A part of the wanted device's name, in any case. `None` leaves it to the environment
     /// variable `ANTUMBRA_DRIVER`, and without that to the kind: discrete GPU, integrated GPU,
     /// virtual GPU, processor.
     pub driver: Option<String>,
-    /// Turn on pipeline statistics where the device has them, for [`HeadlessDevice::count`]; off by default.
+    /// Whether to enable pipeline statistics where the device has them, for [`HeadlessDevice::count`]; off by default.
     pub statistics: bool,
-    /// Go through other tables of functions; none by default.
+    /// Other tables of Vulkan functions to call through; none by default.
     pub tables: Option<Tables>,
 }
 
-/// What stands between a program and its driver, for tests: a device on which calls fail, or that says it has less
-/// than it has.
+/// Replacements for Vulkan's functions, for tests: a device on which calls fail, or that reports fewer abilities than it
+/// has.
 ///
-/// Each takes what Vulkan loaded and gives what is called instead; objects are the same.
+/// Each function gets the table that Vulkan loaded and returns the table that is called instead, for the same objects.
 #[derive(Clone, Copy, Debug)]
 pub struct Tables {
-    /// Of the instance, and so of what is asked of the physical device.
+    /// Replaces the instance's functions, and so the queries of the physical device.
     pub instance: fn(&ash::Instance) -> ash::Instance,
-    /// Of the device, its queue and its command buffers.
+    /// Replaces the functions of the device, its queue and its command buffers.
     pub device: fn(&ash::Device) -> ash::Device,
 }
 
 /// A device of Vulkan 1.1 with one graphics and compute queue, no device extension and no optional feature
-/// but the one that [`HeadlessOptions::statistics`] asks for.
+/// but the one that [`HeadlessOptions::statistics`] enables.
 ///
 /// A clone is another handle to the same device; the last one destroys it. Buffers and images made
 /// from it hold a handle each, so they may be dropped in any order. Objects made through
@@ -140,7 +140,7 @@ impl HeadlessDevice {
         // SAFETY: the device was just made. `Device` destroys the cache, a null one too.
         device.1 = unsafe { device.0.create_pipeline_cache(&empty, None) }
             .map_err(Error::vulkan("creating the pipeline cache"))?;
-        // SAFETY: one queue of this family was asked for above.
+        // SAFETY: one queue of this family was requested above.
         let queue = unsafe { device.0.get_device_queue(queue_family, 0) };
         let debug_utils =
             instance.debug_utils.then(|| ext::debug_utils::Device::new(&instance.raw, &device.0));
@@ -210,11 +210,11 @@ impl HeadlessDevice {
         self.0.device.1
     }
 
-    /// What the device lends a node: itself, its pipeline cache, layouts that its nodes share, and names and labels
-    /// where the instance has them.
+    /// The host that lends this device to a node, with its pipeline cache, layouts that its nodes share, and names and
+    /// labels where the instance supports them.
     ///
     /// # Safety
-    /// As [`Host::borrow`]'s, whose first point holds while a handle to the device does.
+    /// The promises of [`Host::borrow`]; the first of them holds while a handle to the device lives.
     pub unsafe fn host(&self) -> Host {
         let Shared { instance, physical_device, device, queue_family, .. } = &*self.0;
         // SAFETY: the handles belong together; the rest is the caller's promise.
@@ -238,7 +238,7 @@ impl HeadlessDevice {
         &self.0.name
     }
 
-    /// Whether pipeline statistics were asked for and are there.
+    /// Whether pipeline statistics were requested and are supported.
     pub(crate) fn has_statistics(&self) -> bool {
         self.0.statistics
     }
@@ -263,7 +263,7 @@ impl HeadlessDevice {
         self.0.instance.log.messages()
     }
 
-    /// As [`Self::messages`]; the log is empty afterwards.
+    /// The messages so far, which are removed from the log; see [`Self::messages`].
     pub fn take_messages(&self) -> Vec<String> {
         self.0.instance.log.take()
     }

@@ -26,13 +26,13 @@ use std::time::Duration;
 pub struct Forward {
     stage: Stage,
     plan: FramePlan,
-    /// With the node's push constants and its windows bound.
+    /// The painter, with the node's push constants and its windows bound.
     painter: Painter,
     gbuffer_painter: GBufferPainter,
     draws: Vec<SceneDraw>,
     visible: OwnedImage,
     depth: OwnedImage,
-    /// What the painter's set reads.
+    /// The buffer that the painter's set reads.
     _push: HostBuffer,
 }
 
@@ -115,7 +115,7 @@ impl Forward {
     /// A frame of the node alone.
     ///
     /// # Errors
-    /// As [`Stage::run`].
+    /// See [`Stage::run`].
     pub fn run_deferred(&mut self) -> Result<FrameTimes, Error> {
         self.stage.run(&self.plan)
     }
@@ -136,7 +136,7 @@ impl Forward {
     /// Reads what the node's last frame computed.
     ///
     /// # Errors
-    /// As [`Stage::visibility`].
+    /// See [`Stage::visibility`].
     pub fn deferred_visibility(&mut self) -> Result<Vec<f32>, Error> {
         self.stage.visibility()
     }
@@ -144,7 +144,7 @@ impl Forward {
     /// Name and bytes of everything the node holds.
     ///
     /// # Errors
-    /// As [`Stage::node`].
+    /// See [`Stage::node`].
     pub fn memory(&mut self) -> Result<Vec<(&'static str, u64)>, Error> {
         Ok(self.stage.node()?.memory().into_iter().map(|r| (r.name, r.bytes)).collect())
     }
@@ -152,7 +152,7 @@ impl Forward {
     /// Reads the visible fraction of every pixel's last fragment, row by row; 1 on background.
     ///
     /// # Errors
-    /// As [`OwnedImage::read`].
+    /// See [`OwnedImage::read`].
     pub fn visibility(&self) -> Result<Vec<f32>, Error> {
         self.visible.read(COLOR_LAYOUT)
     }

@@ -35,7 +35,7 @@ impl GBuffer {
     /// Images of a size, not yet painted.
     ///
     /// # Errors
-    /// As [`OwnedImage::new`].
+    /// See [`OwnedImage::new`].
     pub fn new(device: &HeadlessDevice, extent: [u32; 2]) -> Result<Self, Error> {
         use vk::ImageUsageFlags as Usage;
         let color = Usage::COLOR_ATTACHMENT | Usage::SAMPLED;
@@ -61,7 +61,7 @@ impl GBuffer {
     /// Reads world positions, row by row.
     ///
     /// # Errors
-    /// As [`OwnedImage::read`].
+    /// See [`OwnedImage::read`].
     pub fn positions(&self) -> Result<Vec<[f32; 4]>, Error> {
         self.position.read(COLOR_LAYOUT)
     }
@@ -69,7 +69,7 @@ impl GBuffer {
     /// Reads world normals, row by row.
     ///
     /// # Errors
-    /// As [`OwnedImage::read`].
+    /// See [`OwnedImage::read`].
     pub fn normals(&self) -> Result<Vec<[f32; 4]>, Error> {
         self.normal.read(COLOR_LAYOUT)
     }
@@ -77,7 +77,7 @@ impl GBuffer {
     /// Reads roles, row by row.
     ///
     /// # Errors
-    /// As [`OwnedImage::read`].
+    /// See [`OwnedImage::read`].
     pub fn roles(&self) -> Result<Vec<u8>, Error> {
         self.mask.read(COLOR_LAYOUT)
     }
@@ -113,7 +113,7 @@ impl GBufferPainter {
         self.paint_draws(gbuffer, &draws(scene, buffers, view, keep)).map(drop)
     }
 
-    /// As [`Self::paint`], what is ready to be drawn; how long it took.
+    /// Paints draws that are ready, and returns the time from the submit to the fence; see [`Self::paint`].
     pub(crate) fn paint_draws(
         &self,
         gbuffer: &GBuffer,

@@ -8,7 +8,7 @@ use ash::vk;
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::Allocation;
 
-/// What read-back needs to know of an image: one mip level, one layer, one sample.
+/// An image that is read back: one mip level, one layer, one sample.
 #[derive(Clone, Copy, Debug)]
 pub struct ImageSource {
     /// The image; its usage must hold `TRANSFER_SRC` to be read and `TRANSFER_DST` to be written.
@@ -17,7 +17,7 @@ pub struct ImageSource {
     pub format: vk::Format,
     /// Width and height in texels.
     pub extent: [u32; 2],
-    /// Which of its array layers.
+    /// The array layer.
     pub layer: u32,
 }
 
@@ -127,7 +127,7 @@ impl OwnedImage {
     /// Reads every texel, row by row; see [`read_image`].
     ///
     /// # Errors
-    /// As [`read_image`].
+    /// See [`read_image`].
     pub fn read<T: bytemuck::AnyBitPattern>(
         &self,
         layout: vk::ImageLayout,

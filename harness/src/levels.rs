@@ -1,4 +1,4 @@
-//! What a kind of levels costs, for whoever tells of it.
+//! The cost of each kind of N-buffer levels, for reports.
 
 use antumbra::stages::nbuffer::twin::Values;
 use antumbra::stages::nbuffer::{Kind, Levels};
@@ -17,7 +17,7 @@ pub fn bytes(levels: Levels) -> u64 {
     16 * levels.texels()
 }
 
-/// How many texels the windows hold that answer for a square window, for each texel that was asked for:
+/// The texels of the windows that a look-up reads over the texels of the square window it is for:
 /// the mean over all windows of 1 to 24 texels a side in a map of 64.
 pub fn tightness(kind: Kind) -> f64 {
     const MAP: u32 = 64;

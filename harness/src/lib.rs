@@ -1,4 +1,4 @@
-//! What examples, tests and benches share, and what a host needs none of: a Vulkan device without a window, a
+//! The code that examples, tests and benches share and that no host needs: a Vulkan device without a window, a
 //! scene and a G-buffer on it, a node that shades them, and read-back; beside them the made scenes and the
 //! small readers and writers that more than one of those programs uses.
 //!

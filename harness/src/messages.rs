@@ -1,4 +1,4 @@
-//! What the validation layer and the driver say, kept for whoever asks.
+//! A log of the messages of the validation layer and the driver.
 
 use ash::vk;
 use std::ffi::{CStr, c_void};
@@ -28,7 +28,7 @@ impl MessageLog {
         std::mem::take(&mut *self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// What makes Vulkan report here. The log must outlive the messenger and the instance.
+    /// The create info of a messenger that reports to this log. The log must outlive the messenger and the instance.
     pub(crate) fn messenger(&self) -> vk::DebugUtilsMessengerCreateInfoEXT<'static> {
         use vk::DebugUtilsMessageSeverityFlagsEXT as Severity;
         use vk::DebugUtilsMessageTypeFlagsEXT as Type;

@@ -15,11 +15,11 @@ pub(crate) const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 pub(crate) const DEPTH_LAYOUT: vk::ImageLayout = vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL;
 pub(crate) const COLOR_LAYOUT: vk::ImageLayout = vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL;
 
-/// What a raster is made of.
+/// The description of a raster.
 pub(crate) struct RasterInfo<'a> {
     /// Formats of the color attachments.
     pub colors: &'a [vk::Format],
-    /// What every channel of the color attachments is cleared to.
+    /// The value that every channel of the color attachments is cleared to.
     pub background: f32,
     /// Whether a fragment's red is added to what is there, instead of its color taking its place.
     pub adds: bool,
@@ -29,7 +29,7 @@ pub(crate) struct RasterInfo<'a> {
     pub fragment: Option<Module>,
     /// Vertex buffers: the floats of each attribute, as they lie one behind the other in a vertex.
     pub vertices: &'a [&'a [u32]],
-    /// What the fragment shader reads.
+    /// The descriptor set that the fragment shader reads.
     pub set: Option<BoundSet>,
     /// Bytes of push constants, which all stages see.
     pub push: u32,

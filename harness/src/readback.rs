@@ -23,10 +23,10 @@ use antumbra::{Error, Geometry, MeshInstance, RectangleLight, shaders};
 use ash::vk;
 use std::time::{Duration, Instant};
 
-/// What one frame took.
+/// The times of one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReadbackTimes {
-    /// From the first submit to the last fence.
+    /// The time from the first submit to the last fence.
     pub frame: Duration,
     /// The first submit, its wait and the copy.
     pub depth: Duration,
@@ -34,7 +34,7 @@ pub struct ReadbackTimes {
     pub rectangles: Duration,
     /// The second submit and its wait.
     pub blend: Duration,
-    /// How many rectangles there were.
+    /// The number of rectangles.
     pub patches: usize,
     /// Bytes over the bus, there and back.
     pub bytes: u64,
@@ -216,7 +216,7 @@ impl ReadbackScheme {
     /// The soft shadow map of the last frame: occlusion, row by row.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// See [`OwnedImage::read`].
     pub fn occlusion(&self) -> Result<Vec<f32>, Error> {
         self.map.read(COLOR_LAYOUT)
     }

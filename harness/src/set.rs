@@ -4,7 +4,7 @@ use crate::{HeadlessDevice, HostBuffer};
 use antumbra::Error;
 use ash::vk;
 
-/// What a binding of the set reads or writes. It must live as long as the set is used.
+/// The object that a binding of the set reads or writes. It must live as long as the set is used.
 pub(crate) enum Bound<'a> {
     /// A storage buffer, whole.
     Storage(&'a HostBuffer),

@@ -13,7 +13,7 @@ const AMBIENT: f64 = 0.06;
 /// The colour of every surface.
 const ALBEDO: f64 = 0.8;
 
-/// Where no surface is.
+/// The color of pixels that show no surface.
 const BACKGROUND: [u8; 3] = [46, 50, 56];
 
 /// A light as points in the world that each stand for as much of its area, or of a line's length.

@@ -17,12 +17,12 @@ use antumbra::{
 use std::sync::PoisonError;
 use std::time::{Duration, Instant};
 
-/// What one frame of the node took.
+/// The times of one frame of the node.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameTimes {
-    /// From the submit to the fence.
+    /// The time from the submit to the fence.
     pub frame: Duration,
-    /// Recording on the CPU.
+    /// The time of recording on the CPU.
     pub record: Duration,
     /// Name and milliseconds of each pass, by timestamps; empty where there are none.
     pub passes: Vec<(&'static str, f64)>,
@@ -102,15 +102,15 @@ impl Stage {
     /// Makes the node anew with other settings.
     ///
     /// # Errors
-    /// As [`ShadowNode::new`]; the stage then has no node until settings that work are given.
+    /// See [`ShadowNode::new`]; the stage then has no node until settings that work are given.
     pub fn configure(&mut self, settings: Technique) -> Result<(), Error> {
         self.configure_with(settings, |_| {})
     }
 
-    /// As [`Self::configure`], with what `change` makes of the description.
+    /// Makes the stage's node anew for a technique, with a description that `change` has changed.
     ///
     /// # Errors
-    /// As [`ShadowNode::new`]; the stage then has no node until settings that work are given.
+    /// See [`ShadowNode::new`]; the stage then has no node until settings that work are given.
     pub fn configure_with(
         &mut self,
         settings: Technique,
@@ -140,7 +140,7 @@ impl Stage {
         &self.gbuffer
     }
 
-    /// How its pixels look at the scene.
+    /// The camera of the stage's image.
     pub(crate) fn view(&self) -> &View {
         &self.view
     }
@@ -161,7 +161,7 @@ impl Stage {
     /// Plans a frame under the light's whole rectangle; `window` fixes the occluder map's tangents.
     ///
     /// # Errors
-    /// As [`ShadowNode::plan`].
+    /// See [`ShadowNode::plan`].
     pub fn plan(
         &mut self,
         light: &RectangleLight,
@@ -173,7 +173,7 @@ impl Stage {
     /// Plans a frame under a scene's light: its polygon, where it has one.
     ///
     /// # Errors
-    /// As [`ShadowNode::plan`].
+    /// See [`ShadowNode::plan`].
     pub fn plan_under(
         &mut self,
         light: &AreaLight,
@@ -183,10 +183,10 @@ impl Stage {
         self.plan_with(shape.rectangle(), |frame| (frame.light, frame.window) = (shape, window))
     }
 
-    /// Plans what `change` makes of a frame.
+    /// Plans a frame that `change` has changed.
     ///
     /// # Errors
-    /// As [`ShadowNode::plan`].
+    /// See [`ShadowNode::plan`].
     pub fn plan_with<'f>(
         &'f mut self,
         light: &RectangleLight,
@@ -199,10 +199,10 @@ impl Stage {
         node.plan(&frame)
     }
 
-    /// Plans together what `change` makes of a frame of each light, by its place.
+    /// Plans the frames of all lights together; `change` changes each frame, by the light's index.
     ///
     /// # Errors
-    /// As [`ShadowNode::plan_all`].
+    /// See [`ShadowNode::plan_all`].
     pub fn plan_all_with<'f>(
         &'f mut self,
         lights: &[RectangleLight],
@@ -236,10 +236,10 @@ impl Stage {
         })
     }
 
-    /// What `auto` chooses for a scene's light; the node stays as it is.
+    /// The choice of `auto` for a scene's light; the node stays as it is.
     ///
     /// # Errors
-    /// As [`Auto::choose`].
+    /// See [`Auto::choose`].
     pub fn choose(&mut self, auto: &mut Auto, light: &AreaLight) -> Result<Choice, Error> {
         let frame = Frame { light: light.shape()?, ..self.frame(&light.light) };
         let node =
@@ -250,7 +250,7 @@ impl Stage {
     /// Records a plan, submits it and waits.
     ///
     /// # Errors
-    /// As [`ShadowNode::record`] and [`HeadlessDevice::submit_and_wait`].
+    /// See [`ShadowNode::record`] and [`HeadlessDevice::submit_and_wait`].
     pub fn run(&mut self, plan: &FramePlan) -> Result<FrameTimes, Error> {
         self.run_all(std::slice::from_ref(plan))
     }
@@ -258,7 +258,7 @@ impl Stage {
     /// Records plans one behind the other into one command buffer, submits it and waits.
     ///
     /// # Errors
-    /// As [`Self::run`].
+    /// See [`Self::run`].
     pub fn run_all(&mut self, plans: &[FramePlan]) -> Result<FrameTimes, Error> {
         let device = self.device.clone();
         let node = self.node()?;
@@ -275,7 +275,7 @@ impl Stage {
     /// Runs a plan and counts what its shaders do; none where [`HeadlessDevice::count`] counts nothing.
     ///
     /// # Errors
-    /// As [`Self::run`].
+    /// See [`Self::run`].
     pub fn count(&mut self, plan: &FramePlan) -> Result<Option<Invocations>, Error> {
         let device = self.device.clone();
         let node = self.node()?;
@@ -285,15 +285,15 @@ impl Stage {
     /// Reads the visible fraction of every pixel, row by row, under light 0.
     ///
     /// # Errors
-    /// As [`read_image`].
+    /// See [`read_image`].
     pub fn visibility(&mut self) -> Result<Vec<f32>, Error> {
         self.visibility_under(LightIndex(0))
     }
 
-    /// The same under any of the description's lights.
+    /// Reads the visible fraction of every pixel, row by row, under any of the description's lights.
     ///
     /// # Errors
-    /// As [`read_image`].
+    /// See [`read_image`].
     pub fn visibility_under(&mut self, light: LightIndex) -> Result<Vec<f32>, Error> {
         let result = self.result()?;
         let source = ImageSource {
@@ -309,7 +309,7 @@ impl Stage {
     /// for color.
     ///
     /// # Errors
-    /// As [`read_image`].
+    /// See [`read_image`].
     pub fn visibility_of_color(&mut self) -> Result<Vec<[f32; 4]>, Error> {
         let result = self.result()?;
         let (format, extent) = (visibility::COLOR_FORMAT, result.extent);
@@ -340,7 +340,7 @@ impl Stage {
         Ok((read_image(&self.device, &source, image.layout)?, image.extent))
     }
 
-    /// The same of one of its buffers.
+    /// Reads one of the node's own buffers that a plan uses.
     ///
     /// # Errors
     /// [`Error::Frame`] where the plan has no buffer of that name; otherwise as [`HostBuffer::new`].

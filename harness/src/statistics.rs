@@ -1,17 +1,17 @@
-//! How often shaders run, by pipeline statistics.
+//! Counts shader invocations, by pipeline statistics.
 
 use crate::HeadlessDevice;
 use antumbra::Error;
 use ash::vk;
 
-/// Invocations of shaders.
+/// The numbers of shader invocations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Invocations {
-    /// Of vertex shaders.
+    /// The invocations of vertex shaders.
     pub vertex: u64,
-    /// Of fragment shaders.
+    /// The invocations of fragment shaders.
     pub fragment: u64,
-    /// Of compute shaders.
+    /// The invocations of compute shaders.
     pub compute: u64,
 }
 
@@ -31,7 +31,7 @@ impl HeadlessDevice {
     /// [`crate::HeadlessOptions::statistics`] did not ask for them.
     ///
     /// # Errors
-    /// As [`Self::submit_and_wait`].
+    /// See [`Self::submit_and_wait`].
     pub fn count(
         &self,
         record: impl FnOnce(vk::CommandBuffer) -> Result<(), Error>,

@@ -38,7 +38,7 @@ impl HeadlessDevice {
     /// All writes are visible to the host and to later submits afterwards.
     ///
     /// # Errors
-    /// What `record` returns, and then nothing is submitted; [`Error::Vulkan`] if the driver
+    /// The error that `record` returns, and then nothing is submitted; [`Error::Vulkan`] if the driver
     /// refuses.
     pub fn submit_and_wait<T>(
         &self,
@@ -47,10 +47,10 @@ impl HeadlessDevice {
         self.submit_timed(record).map(|(value, _)| value)
     }
 
-    /// As [`Self::submit_and_wait`], with the time from the submit to the fence.
+    /// Submits commands, waits, and returns the time from the submit to the fence too; see [`Self::submit_and_wait`].
     ///
     /// # Errors
-    /// As [`Self::submit_and_wait`].
+    /// See [`Self::submit_and_wait`].
     pub fn submit_timed<T>(
         &self,
         record: impl FnOnce(vk::CommandBuffer) -> Result<T, Error>,
@@ -62,7 +62,7 @@ impl HeadlessDevice {
     /// Records a command buffer and submits it without waiting: a frame in flight.
     ///
     /// # Errors
-    /// As [`Self::submit_and_wait`].
+    /// See [`Self::submit_and_wait`].
     pub fn submit<T>(
         &self,
         record: impl FnOnce(vk::CommandBuffer) -> Result<T, Error>,

@@ -3,7 +3,7 @@
 use antumbra::scene::Camera;
 use glam::{DMat4, DVec4};
 
-/// How pixels look at the world. Depth is reversed: 0 is the background.
+/// The camera of an image. Depth is reversed: 0 is the background.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     /// World space to clip space.

@@ -1,10 +1,10 @@
-//! What a file that may be anything is opened as: a scene that is whole, or one sentence.
+//! Opens files of any content: each must give a whole scene or an error of one sentence.
 
 use antumbra::glam::DVec3;
 use antumbra::scene::{AreaLight, Camera, Scene, from_gltf_bytes};
 use std::path::Path;
 
-/// Where no buffer can be.
+/// A folder that does not exist, where no buffer is found.
 const NOWHERE: &str = "/no/such/folder/file";
 
 /// The longest sentence, in bytes: names and what the JSON parser quotes are cut short.
@@ -13,7 +13,7 @@ const LONGEST_SENTENCE: usize = 1000;
 /// Opens a file that needs no other.
 ///
 /// # Panics
-/// Where the loader breaks what it promises.
+/// Panics where the loader breaks a promise.
 pub fn open(file: &[u8]) -> Result<Scene, String> {
     match from_gltf_bytes(file, Path::new(NOWHERE)) {
         Ok(scene) => {
@@ -30,19 +30,19 @@ pub fn open(file: &[u8]) -> Result<Scene, String> {
     }
 }
 
-/// What an error says.
+/// Checks the text of an error.
 ///
 /// # Panics
-/// Where it is not one sentence on one line.
+/// Panics where it is not one sentence on one line.
 pub fn check_sentence(sentence: &str) {
     assert!((1..=LONGEST_SENTENCE).contains(&sentence.len()), "{sentence:?}");
     assert!(!sentence.chars().any(char::is_control), "{sentence:?}");
 }
 
-/// What every scene that loads promises to those who use it.
+/// Checks what every scene that loads promises to its users.
 ///
 /// # Panics
-/// Where it does not keep that.
+/// Panics where the scene breaks a promise.
 pub fn check(scene: &Scene) {
     assert!(scene.triangles() > 0);
     for mesh in &scene.meshes {

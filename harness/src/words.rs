@@ -1,5 +1,8 @@
 //! Techniques in words, as tests and benches write them.
 
+// Words in a test or a bench that are wrong end it.
+#![allow(clippy::panic)]
+
 use antumbra::{Error, Technique};
 
 /// A technique from `key=value` words. `technique=NAME` as the first of them names the technique, which is the default
@@ -18,7 +21,7 @@ pub fn technique_of(words: &str) -> Result<Technique, Error> {
 /// A technique by its name and settings, as in `"pcss taps=8"`.
 ///
 /// # Panics
-/// Where there is none: the words stand in a test or a bench.
+/// Panics where the words are no technique: they are written in a test or a bench.
 #[expect(clippy::panic, reason = "the words stand in a test or a bench")]
 pub fn technique(words: &str) -> Technique {
     words.parse().unwrap_or_else(|e| panic!("{words}: {e}"))

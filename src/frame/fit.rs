@@ -21,6 +21,8 @@ use glam::DMat4;
 pub(super) struct Placed {
     pub places: Vec<u32>,
     pub boxes: Vec<LightBox>,
+    /// The meshes' own boxes and transforms, once views are made: kept for its memory.
+    bounds: Vec<(MeshBounds, DMat4)>,
 }
 
 impl Placed {
@@ -60,8 +62,10 @@ impl Placed {
         self.places.iter().map(|&place| &all[place as usize])
     }
 
-    fn bounds(&self, all: &[MeshInstance]) -> Vec<(MeshBounds, DMat4)> {
-        self.meshes(all).map(|m| (m.bounds, m.world_from_mesh)).collect()
+    fn fill_bounds(&mut self, all: &[MeshInstance]) {
+        self.bounds.clear();
+        let meshes = self.places.iter().map(|&place| &all[place as usize]);
+        self.bounds.extend(meshes.map(|m| (m.bounds, m.world_from_mesh)));
     }
 }
 
@@ -188,7 +192,7 @@ impl Fit {
         };
         boxes.near(light, frame.reach, near);
         let gone = self.place(frame, near);
-        let Placed { places, boxes: placed } = &self.occluders;
+        let Placed { places, boxes: placed, .. } = &self.occluders;
         places.iter().zip(placed).try_for_each(|(&place, of)| Frame::check_reach(place, of))?;
         self.centre = match &self.host_maps {
             Some(lent) => Some(lent.view),
@@ -300,7 +304,11 @@ impl Fit {
     pub fn views(&mut self, room: &dyn Room, frame: &Frame) -> Result<&Views, Error> {
         let views = match self.views.take() {
             Some(views) => views,
-            None => self.make_views(room, frame)?,
+            None => {
+                self.occluders.fill_bounds(frame.meshes);
+                self.receivers.fill_bounds(frame.meshes);
+                self.make_views(room, frame)?
+            }
         };
         Ok(self.views.insert(views))
     }
@@ -309,8 +317,8 @@ impl Fit {
         room.views(&ViewsSeen {
             light: frame.light.rectangle(),
             outline: frame.light.outline(),
-            occluders: &self.occluders.bounds(frame.meshes),
-            receivers: &self.receivers.bounds(frame.meshes),
+            occluders: &self.occluders.bounds,
+            receivers: &self.receivers.bounds,
             centre: self.centre.as_ref().unwrap_or(&PLACEHOLDER),
             w_far: self.shadowed.as_ref().map_or(0.0, |receivers| 1.0 / receivers.far),
         })

@@ -2,8 +2,8 @@
 //! at the kind's first pass. Its other passes touch the same resources (`graph::compile` sees to that), and
 //! a set must not be written again while commands that use it are recorded.
 //!
-//! Remembering what they point at would save a microsecond, and be wrong where the host destroys a
-//! view and gets the same handle for its next one.
+//! The sets are written even where nothing seems to have changed: a host may destroy a view and get the same handle for
+//! its next one.
 
 use super::host::Host;
 use super::maker::Maker;
@@ -13,10 +13,10 @@ use crate::Error;
 use crate::graph::{Graph, Pass};
 use ash::vk;
 
-/// No pass binds more than this.
+/// The most bindings that a pass has.
 const MAX_BINDINGS: usize = 20;
 
-/// The sets of all kinds, place by place; a place is a light of a frame slot.
+/// The descriptor sets of all kinds of pass, place by place; a place is a light of a frame slot.
 pub(crate) struct Descriptors {
     sets: Vec<vk::DescriptorSet>,
     kinds: usize,
@@ -66,13 +66,13 @@ impl Descriptors {
         Ok(Self { sets, kinds: kinds.len() })
     }
 
-    /// The set of a kind at a place; none for passes that bind nothing.
+    /// The set of a kind of pass at a place; `None` for passes that bind nothing.
     pub fn set(&self, pass: &Pass, kind: usize, place: usize) -> Option<vk::DescriptorSet> {
         bound(pass).next()?;
         self.sets.get(place * self.kinds + kind).copied()
     }
 
-    /// Points a pass's set at what `look_up` says.
+    /// Writes a pass's set with the objects that `look_up` returns.
     pub fn write(
         &self,
         host: &Host,
@@ -117,7 +117,7 @@ impl Descriptors {
     }
 }
 
-/// Binding and kind of everything a pass binds.
+/// The binding and the descriptor type of each resource that a pass binds.
 fn bound(pass: &Pass) -> impl Iterator<Item = (u32, vk::DescriptorType)> + '_ {
     pass.uses.iter().filter_map(|u| Some((u.binding?.into(), u.access.descriptor()?)))
 }

@@ -1,4 +1,4 @@
-//! What a node has on the device for one of its settings.
+//! The Vulkan objects of a node for one of its techniques.
 
 use super::descriptors::Descriptors;
 use super::maker::Maker;
@@ -10,19 +10,19 @@ use crate::graph::{Graph, Pass, Work};
 use ash::vk;
 use std::ffi::CString;
 
-/// The resources of a graph; pipelines, a label and descriptor sets for each kind of its passes.
+/// The objects for a graph: its resources, and for each kind of pass pipelines, a label and descriptor sets.
 pub(crate) struct GraphObjects {
     pub objects: Objects,
     pub kinds: Vec<PassObjects>,
     pub labels: Vec<CString>,
     pub descriptors: Descriptors,
-    /// How many Vulkan objects there are that the node's owner does not keep one by one: descriptor
-    /// sets, which go with their pool, and layouts that nodes share.
+    /// The number of Vulkan objects that the node's owner does not keep one by one: descriptor sets, which are freed with
+    /// their pool, and layouts that nodes share.
     pub unowned: usize,
 }
 
 impl GraphObjects {
-    /// Makes everything, with descriptor sets for so many places.
+    /// Creates all objects, with descriptor sets for a number of places.
     pub fn new(
         maker: &mut Maker,
         graph: &Graph,
@@ -45,21 +45,21 @@ impl GraphObjects {
         })
     }
 
-    /// Whether everything but images and buffers can stay for `graph`, which has the same passes: no
-    /// target of a raster has another shape.
+    /// Whether all objects but images and buffers can stay for `graph`, which has the same passes: no attachment changes its
+    /// shape.
     pub fn keeps_pipelines(&self, graph: &Graph) -> bool {
         let rasters = graph.passes().iter().filter(|p| matches!(p.work, Work::Raster { .. }));
         rasters.flat_map(Pass::writes).all(|id| !self.objects.changes(graph, id))
     }
 
-    /// The render pass of a kind of pass and the size of its target; none for those that draw nothing.
+    /// The render pass of a kind of pass and the size of its attachments; `None` for a kind that draws nothing.
     pub fn render_pass(&self, kind: usize) -> Option<(vk::RenderPass, vk::Extent2D)> {
         let made = self.kinds.get(kind).filter(|k| k.render_pass != vk::RenderPass::null())?;
         Some((made.render_pass, made.extent))
     }
 }
 
-/// `antumbra.<name>`; names are literals without a zero byte.
+/// The debug label `antumbra.<name>`; names are literals without a zero byte.
 fn label(name: &str) -> CString {
     CString::new(format!("antumbra.{name}")).unwrap_or_default()
 }

@@ -1,4 +1,4 @@
-//! What the host lends, and whether it is enough.
+//! The device that the host lends, and the requirements that it must meet.
 
 use super::layouts::SharedLayouts;
 use crate::Error;
@@ -9,7 +9,7 @@ use ash::{ext, vk};
 use std::ffi::CStr;
 use std::sync::Arc;
 
-/// What the host lends: a device, a queue family, and what it has beyond.
+/// The host's device and queue family, with what else it lends: a pipeline cache, debug labels, shared layouts.
 #[derive(Clone)]
 pub struct Host {
     pub(crate) instance: ash::Instance,
@@ -18,7 +18,7 @@ pub struct Host {
     pub(crate) queue_family: u32,
     pub(crate) pipeline_cache: vk::PipelineCache,
     pub(crate) debug_utils: Option<ext::debug_utils::Device>,
-    /// Where the passes' layouts are shared with other nodes; none where each node makes its own.
+    /// The layouts that are shared with other nodes; `None` where each node makes its own.
     pub(super) layouts: Option<Arc<SharedLayouts>>,
 }
 
@@ -54,8 +54,8 @@ impl Host {
         }
     }
 
-    /// An allocator on the host's device, for hosts that have none of their own to lend. Its memory
-    /// is the caller's: it must be dropped before the device is destroyed.
+    /// Makes an allocator on the host's device, for hosts that have none of their own. The caller must drop it before the
+    /// device is destroyed.
     ///
     /// # Errors
     /// [`Error::Memory`] where it cannot be made.
@@ -77,23 +77,23 @@ impl Host {
         })
     }
 
-    /// Makes pipelines through the host's cache.
+    /// Makes the node create its pipelines with the host's pipeline cache.
     #[must_use]
     pub fn with_pipeline_cache(mut self, cache: vk::PipelineCache) -> Self {
         self.pipeline_cache = cache;
         self
     }
 
-    /// Names objects and labels passes, `antumbra.<room>.<pass>`.
+    /// Makes the node name its objects and label its passes, as `antumbra.<room>.<pass>`.
     #[must_use]
     pub fn with_debug_utils(mut self, debug_utils: ext::debug_utils::Device) -> Self {
         self.debug_utils = Some(debug_utils);
         self
     }
 
-    /// Shares the passes' layouts with the other nodes made on this device, so that a driver which looks
-    /// compiled pipelines up by their layout finds those of an earlier node. They must be destroyed by
-    /// [`SharedLayouts::destroy`] after all of these nodes and before the device.
+    /// Makes the node share its passes' layouts with other nodes on this device, so that a driver which looks up compiled
+    /// pipelines by their layout finds those of an earlier node. Call [`SharedLayouts::destroy`] after all of these nodes
+    /// are destroyed and before the device is.
     #[must_use]
     pub fn with_layouts(mut self, layouts: Arc<SharedLayouts>) -> Self {
         self.layouts = Some(layouts);
@@ -101,33 +101,33 @@ impl Host {
     }
 }
 
-/// What the node needs of a device, and what it may use.
+/// What a device lacks for the node, and which of its abilities the node may use.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Requirements {
     /// The device's name.
     pub device: String,
-    /// Everything that is missing, as short phrases; empty where the node runs.
+    /// Everything that the device lacks, as short phrases; empty where the node runs.
     pub gaps: Vec<String>,
     /// Whether R32_SFLOAT can be blended: `accumulate=blend` needs it.
     pub blends_f32: bool,
-    /// The most pixels that an image has along a side; every device has 4096 and so the largest maps.
+    /// The largest side of an image in pixels; every device has at least 4096, enough for the largest maps.
     pub image_side: u32,
-    /// Sub-pixel bits of the rasters.
+    /// The number of sub-pixel bits that the rasterizer rounds vertices to.
     pub sub_pixel_bits: u32,
     /// Whether passes can be timed on the queue family.
     pub timestamps: bool,
 }
 
 impl Requirements {
-    /// Looks at a physical device, before any device is made of it, and lists **every** gap at once.
+    /// Queries a physical device, before a device is created from it, and lists **everything** that it lacks.
     ///
     /// # Safety
-    /// The instance is alive and the physical device is one of its own.
+    /// The instance is alive, and the physical device belongs to it.
     pub unsafe fn check(instance: &ash::Instance, physical_device: vk::PhysicalDevice) -> Self {
         Self::look(instance, physical_device, None)
     }
 
-    /// As [`Self::check`], for what a host lends, its queue family included.
+    /// Queries a host's device, including its queue family; see [`Self::check`].
     pub fn of(host: &Host) -> Self {
         Self::look(&host.instance, host.physical_device, Some(host.queue_family))
     }
@@ -145,7 +145,7 @@ impl Requirements {
         Self::judge(&properties, &families, family, features)
     }
 
-    /// What a device's own words mean to the node.
+    /// The requirements that follow from a device's properties and features.
     fn judge(
         properties: &vk::PhysicalDeviceProperties,
         families: &[vk::QueueFamilyProperties],
@@ -203,8 +203,10 @@ impl Requirements {
         }
     }
 
+    /// Checks that the device lacks nothing.
+    ///
     /// # Errors
-    /// [`Error::Device`] with every gap, where there is one.
+    /// [`Error::Device`] with everything that it lacks.
     pub fn met(&self) -> Result<(), Error> {
         if self.gaps.is_empty() {
             return Ok(());
@@ -212,10 +214,10 @@ impl Requirements {
         Err(Error::Device { device: self.device.clone(), gaps: self.gaps.clone() })
     }
 
-    /// Whether the device has what a description asks for beyond what every node needs.
+    /// Checks that the device has what a description needs beyond every node's requirements.
     ///
     /// # Errors
-    /// [`Error::Setting`] for settings that it cannot run; [`Error::Frame`] for a G-buffer larger than its images.
+    /// [`Error::Setting`] for settings that the device cannot run; [`Error::Frame`] for a G-buffer larger than its images.
     pub fn allow(&self, description: &Description) -> Result<(), Error> {
         let blends = description.all_techniques().any(|technique| technique.room().blends_f32());
         if blends && !self.blends_f32 {
@@ -250,7 +252,7 @@ mod tests {
         vk::QueueFamilyProperties { queue_flags, timestamp_valid_bits: 64, ..Default::default() }
     }
 
-    /// A device with just what Vulkan 1.1 guarantees.
+    /// The limits of a device with no more than Vulkan 1.1 guarantees.
     fn modest() -> vk::PhysicalDeviceProperties {
         let mut properties =
             vk::PhysicalDeviceProperties { api_version: vk::API_VERSION_1_1, ..Default::default() };

@@ -1,4 +1,4 @@
-//! What the passes of a kind are bound by: a descriptor set layout and a pipeline layout.
+//! The descriptor set layout and the pipeline layout of a kind of pass.
 
 use super::owner::ObjectOwner;
 use crate::Error;
@@ -6,14 +6,14 @@ use ash::vk;
 use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};
 
-/// Both layouts of a pass.
+/// The descriptor set layout and the pipeline layout of a pass.
 #[derive(Clone, Copy, Default)]
 pub(super) struct PassLayouts {
     pub set: vk::DescriptorSetLayout,
     pub pipeline: vk::PipelineLayout,
 }
 
-/// What both declare: the bindings of one set, and the push constants' stages and bytes.
+/// The declarations of both layouts: the bindings of one set, and the push constants' stages and bytes.
 pub(super) struct LayoutsInfo<'a> {
     pub bindings: &'a [vk::DescriptorSetLayoutBinding<'a>],
     pub push_stages: vk::ShaderStageFlags,
@@ -21,7 +21,7 @@ pub(super) struct LayoutsInfo<'a> {
 }
 
 impl PassLayouts {
-    /// Makes both for the pass of this name, and gives them to `owner`.
+    /// Creates both layouts for the pass of a name, and passes them to `owner`.
     pub fn new(
         owner: &mut ObjectOwner,
         device: &ash::Device,
@@ -53,20 +53,20 @@ impl PassLayouts {
     }
 }
 
-/// The descriptor set layouts and pipeline layouts of one device, which outlive the nodes made with them: one
-/// pair for all passes that are bound alike.
+/// The descriptor set layouts and pipeline layouts of one device, which outlive the nodes made with them. Passes with
+/// equal bindings and push constants share a pair.
 ///
-/// A host that makes nodes again and again gives this to each of them by [`super::Host::with_layouts`].
-/// SwiftShader finds what it has compiled by the identity of the layout besides the shader, so its pipeline
-/// cache holds nothing for a node that makes layouts of its own.
+/// A host that creates nodes again and again passes this to each of them with [`super::Host::with_layouts`].
+/// SwiftShader's pipeline cache looks up compiled code by the layout object as well as the shader, and so finds nothing for
+/// a node with layouts of its own.
 #[derive(Default)]
 pub struct SharedLayouts(Mutex<(HashMap<Key, PassLayouts>, ObjectOwner)>);
 
-/// Binding, type and stages of each binding; stages and bytes of the push constants.
+/// The key of a pair: number, type and stages of each binding; stages and bytes of the push constants.
 type Key = (Vec<(u32, vk::DescriptorType, vk::ShaderStageFlags)>, vk::ShaderStageFlags, u32);
 
 impl SharedLayouts {
-    /// Finds the layouts that declare this, and makes them where there are none yet; the table owns them.
+    /// Finds the layouts with these declarations, or creates them; the table owns them.
     pub(super) fn find(
         &self,
         device: &ash::Device,
@@ -85,15 +85,15 @@ impl SharedLayouts {
         Ok(layouts)
     }
 
-    /// Destroys all of them.
+    /// Destroys all layouts.
     ///
     /// # Safety
-    /// The device is the one that the nodes were made on, it lives, and those nodes and everything that they
-    /// retired are destroyed.
+    /// The device is alive and the one that the nodes were made on; those nodes and everything that they retired are
+    /// destroyed.
     pub unsafe fn destroy(&self, device: &ash::Device) {
         let mut table = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let (_, owner) = std::mem::take(&mut *table);
-        // Layouts have no memory of their own.
+        // Layouts have no memory to free.
         owner.destroy(device, |_| {});
     }
 }

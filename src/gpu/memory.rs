@@ -1,39 +1,39 @@
-//! Memory comes from the host's allocator, through one small trait.
+//! The trait through which the node gets device memory from the host's allocator.
 
 use crate::Error;
 use ash::vk;
 use std::any::Any;
 
-/// What the node asks an allocator for: device-local memory for one image or buffer.
+/// A request for device-local memory for one image or buffer.
 #[derive(Clone, Copy, Debug)]
 pub struct MemoryRequest<'a> {
     /// The resource's name, for the allocator's own reports.
     pub name: &'a str,
-    /// Size, alignment and memory types.
+    /// The size in bytes, the alignment and the allowed memory types.
     pub requirements: vk::MemoryRequirements,
-    /// A buffer (linear) or an image with optimal tiling.
+    /// Whether the memory is for a buffer; otherwise it is for an image with optimal tiling.
     pub linear: bool,
 }
 
-/// A piece of device memory.
+/// An allocated range of device memory.
 pub struct MemoryBlock {
     /// The memory object.
     pub memory: vk::DeviceMemory,
-    /// Where the piece starts, in bytes.
+    /// The offset of the range in the memory object, in bytes.
     pub offset: u64,
-    /// Whatever the allocator needs to take it back.
+    /// What the allocator needs to free the range.
     pub token: Box<dyn Any + Send + Sync>,
 }
 
-/// The host's allocator.
+/// The host's allocator of device memory.
 pub trait Allocator {
-    /// Finds device-local memory.
+    /// Allocates device-local memory.
     ///
     /// # Errors
-    /// [`Error::Memory`] where there is none.
+    /// [`Error::Memory`] where there is not enough.
     fn allocate(&mut self, request: &MemoryRequest) -> Result<MemoryBlock, Error>;
 
-    /// Takes a piece back.
+    /// Frees a range.
     fn free(&mut self, block: MemoryBlock);
 }
 
@@ -64,8 +64,7 @@ impl Allocator for gpu_allocator::vulkan::Allocator {
 
     fn free(&mut self, block: MemoryBlock) {
         if let Ok(allocation) = block.token.downcast::<gpu_allocator::vulkan::Allocation>() {
-            // It only fails for an allocation that is not this allocator's; that memory stays with
-            // whoever it belongs to.
+            // Freeing fails only for another allocator's memory, which stays with that allocator.
             let _ = Self::free(self, *allocation);
         }
     }

@@ -1,4 +1,4 @@
-//! All that a node has on the device.
+//! All Vulkan objects of a node.
 
 use super::graph_objects::GraphObjects;
 use super::host::Host;
@@ -15,7 +15,7 @@ use crate::graph::{Graph, ResourceId};
 use crate::lent::{LightIndex, Slot, TechniqueIndex};
 use ash::vk;
 
-/// The result and the timestamps, what the graph of each of the settings needs, and the owner of it all.
+/// The visibility image, the timestamps, the objects of each technique's graph, and the owner of them all.
 pub(crate) struct NodeObjects {
     result: Option<ResultImage>,
     settings: Vec<GraphObjects>,
@@ -26,8 +26,8 @@ pub(crate) struct NodeObjects {
 }
 
 impl NodeObjects {
-    /// Makes everything, for the graphs of the description's settings; nothing is left behind where
-    /// that fails.
+    /// Creates all objects for the graphs of the description's techniques. Where that fails, those already created are
+    /// destroyed.
     pub fn new(
         host: &Host,
         allocator: &mut dyn Allocator,
@@ -47,19 +47,19 @@ impl NodeObjects {
         Ok(Self { result, settings, timing, slots, lights, owner })
     }
 
-    /// Where a light of a frame slot has its descriptor sets and timestamps.
+    /// The place of the descriptor sets and timestamps of a light in a frame slot.
     fn place(&self, slot: Slot, light: LightIndex) -> usize {
         (slot.0 * self.lights + light.0) as usize
     }
 
-    /// Whether everything but images and buffers can stay for `graphs`, which have the same passes: no
-    /// target of a raster has another shape.
+    /// Whether all objects but images and buffers can stay for `graphs`, which have the same passes: no attachment changes
+    /// its shape.
     pub fn keeps_pipelines(&self, graphs: &[Graph]) -> bool {
         self.settings.iter().zip(graphs).all(|(settings, graph)| settings.keeps_pipelines(graph))
     }
 
-    /// Makes the result anew, and the images and buffers whose shape is another in `graphs`, and
-    /// returns the owner of the old ones; nothing is changed where that fails.
+    /// Replaces the visibility image, and the images and buffers whose shape differs in `graphs`, and returns the owner of
+    /// the old ones. Where that fails, nothing changes.
     pub fn resize(
         &mut self,
         host: &Host,
@@ -82,27 +82,27 @@ impl NodeObjects {
         Ok(self.owner.exchange(&replaced, owner))
     }
 
-    /// What is behind a resource of one of the settings.
+    /// The object of a resource of one of the techniques.
     pub fn get(&self, TechniqueIndex(settings): TechniqueIndex, id: ResourceId) -> Object {
         self.settings.get(settings as usize).map_or(Object::None, |s| s.objects.get(id))
     }
 
-    /// The image behind a resource of one of the settings; null handles for what is no image.
+    /// The image of a resource of one of the techniques, with its view; null handles for a resource that is no image.
     pub fn image(&self, technique: TechniqueIndex, id: ResourceId) -> (vk::Image, vk::ImageView) {
         self.get(technique, id).image()
     }
 
-    /// The node's own visibility image and a view of all of it; null handles where the host lends it.
+    /// The node's own visibility image with a view of the whole of it; null handles where the host lends the image.
     pub fn result(&self) -> (vk::Image, vk::ImageView) {
         self.result.as_ref().map_or(Default::default(), ResultImage::image)
     }
 
-    /// A view of a light's layer of it; null where the host lends it.
+    /// A view of a light's layer of the node's own visibility image; a null handle where the host lends the image.
     pub fn result_layer(&self, light: LightIndex) -> vk::ImageView {
         self.result.as_ref().map_or(Default::default(), |result| result.layer(light.0).image().1)
     }
 
-    /// Records a plan whose passes are the ones that these objects were made for.
+    /// Records a plan for whose passes these objects were made.
     pub fn record(
         &self,
         host: &Host,
@@ -128,8 +128,8 @@ impl NodeObjects {
         .record(plan);
     }
 
-    /// The render pass of a kind of pass of one of the settings and the size of its target; none for
-    /// those that draw nothing.
+    /// The render pass of a kind of pass of one of the techniques, and the size of its attachments; `None` for a kind that
+    /// draws nothing.
     pub fn render_pass(
         &self,
         TechniqueIndex(settings): TechniqueIndex,
@@ -138,36 +138,36 @@ impl NodeObjects {
         self.settings.get(settings as usize)?.render_pass(kind)
     }
 
-    /// Each kind of pass that a light's frame recorded last with a slot, and the milliseconds of all of
-    /// its passes; kinds are counted over all settings.
+    /// The kinds of pass in the last frame that a light recorded for a slot, each with the milliseconds of all of its
+    /// passes; kinds are counted over all techniques.
     pub fn timings(&self, host: &Host, slot: Slot, light: LightIndex) -> Option<Vec<(usize, f64)>> {
         let there = slot.0 < self.slots && light.0 < self.lights;
         self.timing.as_ref().filter(|_| there)?.read(host, self.place(slot, light))
     }
 
-    /// Name and bytes of everything in device memory: the result, then settings by settings.
+    /// Name and bytes of each image and buffer in device memory: the visibility image, then technique by technique.
     pub fn memory(&self) -> Vec<ResourceBytes> {
         let result = self.result.iter().map(ResultImage::memory);
         result.chain(self.settings.iter().flat_map(|s| s.objects.memory())).collect()
     }
 
-    /// Name and bytes of what one of the settings has in device memory.
+    /// Name and bytes of each image and buffer of one of the techniques.
     pub fn memory_of(&self, TechniqueIndex(settings): TechniqueIndex) -> Vec<ResourceBytes> {
         self.settings.get(settings as usize).map_or(Vec::new(), |s| s.objects.memory().collect())
     }
 
-    /// How many Vulkan objects there are, memory apart.
+    /// The number of Vulkan objects, without memory objects.
     pub fn count(&self) -> usize {
         self.owner.count() + self.settings.iter().map(|s| s.unowned).sum::<usize>()
     }
 
-    /// The owner of everything, for when no command uses it any more.
+    /// The owner of all objects, to destroy them once no command uses them.
     pub fn into_owner(self) -> ObjectOwner {
         self.owner
     }
 }
 
-/// How many kinds of pass some settings have in all.
+/// The number of kinds of pass of some techniques together.
 fn kinds_of(settings: &[GraphObjects]) -> usize {
     settings.iter().map(|s| s.kinds.len()).sum()
 }

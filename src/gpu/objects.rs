@@ -1,4 +1,4 @@
-//! The images and buffers of a graph that are the node's own.
+//! The images and buffers of a graph that the node owns.
 
 use super::host::Host;
 use super::maker::Maker;
@@ -9,19 +9,19 @@ use crate::graph::{Graph, Owner, Resource, ResourceId, Shape};
 use ash::vk::{self, Handle};
 use std::ffi::CString;
 
-/// The Vulkan object behind a resource.
+/// The Vulkan object of a resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Object {
-    /// An image of the node's.
+    /// An image that the node owns.
     Image { image: vk::Image, view: vk::ImageView },
-    /// A buffer of the node's.
+    /// A buffer that the node owns.
     Buffer(vk::Buffer),
-    /// The host gives it frame by frame, it is the result, or no pass touches it.
+    /// No object: the host lends it each frame, it is the visibility image, or no pass uses it.
     None,
 }
 
 impl Object {
-    /// The image and its view; null handles for what is no image.
+    /// The image and its view; null handles for an object that is no image.
     pub fn image(self) -> (vk::Image, vk::ImageView) {
         match self {
             Self::Image { image, view } => (image, view),
@@ -29,7 +29,7 @@ impl Object {
         }
     }
 
-    /// The handles that an owner keeps for it.
+    /// The handles that an owner keeps for the object.
     pub(super) fn handles(self) -> Vec<Made> {
         match self {
             Self::Image { image, view } => vec![image.into(), view.into()],
@@ -39,7 +39,7 @@ impl Object {
     }
 }
 
-/// The object that was made for a resource, and the bytes of its memory.
+/// The object that was created for a resource, and the bytes of its memory.
 #[derive(Clone, Copy)]
 pub(super) struct Backed {
     pub object: Object,
@@ -48,19 +48,18 @@ pub(super) struct Backed {
     shape: Shape,
 }
 
-/// Everything that the node has for a graph but its result, in the order of the graph's resources.
+/// The objects for a graph without its visibility image, in the order of the graph's resources.
 #[derive(Default)]
 pub(crate) struct Objects(Vec<Backed>);
 
 impl Objects {
-    /// Makes every resource of the node's own that a pass touches. With `inspect` every one of them
-    /// can be copied from.
+    /// Creates every resource that the node owns and a pass uses. With `inspect` all of them can be copied from.
     pub fn new(maker: &mut Maker, graph: &Graph, inspect: bool) -> Result<Self, Error> {
         Self::default().resized(maker, graph, inspect)
     }
 
-    /// The objects for `graph`, which has the same resources: those of an unchanged shape are shared
-    /// with `self`, and the others are made anew.
+    /// The objects for `graph`, which has the same resources: those of unchanged shape are shared with `self`, the others
+    /// are created.
     pub fn resized(&self, maker: &mut Maker, graph: &Graph, inspect: bool) -> Result<Self, Error> {
         let ids = (0..graph.resources().len()).map(|index| graph.id(index));
         let backed = ids.map(|id| match self.0.get(id.index()) {
@@ -75,7 +74,7 @@ impl Objects {
         self.0[id.index()].shape != graph.resource(id).shape
     }
 
-    /// The handles that are not in `next`, a resized table of the same resources.
+    /// The handles of the objects that `next`, the resized table of the same resources, does not share.
     pub fn replaced_by<'a>(&'a self, next: &'a Self) -> impl Iterator<Item = Made> + 'a {
         let pairs = self.0.iter().zip(&next.0).map(|(old, new)| (old.object, new.object));
         pairs.filter(|(old, new)| old != new).flat_map(|(old, _)| old.handles())
@@ -86,7 +85,7 @@ impl Objects {
         self.0.get(id.index()).map_or(Object::None, |b| b.object)
     }
 
-    /// Name and bytes of everything that has memory.
+    /// Name and bytes of each object that has memory.
     pub fn memory(&self) -> impl Iterator<Item = ResourceBytes> + '_ {
         let bound = self.0.iter().filter(|b| b.bytes > 0);
         bound.map(|b| ResourceBytes { name: b.name, bytes: b.bytes })
@@ -121,7 +120,7 @@ impl Backed {
         }
     }
 
-    /// Makes an image and a view of all of it.
+    /// Creates an image and a view of the whole of it.
     pub fn image(
         maker: &mut Maker,
         resource: &Resource,
@@ -200,12 +199,12 @@ impl Backed {
     }
 }
 
-/// The one level that every image here has, and all of its layers.
+/// The range of an image's only mip level and all of its layers.
 pub(crate) fn whole(aspect: vk::ImageAspectFlags) -> vk::ImageSubresourceRange {
     layers(aspect, 0, vk::REMAINING_ARRAY_LAYERS)
 }
 
-/// The same of some layers.
+/// The range of an image's only mip level and some of its layers.
 pub(crate) fn layers(
     aspect: vk::ImageAspectFlags,
     first: u32,

@@ -1,4 +1,4 @@
-//! The one owner of Vulkan objects: it destroys what it keeps in the reverse order of creation.
+//! The owner of all Vulkan objects, which destroys them in the reverse order of creation.
 
 use super::memory::MemoryBlock;
 use ash::vk;
@@ -68,7 +68,7 @@ impl ObjectOwner {
         self.0.push(Kept { made: handle.into(), block });
     }
 
-    /// The number of objects, memory apart.
+    /// The number of objects, without memory objects.
     pub fn count(&self) -> usize {
         self.0.len()
     }
@@ -104,7 +104,7 @@ mod tests {
     use std::ptr;
 
     thread_local! {
-        /// What was destroyed or given back, in order.
+        /// The objects that were destroyed and the memory that was freed, in order.
         static GONE: RefCell<Vec<String>> = const { RefCell::new(Vec::new()) };
     }
 
@@ -158,7 +158,7 @@ mod tests {
         }
     }
 
-    /// Images of these numbers, with memory and a view each.
+    /// Creates images with these numbers as handles, with memory and a view each.
     fn images(maker: &mut Maker, numbers: &[u64]) -> Result<(), Error> {
         for &number in numbers {
             let requirements = vk::MemoryRequirements::default();

@@ -1,4 +1,4 @@
-//! The pipelines and layouts of a pass and, for rasters, its render pass: one set for all of its kind.
+//! The pipelines, the layouts and, for draws, the render pass of a kind of pass.
 
 use super::host::Host;
 use super::layouts::{LayoutsInfo, PassLayouts};
@@ -12,27 +12,27 @@ use crate::shaders::Module;
 use crate::stages::depth_layers::DepthPush;
 use ash::vk;
 
-/// What a pass needs to be recorded.
+/// The objects that record the passes of one kind.
 #[derive(Default)]
 pub(crate) struct PassObjects {
     pub layouts: PassLayouts,
     pub push_stages: vk::ShaderStageFlags,
-    /// One for compute and indirect draws; for meshes one for each stride and kind of [`Faces`].
+    /// The pipelines: one for compute and indirect draws; for meshes one for each stride and each of [`Faces`].
     pub pipelines: Vec<vk::Pipeline>,
     pub render_pass: vk::RenderPass,
     pub framebuffer: vk::Framebuffer,
     pub extent: vk::Extent2D,
-    /// Color attachments of a raster.
+    /// The number of color attachments of a draw.
     pub colors: usize,
 }
 
-/// Which of a mesh pass's pipelines draws a mesh.
+/// The index of the pipeline that draws a mesh, among those of its pass.
 pub(crate) fn variant(stride: usize, faces: Faces) -> usize {
     stride * 3 + faces as usize
 }
 
 impl PassObjects {
-    /// Makes everything for a pass.
+    /// Creates all objects for a kind of pass.
     pub fn new(
         maker: &mut Maker,
         graph: &Graph,
@@ -59,7 +59,7 @@ impl PassObjects {
                 (vk::ShaderStageFlags::COMPUTE, pass.push.bytes().len())
             }
             Work::Raster { draw: Draw::Layer { .. }, .. } => {
-                // The matrix that each mesh pushes, and what the pass pushes behind it.
+                // Each mesh pushes its matrix; the pass's own push constants follow it.
                 (vk::ShaderStageFlags::VERTEX, pass.push.bytes().len().max(size_of::<DepthPush>()))
             }
             Work::Raster { .. } => (
@@ -241,7 +241,7 @@ impl PassObjects {
             .dst_alpha_blend_factor(vk::BlendFactor::ONE)
             .alpha_blend_op(vk::BlendOp::ADD)
             .color_write_mask(vk::ColorComponentFlags::RGBA);
-        // All alike: attachments that blend each in its own way are an optional feature.
+        // All attachments blend in the same way: independent blending is an optional feature.
         let add = vec![add; self.colors];
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&add);
         let mut depth = vk::PipelineDepthStencilStateCreateInfo::default();
@@ -268,7 +268,7 @@ impl PassObjects {
     }
 }
 
-/// The images that a raster pass draws into, in the order of its uses: views, formats and sizes.
+/// The attachments of a pass in the order of its uses: views, formats and sizes.
 fn attachments_of(
     graph: &Graph,
     pass: &Pass,
@@ -284,7 +284,7 @@ fn attachments_of(
         .collect()
 }
 
-/// Runs `make` with stages whose modules live just as long.
+/// Runs `make` with shader stages whose modules are destroyed afterwards.
 fn with_modules<T>(
     host: &Host,
     shaders: &[(Module, vk::ShaderStageFlags)],

@@ -1,6 +1,6 @@
-//! A plan into a command buffer: the only file that calls `vkCmd*` for the node's passes.
+//! Records a plan into a command buffer: the only file that calls `vkCmd*` for the node's passes.
 //!
-//! Nothing here allocates, creates, submits or waits.
+//! Recording allocates, creates, submits and waits for nothing.
 
 use super::descriptors::Descriptors;
 use super::host::Host;
@@ -16,46 +16,46 @@ use crate::lent::{Geometry, MeshBuffers};
 use ash::vk;
 use std::ffi::CString;
 
-/// Barriers recorded by one call; longer lists take several.
+/// The most barriers that one call records; longer lists take several calls.
 const BATCH: usize = 16;
 
-/// A mesh that the host draws with a pipeline of its own, inside a pass of the node's.
+/// A mesh that the host draws with its own pipeline, inside a pass of the node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HostDraw {
-    /// The command buffer, inside the layer's render pass. The callback binds what it needs and
-    /// draws; it neither ends the render pass nor leaves queries open.
+    /// The command buffer, inside the layer's render pass. The callback binds its pipeline and draws; it neither ends the
+    /// render pass nor leaves queries open.
     pub cmd: vk::CommandBuffer,
     /// The number that [`Geometry::HostDrawn`] gave the mesh.
     pub mesh: u64,
-    /// Which layer is drawn.
+    /// The layer that is drawn.
     pub layer: Layer,
-    /// Mesh space to the layer's clip space, by column.
+    /// The matrix from mesh space to the layer's clip space, column-major.
     pub clip_from_mesh: [f32; 16],
-    /// Which way round fronts are wound in that clip space, as for the node's own draws.
+    /// The winding of front faces in that clip space, as in the node's own draws.
     pub faces: Faces,
 }
 
-/// What recording needs of a node.
+/// The objects of a node that recording needs.
 pub(crate) struct Recorder<'a> {
     pub host: &'a Host,
     pub objects: &'a Objects,
-    /// The node's own visibility image; none where the host lends it.
+    /// The node's own visibility image; `None` where the host lends it.
     pub result: Option<&'a ResultImage>,
-    /// One for each kind of pass, as are the labels.
+    /// The objects of each kind of pass, in the order of the labels.
     pub kinds: &'a [PassObjects],
     pub labels: &'a [CString],
     pub descriptors: &'a Descriptors,
     pub timing: Option<&'a Timing>,
-    /// Which of the descriptor sets and timestamps are this frame's.
+    /// The place of this frame's descriptor sets and timestamps.
     pub place: usize,
-    /// The kind of the first of `kinds` among those of all settings.
+    /// The number of the first of `kinds` among the kinds of all techniques.
     pub first_kind: usize,
     pub draw: &'a mut dyn FnMut(&HostDraw),
     pub cmd: vk::CommandBuffer,
 }
 
 impl Recorder<'_> {
-    /// Records every step of a plan and hands the host's resources back.
+    /// Records every step of a plan, and the barriers after the last.
     pub fn record(&mut self, frame: &FramePlan) {
         let plan = &frame.plan;
         if let Some(timing) = self.timing {
@@ -273,8 +273,7 @@ impl Recorder<'_> {
         }
     }
 
-    /// The object of a resource: the host's for this frame, the layer of the frame's light, or the
-    /// settings' own.
+    /// The object of a resource: the one the host lends for this frame, the visibility image, or one of the technique's.
     fn object_of(&self, frame: &FramePlan, id: ResourceId) -> Object {
         if let Some((_, host)) = frame.imports.iter().find(|(r, _)| *r == id) {
             return Object::Image { image: host.image, view: host.view };
@@ -285,7 +284,7 @@ impl Recorder<'_> {
         }
     }
 
-    /// What a barrier for a resource names of it: one layer of the result, all of everything else.
+    /// The layers that a barrier for a resource covers: the light's layer of the visibility image, all layers of others.
     fn range(&self, frame: &FramePlan, id: ResourceId) -> vk::ImageSubresourceRange {
         let aspect = graph::aspects(frame.plan.graph.resource(id).shape);
         match self.result.filter(|_| id == frame.visibility) {
@@ -294,7 +293,7 @@ impl Recorder<'_> {
         }
     }
 
-    /// The object of a use and the layout its shader finds it in.
+    /// The object of a use, and its layout while the shader uses it.
     fn look_up(&self, frame: &FramePlan, u: &Use) -> (Object, vk::ImageLayout) {
         let border = frame.plan.boundary.iter().find(|b| b.resource == u.resource);
         let layout = border.map_or(u.access.scope().layout, |b| b.entry.layout);

@@ -10,15 +10,15 @@ use crate::graph::{Owner, Resource, Shape};
 use crate::stages::visibility;
 use ash::vk;
 
-/// The image, a view of all of it, and views of its layers.
+/// The visibility image, a view of the whole of it, and views of its layers.
 pub(crate) struct ResultImage {
     backed: Backed,
-    /// One view for each light; empty where there is one light, whose view is that of the whole.
+    /// A view for each light; empty where there is one light, for which the whole image's view serves.
     views: Vec<vk::ImageView>,
 }
 
 impl ResultImage {
-    /// Makes the image, unless the host lends it.
+    /// Creates the image, unless the host lends it.
     pub fn new(maker: &mut Maker, description: &Description) -> Result<Option<Self>, Error> {
         if description.lent_visibility {
             return Ok(None);
@@ -46,7 +46,7 @@ impl ResultImage {
         Ok(Some(Self { backed, views }))
     }
 
-    /// The image and the view of all of it.
+    /// The image and the view of the whole of it.
     pub fn image(&self) -> (vk::Image, vk::ImageView) {
         self.backed.object.image()
     }
@@ -58,12 +58,12 @@ impl ResultImage {
         Object::Image { image, view }
     }
 
-    /// Its name and bytes.
+    /// The image's name and the bytes of its memory.
     pub fn memory(&self) -> ResourceBytes {
         ResourceBytes { name: self.backed.name, bytes: self.backed.bytes }
     }
 
-    /// The handles that an owner keeps for it.
+    /// The handles that an owner keeps for the image.
     pub fn handles(&self) -> impl Iterator<Item = Made> + '_ {
         self.backed.object.handles().into_iter().chain(self.views.iter().map(|&view| view.into()))
     }

@@ -1,4 +1,4 @@
-//! Times of passes, by timestamps; read only when the host asks, never waited for.
+//! The times of passes, from timestamps that are read on request and never waited for.
 
 use super::host::Host;
 use super::maker::Maker;
@@ -6,31 +6,30 @@ use crate::Error;
 use ash::vk;
 use std::sync::atomic::{AtomicU16, AtomicU32, Ordering};
 
-/// A pool of timestamps for each place, which is a light of a frame slot: one before the first pass, one
-/// behind each.
+/// A pool of timestamps for each place, which is a light of a frame slot: one before the first pass and one after each.
 pub(crate) struct Timing {
     pools: Vec<vk::QueryPool>,
-    /// Nanoseconds a tick.
+    /// The nanoseconds of a tick.
     period: f64,
-    /// The bits of a timestamp that count.
+    /// The mask of a timestamp's valid bits.
     mask: u64,
-    /// Queries a pool.
+    /// The number of queries in a pool.
     queries: u32,
-    /// What was recorded last at each place.
+    /// The passes that were recorded last at each place.
     recorded: Vec<Recorded>,
-    /// How many kinds of pass there are.
+    /// The number of kinds of pass.
     kinds: usize,
 }
 
-/// The passes that were recorded: how many, and the kind of each.
+/// The number of recorded passes, and the kind of each.
 struct Recorded {
     count: AtomicU32,
     kinds: Vec<AtomicU16>,
 }
 
 impl Timing {
-    /// Makes pools for up to `passes` passes of `kinds` kinds a frame, or none where the queue family has
-    /// no timestamps.
+    /// Creates pools for up to `passes` passes of `kinds` kinds in a frame; no pools where the queue family has no
+    /// timestamps.
     pub fn new(
         maker: &mut Maker,
         places: u32,
@@ -72,7 +71,7 @@ impl Timing {
         }))
     }
 
-    /// Starts a place anew: resets its pool and takes the first timestamp.
+    /// Resets the pool of a place and writes the first timestamp.
     pub fn begin(&self, host: &Host, cmd: vk::CommandBuffer, place: usize) {
         let pool = self.pools[place];
         self.recorded[place].count.store(0, Ordering::Relaxed);
@@ -85,12 +84,12 @@ impl Timing {
         };
     }
 
-    /// Notes that nothing was recorded at a place.
+    /// Notes that no pass was recorded at a place.
     pub fn nothing(&self, place: usize) {
         self.recorded[place].count.store(0, Ordering::Relaxed);
     }
 
-    /// Takes the timestamp behind a pass of a kind, the `nth` of the frame from 0.
+    /// Writes the timestamp after pass number `nth` of the frame, which is of kind `kind`.
     pub fn end_pass(
         &self,
         host: &Host,
@@ -109,8 +108,8 @@ impl Timing {
         };
     }
 
-    /// Each kind of pass that was recorded last at a place and the milliseconds of all of its passes, in the
-    /// order of the first ones; none until its commands are done.
+    /// The kinds of pass that were recorded last at a place, in the order of their first passes, each with the milliseconds
+    /// of all of its passes; `None` until the device has completed them.
     pub fn read(&self, host: &Host, place: usize) -> Option<Vec<(usize, f64)>> {
         let recorded = self.recorded.get(place)?;
         let count = recorded.count.load(Ordering::Relaxed) as usize;

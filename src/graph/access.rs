@@ -1,4 +1,4 @@
-//! How a pass touches a resource, and what that means to Vulkan.
+//! The ways in which a pass accesses a resource, with their Vulkan stages, access bits and layouts.
 
 use ash::vk;
 
@@ -12,7 +12,7 @@ pub(super) const WRITES: vk::AccessFlags = vk::AccessFlags::from_raw(
         | vk::AccessFlags::MEMORY_WRITE.as_raw(),
 );
 
-/// One way of touching a resource.
+/// One way in which a pass accesses a resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Access {
     /// An image fetched by a compute shader, without a sampler.
@@ -44,11 +44,11 @@ pub enum Access {
 /// It is also made from synchronization2's words: `Scope::from((stage2, access2, layout))`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scope {
-    /// The pipeline stages that touch it.
+    /// The pipeline stages that access the resource.
     pub stage: vk::PipelineStageFlags,
-    /// How they touch it.
+    /// The access bits of these stages.
     pub access: vk::AccessFlags,
-    /// The layout for images; `UNDEFINED` for buffers.
+    /// The image's layout; `UNDEFINED` for buffers.
     pub layout: vk::ImageLayout,
 }
 
@@ -123,18 +123,18 @@ impl Scope {
         vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
     );
 
-    /// Whether any of its accesses writes.
+    /// Whether any access of the scope writes.
     pub fn writes(&self) -> bool {
         self.access.intersects(WRITES)
     }
 
-    /// The same use in another layout.
+    /// The scope with another layout.
     #[must_use]
     pub const fn in_layout(self, layout: vk::ImageLayout) -> Self {
         Self { layout, ..self }
     }
 
-    /// The same use of content that is not wanted any more, in whatever layout it is.
+    /// The scope with the layout `UNDEFINED`, which discards the image's content.
     #[must_use]
     pub const fn forgotten(self) -> Self {
         self.in_layout(vk::ImageLayout::UNDEFINED)
@@ -142,7 +142,7 @@ impl Scope {
 }
 
 impl Access {
-    /// Every access, for tests by table.
+    /// Every access, in the order of the variants.
     pub const ALL: [Self; 11] = [
         Self::SampledCompute,
         Self::SampledFragment,
@@ -157,7 +157,7 @@ impl Access {
         Self::ColorTarget,
     ];
 
-    /// Whether it writes.
+    /// Whether the access writes.
     pub fn writes(self) -> bool {
         matches!(
             self,
@@ -170,12 +170,12 @@ impl Access {
         )
     }
 
-    /// Whether what it finds there matters: an earlier pass of the frame must have written it.
+    /// Whether the access depends on the present content, which an earlier pass of the frame must have written.
     pub fn reads(self) -> bool {
         matches!(self, Self::ImageUpdate | Self::BufferUpdate) || !self.writes()
     }
 
-    /// The stages, access bits and layout of it.
+    /// The stages, access bits and layout of the access.
     pub fn scope(self) -> Scope {
         use vk::{AccessFlags as A, ImageLayout as L, PipelineStageFlags as S};
         let (stage, access, layout) = match self {
@@ -208,7 +208,7 @@ impl Access {
         Scope { stage, access, layout }
     }
 
-    /// What an image must have been created for.
+    /// The usage that an image needs for the access; empty for an access to buffers.
     pub fn image_usage(self) -> vk::ImageUsageFlags {
         match self {
             Self::SampledCompute | Self::SampledFragment => vk::ImageUsageFlags::SAMPLED,
@@ -219,7 +219,7 @@ impl Access {
         }
     }
 
-    /// What a buffer must have been created for.
+    /// The usage that a buffer needs for the access; empty for an access to images.
     pub fn buffer_usage(self) -> vk::BufferUsageFlags {
         match self {
             Self::BufferReadCompute
@@ -231,7 +231,7 @@ impl Access {
         }
     }
 
-    /// The descriptor a shader sees it through; none for attachments and indirect arguments.
+    /// The type of descriptor that a shader accesses the resource through; `None` for attachments and indirect arguments.
     pub fn descriptor(self) -> Option<vk::DescriptorType> {
         match self {
             Self::SampledCompute | Self::SampledFragment => Some(vk::DescriptorType::SAMPLED_IMAGE),
@@ -244,7 +244,7 @@ impl Access {
         }
     }
 
-    /// The shader stage that a descriptor of it is visible to.
+    /// The shader stage that the access's descriptor must be visible to.
     pub fn shader_stage(self) -> vk::ShaderStageFlags {
         match self {
             Self::SampledFragment => vk::ShaderStageFlags::FRAGMENT,

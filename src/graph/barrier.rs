@@ -1,17 +1,17 @@
-//! Barriers, derived from accesses by a pure function.
+//! The barriers between accesses, derived by a pure function.
 //!
-//! Each resource carries its [`State`]: who wrote it last, who has seen that write, who has read it
-//! since, and an image's layout. [`State::touch`] takes the next use, says which barrier it needs,
-//! if any, and moves the state on. The four cases:
+//! Each resource has a [`State`]: its last write, the stages that the write is visible to, the stages that have read since,
+//! and an image's layout. [`State::touch`] advances the state by the next use and returns the barrier that this use needs,
+//! if any. There are four cases:
 //!
 //! | next use | after | needs |
 //! |---|---|---|
-//! | read | a write it has not seen | execution and memory dependency on the write |
+//! | read | a write that is not visible to it | execution and memory dependency on the write |
 //! | read | a write already made visible to that stage and access | nothing |
 //! | write | reads | execution dependency on the reads |
 //! | write | a write | execution and memory dependency on the write |
 //!
-//! and any change of layout needs a barrier whatever the use.
+//! A change of layout needs a barrier whatever the use.
 
 use super::access::{Scope, WRITES};
 use ash::vk;
@@ -19,35 +19,35 @@ use ash::vk;
 /// One dependency for one resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Barrier {
-    /// Stages that must be done.
+    /// The stages that must be complete.
     pub src_stage: vk::PipelineStageFlags,
-    /// Writes of theirs to make available.
+    /// The writes of these stages to make available.
     pub src_access: vk::AccessFlags,
-    /// Stages that wait.
+    /// The stages that wait.
     pub dst_stage: vk::PipelineStageFlags,
-    /// Accesses of theirs to make it visible to.
+    /// The accesses of the waiting stages that the writes are made visible to.
     pub dst_access: vk::AccessFlags,
-    /// The image's layout before; `UNDEFINED` forgets the content.
+    /// The image's layout before; `UNDEFINED` discards the content.
     pub old_layout: vk::ImageLayout,
-    /// The image's layout after; as before where nothing changes.
+    /// The image's layout after; equal to `old_layout` where it does not change.
     pub new_layout: vk::ImageLayout,
 }
 
-/// What has happened to a resource so far.
+/// The accesses to a resource that later ones may have to wait for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct State {
-    /// The last write that is not yet followed by another.
+    /// The stages and accesses of the last write.
     write: (vk::PipelineStageFlags, vk::AccessFlags),
-    /// Stages and accesses that the last write was made visible to.
+    /// The stages and accesses that the last write was made visible to.
     seen_by: (vk::PipelineStageFlags, vk::AccessFlags),
-    /// Stages that have read since the last write.
+    /// The stages that have read since the last write.
     readers: vk::PipelineStageFlags,
-    /// The layout it is in.
+    /// The image's layout.
     layout: vk::ImageLayout,
 }
 
 impl State {
-    /// A resource that somebody else left behind in `scope`.
+    /// The state of a resource whose last use, outside the plan, has the scope `scope`.
     pub fn left_in(scope: Scope) -> Self {
         let none = (vk::PipelineStageFlags::empty(), vk::AccessFlags::empty());
         let writes = scope.access & WRITES;
@@ -60,10 +60,10 @@ impl State {
         }
     }
 
-    /// A resource whose content nobody wants, last touched by any of `scope`'s stages.
+    /// The state of a resource whose content may be discarded and whose last uses are within `scope`.
     pub fn forgotten(scope: Scope) -> Self {
         Self {
-            // Old readers and writers alike must be done before the first write of the frame.
+            // Earlier reads and writes must be complete before the first write of the frame.
             write: (scope.stage, scope.access & WRITES),
             seen_by: (vk::PipelineStageFlags::empty(), vk::AccessFlags::empty()),
             readers: vk::PipelineStageFlags::empty(),
@@ -71,31 +71,31 @@ impl State {
         }
     }
 
-    /// The layout it is in now.
+    /// The image's present layout.
     pub fn layout(&self) -> vk::ImageLayout {
         self.layout
     }
 
-    /// What touched it last, for whoever comes next.
+    /// The scope of the last uses, which the next use has to wait for.
     pub fn scope(&self) -> Scope {
         let (stage, access) =
             if self.readers.is_empty() { self.write } else { (self.readers, self.seen_by.1) };
         Scope { stage, access, layout: self.layout }
     }
 
-    /// The barrier that the next use needs, if any; moves the state on.
+    /// Advances the state by the next use, and returns the barrier that this use needs, if any.
     pub fn touch(&mut self, next: Scope, writes: bool) -> Option<Barrier> {
         let new_layout =
             if next.layout == vk::ImageLayout::UNDEFINED { self.layout } else { next.layout };
         let relayout = new_layout != self.layout;
         let was_written = !self.write.0.is_empty();
-        // What somebody else left to its readers was written before them, and they alone have seen it.
+        // A resource left by readers outside the plan was written before them, visible to them alone.
         let unseen = (was_written || !self.readers.is_empty())
             && !(self.seen_by.0.contains(next.stage) && self.seen_by.1.contains(next.access));
         let must_wait = if writes { was_written || !self.readers.is_empty() } else { unseen };
         let barrier = (must_wait || relayout).then(|| {
-            // Readers since the write already waited for it: waiting for them is enough to
-            // overwrite, but a new reader still depends on the write itself.
+            // Reads since the write have waited for it: a new write needs to wait for them alone, but a new read still
+            // depends on the write itself.
             let after_readers = (writes || relayout || !was_written) && !self.readers.is_empty();
             let (src_stage, src_access) = if after_readers {
                 (self.readers | self.write.0, self.write.1)
@@ -120,7 +120,7 @@ impl State {
             };
         } else {
             if relayout {
-                // A layout transition is a write of its own, made visible to this use alone.
+                // A layout transition counts as a write that is visible to this use alone.
                 self.write = (next.stage, vk::AccessFlags::empty());
                 self.seen_by = (next.stage, next.access);
                 self.readers = next.stage;
@@ -145,8 +145,7 @@ mod tests {
     use super::*;
     use crate::graph::Access;
 
-    /// Plays `uses` on a fresh transient and returns, per use, (src stage, src access) of its
-    /// barrier or None.
+    /// Applies `uses` to a new transient and returns (source stage, source access) of each use's barrier, or None.
     fn play(
         uses: &[Access],
     ) -> Vec<Option<(vk::PipelineStageFlags, vk::AccessFlags, vk::ImageLayout)>> {
@@ -216,11 +215,11 @@ mod tests {
         assert_eq!(barrier.src_stage, S::LATE_FRAGMENT_TESTS);
         assert_eq!(barrier.old_layout, barrier.new_layout);
         assert_eq!(state.touch(scope, false), None);
-        // Left by a reader: reading on needs nothing.
+        // After a reader outside the plan, a read by the same stage needs no barrier.
         let mut read = State::left_in(scope);
         assert_eq!(read.touch(scope, false), None);
         assert_eq!(read.scope().stage, S::COMPUTE_SHADER);
-        // But another stage has seen nothing yet: it waits for the readers, and so for what they saw.
+        // To another stage nothing is visible yet: it waits for the readers, and so for the write before them.
         let mut read = State::left_in(Scope { stage: S::FRAGMENT_SHADER, ..scope });
         let barrier = read.touch(scope, false).unwrap();
         assert_eq!((barrier.src_stage, barrier.src_access), (S::FRAGMENT_SHADER, A::empty()));

@@ -1,10 +1,10 @@
 //! The render graph as pure data: no Vulkan calls, tested without a device.
 //!
 //! ```text
-//!  Graph   resources + rows (passes), every row a technique could run, in order
-//!    │ compile: drop rows that the frame does not need or whose output nobody reads
+//!  Graph   resources + passes: every pass that a technique may run, in order
+//!    │ compile: drop passes that the frame does not need or whose output nobody reads
 //!    ▼
-//!  Plan    steps = barriers + row; the host's accesses on entry and exit; what was skipped, and why
+//!  Plan    steps = barriers + pass; the host's accesses on entry and exit; what was skipped, and why
 //!    │ gpu::record
 //!    ▼
 //!  vkCmd*
@@ -34,15 +34,15 @@ pub use why::{Part, Why};
 
 use ash::vk;
 
-/// Resources and rows, in the order in which they may run.
+/// Resources, and the passes that use them in the order in which they may run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Graph {
     resources: Vec<Resource>,
     passes: Vec<Pass>,
     reasons: Vec<Why>,
-    /// Each row's kind.
+    /// The kind of each pass.
     kinds: Vec<u16>,
-    /// The first row of each kind.
+    /// The index of the first pass of each kind.
     firsts: Vec<usize>,
 }
 
@@ -64,8 +64,8 @@ impl Graph {
         self.add(Resource { name, shape, owner })
     }
 
-    /// Declares a transient array of images of one size, of at least one; shaders see all of its layers, and barriers
-    /// are for all of them at once.
+    /// Declares a transient array image of at least one layer. Shaders see all of its layers, and a barrier covers all of
+    /// them.
     pub fn image_array(
         &mut self,
         name: &'static str,
@@ -77,38 +77,37 @@ impl Graph {
         self.add(Resource { name, shape, owner: Owner::Transient })
     }
 
-    /// Declares a transient buffer, of at least a vector of four: what the smallest maps leave empty has to be bound
-    /// all the same.
+    /// Declares a transient buffer of at least 16 bytes: a buffer that small maps leave empty has to be bound all the same.
     pub fn buffer(&mut self, name: &'static str, bytes: u64) -> ResourceId {
         let shape = Shape::Buffer { bytes: bytes.max(16) };
         self.add(Resource { name, shape, owner: Owner::Transient })
     }
 
-    /// Makes what one frame wrote into a transient stay for the next ones.
+    /// Makes the content of a transient resource stay for later frames.
     pub fn keep(&mut self, id: ResourceId) {
         if let Some(resource) = self.resources.get_mut(id.index()) {
             resource.owner = Owner::Kept;
         }
     }
 
-    /// Leaves out rows that would run, by their place.
+    /// Marks the passes for whose index `which` holds as not needed, for a reason.
     pub(crate) fn leave_out(&mut self, which: impl Fn(usize) -> bool, why: impl Into<Why>) {
         let why = self.because(why);
-        let rows = self.passes.iter_mut().enumerate().filter(|(row, _)| which(*row));
-        for (_, pass) in rows.filter(|(_, p)| p.need.is_yes()) {
+        let passes = self.passes.iter_mut().enumerate().filter(|(place, _)| which(*place));
+        for (_, pass) in passes.filter(|(_, p)| p.need.is_yes()) {
             pass.need = Need::No(why);
         }
     }
 
-    /// Adds a reason, for rows to name.
+    /// Adds a reason that passes may refer to.
     pub fn because(&mut self, why: impl Into<Why>) -> Reason {
-        // A graph has a few reasons for all of its rows.
+        // A graph has a few reasons for all of its passes.
         let reason = Reason(self.reasons.len() as u16);
         self.reasons.push(why.into());
         reason
     }
 
-    /// Whether rows are needed, for a reason that is added.
+    /// Adds the reason of a need, and returns the need that refers to it.
     pub fn need(&mut self, need: &Need<Why>) -> Need {
         match need {
             Need::Yes(why) => Need::Yes(self.because(*why)),
@@ -116,13 +115,13 @@ impl Graph {
         }
     }
 
-    /// Why a row is needed, or is not.
+    /// Why a pass is needed, or is not.
     pub fn why(&self, pass: &Pass) -> Why {
         let (Need::Yes(Reason(place)) | Need::No(Reason(place))) = pass.need;
         self.reasons.get(usize::from(place)).copied().unwrap_or_default()
     }
 
-    /// Forgets everything but its memory.
+    /// Removes everything and keeps the memory.
     pub(crate) fn clear(&mut self) {
         self.resources.clear();
         self.reasons.clear();
@@ -131,7 +130,7 @@ impl Graph {
         self.firsts.clear();
     }
 
-    /// Takes the memory now that a graph as large as another one will need.
+    /// Reserves memory for a graph as large as `other`.
     pub(crate) fn reserve_for(&mut self, other: &Self) {
         self.resources.reserve(other.resources.len());
         self.reasons.reserve(other.reasons.len());
@@ -140,11 +139,11 @@ impl Graph {
         self.firsts.reserve(other.firsts.len());
     }
 
-    /// Whether it is another one in push constants, grids and reasons alone: then it runs the same rows behind the same
+    /// Whether two graphs differ in push constants, grids and reasons alone: then they run the same passes behind the same
     /// barriers.
     #[cfg(test)]
     pub(super) fn differs_in_numbers_alone(&self, other: &Self) -> bool {
-        let same = |(a, b): (&Pass, &Pass)| a.is_row_of(b) && a.need.is_yes() == b.need.is_yes();
+        let same = |(a, b): (&Pass, &Pass)| a.does_work_of(b) && a.need.is_yes() == b.need.is_yes();
         self.resources == other.resources
             && self.passes.len() == other.passes.len()
             && self.passes.iter().zip(&other.passes).all(same)
@@ -157,9 +156,9 @@ impl Graph {
         id
     }
 
-    /// Appends a row.
+    /// Appends a pass.
     pub fn push(&mut self, pass: Pass) {
-        // Repeated rows come close together, so the search ends soon.
+        // Repeated passes come close together, so the search ends soon.
         let known = self.firsts.iter().rposition(|&first| self.passes[first].name == pass.name);
         let kind = known.unwrap_or_else(|| {
             self.firsts.push(self.passes.len());
@@ -169,24 +168,25 @@ impl Graph {
         self.passes.push(pass);
     }
 
-    /// A row's kind: rows of one name have the same, from 0 in the order in which names first appear.
-    pub fn kind_of(&self, row: usize) -> usize {
-        usize::from(self.kinds[row])
+    /// The kind of the pass at an index: passes of one name are of one kind, counted from 0 in the order in which names first
+    /// appear.
+    pub fn kind_of(&self, place: usize) -> usize {
+        usize::from(self.kinds[place])
     }
 
-    /// The first row of each kind.
+    /// The first pass of each kind.
     pub fn kinds(&self) -> impl ExactSizeIterator<Item = &Pass> {
-        self.firsts.iter().map(|&row| &self.passes[row])
+        self.firsts.iter().map(|&place| &self.passes[place])
     }
 
-    /// A row of each kind whose descriptors and pipeline would not serve a later one of its name.
-    pub(super) fn mismatched_row(&self) -> Option<&Pass> {
-        let mut rows = self.passes.iter().zip(&self.kinds);
+    /// A pass that the descriptors and the pipeline of its kind's first pass do not serve; `None` where there is none.
+    pub(super) fn mismatched_pass(&self) -> Option<&Pass> {
+        let mut passes = self.passes.iter().zip(&self.kinds);
         let first = |kind: u16| &self.passes[self.firsts[usize::from(kind)]];
-        rows.find(|(pass, kind)| !pass.is_kind_of(first(**kind))).map(|(pass, _)| pass)
+        passes.find(|(pass, kind)| !pass.is_kind_of(first(**kind))).map(|(pass, _)| pass)
     }
 
-    /// All resources; [`ResourceId::index`] is the place.
+    /// All resources, at the indices of [`ResourceId::index`].
     pub fn resources(&self) -> &[Resource] {
         &self.resources
     }
@@ -196,17 +196,17 @@ impl Graph {
         &self.resources[id.index()]
     }
 
-    /// The id of the resource at a place in [`Self::resources`].
+    /// The id of the resource at an index in [`Self::resources`].
     pub fn id(&self, index: usize) -> ResourceId {
         ResourceId(index as u16)
     }
 
-    /// All rows, dropped ones included.
+    /// All passes, including those that are not needed.
     pub fn passes(&self) -> &[Pass] {
         &self.passes
     }
 
-    /// Every way in which any row, needed or not, touches a resource.
+    /// The accesses of all passes, needed or not, to a resource.
     pub fn uses_of(&self, id: ResourceId) -> impl Iterator<Item = Access> + '_ {
         self.passes.iter().flat_map(|p| &p.uses).filter(move |u| u.resource == id).map(|u| u.access)
     }

@@ -1,11 +1,11 @@
-//! A pass is a row of data: its name, what it touches and how, its push constants, its work.
+//! A pass is data: its name, the resources that it uses and how, its push constants, and its work.
 
 use super::{Access, ResourceId};
 use crate::shaders::Module;
 use ash::vk;
 use smallvec::SmallVec;
 
-/// The most that Vulkan guarantees for push constants.
+/// The most bytes of push constants that Vulkan guarantees.
 pub const PUSH_BYTES: usize = 128;
 
 /// The most invocations that a workgroup has on every device (maxComputeWorkGroupInvocations).
@@ -14,7 +14,7 @@ pub const INVOCATIONS: u32 = 128;
 /// The largest storage buffer that every device binds (maxStorageBufferRange), in bytes.
 pub const STORAGE_BYTES: u64 = 1 << 27;
 
-/// The color attachments that every device draws into at once (maxColorAttachments).
+/// The most color attachments that every device draws into at once (maxColorAttachments).
 pub const COLOR_ATTACHMENTS: usize = 4;
 
 /// The push constants of a pass, as bytes.
@@ -42,54 +42,54 @@ impl Push {
     }
 }
 
-/// One resource that a pass touches.
+/// A resource that a pass uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Use {
     /// The resource.
     pub resource: ResourceId,
-    /// How it is touched.
+    /// How the pass accesses it.
     pub access: Access,
-    /// The shader's binding (set 0); none for attachments and indirect arguments.
+    /// The binding in the shader's set 0; `None` for attachments and indirect arguments.
     pub binding: Option<u8>,
 }
 
 impl Use {
-    /// A resource that the shader sees at a binding.
+    /// The use of a resource that the shader sees at a binding.
     pub fn bound(binding: u8, resource: ResourceId, access: Access) -> Self {
         Self { resource, access, binding: Some(binding) }
     }
 
-    /// An attachment, or the arguments of an indirect draw.
+    /// The use of an attachment, or of the arguments of an indirect command.
     pub fn fixed(resource: ResourceId, access: Access) -> Self {
         Self { resource, access, binding: None }
     }
 }
 
-/// How fragments meet what the target holds.
+/// The attachments of a raster pass, and how fragments combine with their content.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
-    /// One depth attachment: cleared to `clear`, kept where `compare` holds.
+    /// One depth attachment, cleared to `clear`; a fragment is written where it passes `compare`.
     Depth {
         /// The cleared value.
         clear: f32,
-        /// New `compare` old keeps the new value.
+        /// The comparison of a fragment's depth with the stored depth.
         compare: vk::CompareOp,
     },
     /// Up to [`COLOR_ATTACHMENTS`] color attachments of one size, cleared to 0, each fragment added to them.
     Add,
 }
 
-/// What is drawn.
+/// The draw of a raster pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Draw {
-    /// The meshes of a depth layer, positions at location 0, one matrix pushed each.
+    /// Draws the meshes of a depth layer, with positions at location 0 and a pushed matrix for each mesh.
     Layer {
         /// The layer.
         layer: Layer,
-        /// Which of the frame's views of its meshes: 0 where there is one.
+        /// The index among the views of the layer's meshes: 0 where there is one view.
         view: u32,
     },
-    /// Vertices without a vertex buffer, their count read from a `VkDrawIndirectCommand`.
+    /// Draws vertices without a vertex buffer; a `VkDrawIndirectCommand` holds their count.
     Indirect {
         /// The buffer that holds the command.
         arguments: ResourceId,
@@ -101,26 +101,26 @@ pub enum Draw {
 /// A depth layer that meshes are drawn into.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Layer {
-    /// Occluders' nearest faces.
+    /// The occluders' nearest faces.
     Front,
-    /// Occluders' furthest back faces.
+    /// The occluders' furthest back faces.
     Back,
-    /// Occluders' nearest back faces.
+    /// The occluders' nearest back faces.
     NearBack,
-    /// Occluders' furthest front faces.
+    /// The occluders' furthest front faces.
     FarFront,
-    /// Receivers' nearest faces.
+    /// The receivers' nearest faces.
     Receivers,
-    /// Every face of the occluders, counted in its slice.
+    /// All faces of the occluders, each in its slice.
     Slices,
-    /// Those that look at the projection point.
+    /// The occluders' faces that face the projection point, each in its slice.
     FrontSlices,
-    /// Those that look away from it.
+    /// The occluders' faces that face away from the projection point, each in its slice.
     BackSlices,
 }
 
 impl Layer {
-    /// The meshes that it shows.
+    /// The list of meshes that the layer shows.
     pub fn meshes(self) -> MeshList {
         match self {
             Self::Front
@@ -135,26 +135,26 @@ impl Layer {
     }
 }
 
-/// Which of the frame's meshes a draw takes.
+/// The list of the frame's meshes that a pass draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum MeshList {
-    /// Those that block light.
+    /// The meshes that block light.
     Occluders,
-    /// Those that show shadows.
+    /// The meshes that show shadows.
     Receivers,
 }
 
-/// What a pass makes the device do.
+/// The command of a pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Work {
-    /// A compute grid.
+    /// A compute dispatch.
     Dispatch {
         /// The compute shader.
         shader: Module,
-        /// Workgroups in x, y and z.
+        /// The number of workgroups in x, y and z.
         groups: [u32; 3],
     },
-    /// A compute grid of as many workgroups as an earlier pass found.
+    /// A compute dispatch whose number of workgroups an earlier pass wrote into a buffer.
     Indirect {
         /// The compute shader.
         shader: Module,
@@ -163,23 +163,23 @@ pub enum Work {
         /// Where in it, in bytes: a multiple of 4.
         offset: u64,
     },
-    /// A draw into one attachment.
+    /// A draw into attachments.
     Raster {
         /// The vertex shader.
         vertex: Module,
-        /// The fragment shader; none where only depth is written.
+        /// The fragment shader; `None` where only depth is written.
         fragment: Option<Module>,
-        /// Faces left out.
+        /// The faces that are culled.
         cull: vk::CullModeFlags,
-        /// The attachment's rules.
+        /// The attachments.
         target: Target,
-        /// What is drawn.
+        /// The draw of a raster pass.
         draw: Draw,
     },
 }
 
 impl Work {
-    /// The compute shader, where it is a grid.
+    /// The compute shader; `None` for a draw.
     pub fn compute_shader(&self) -> Option<Module> {
         match *self {
             Self::Dispatch { shader, .. } | Self::Indirect { shader, .. } => Some(shader),
@@ -188,49 +188,49 @@ impl Work {
     }
 }
 
-/// A reason of one [`Graph`](super::Graph), which rows share: [`Graph::why`](super::Graph::why) tells it.
+/// Refers to a reason of one [`Graph`](super::Graph), which passes may share; [`Graph::why`](super::Graph::why) returns it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Reason(pub(super) u16);
 
 /// Whether the frame needs a pass, and why or why not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Need<W = Reason> {
-    /// It runs unless nobody reads what it writes.
+    /// The pass runs, unless nobody reads its output.
     Yes(W),
-    /// It does not run.
+    /// The pass does not run.
     No(W),
 }
 
 impl<W> Need<W> {
-    /// Whether it is needed.
+    /// Whether the pass is needed.
     pub fn is_yes(&self) -> bool {
         matches!(self, Self::Yes(_))
     }
 }
 
-/// What a pass touches: as many as passes have lie in the pass itself.
+/// The resources that a pass uses, stored in the pass itself for as many as passes have.
 pub type Uses = SmallVec<[Use; 20]>;
 
-/// One row of the graph.
+/// One pass of the graph.
 ///
-/// Rows of one name are one **kind**: the same work on the same resources, again with other push
-/// constants and another view of the meshes. They share a pipeline and a descriptor set.
+/// Passes of one name are of one **kind**: they do the same work on the same resources with other push constants and
+/// another view of the meshes. They share a pipeline and a descriptor set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pass {
-    /// `room.pass`; the debug label is this behind `antumbra.`.
+    /// The pass's name, as `room.pass`; its debug label is `antumbra.room.pass`.
     pub name: &'static str,
-    /// What it touches.
+    /// The resources that it uses.
     pub uses: Uses,
-    /// Its push constants; a mesh draw pushes its matrices itself.
+    /// Its push constants, without the matrix that each mesh draw pushes before them.
     pub push: Push,
-    /// What it does.
+    /// Its command.
     pub work: Work,
-    /// Whether this frame needs it.
+    /// Whether this frame needs it, and why.
     pub need: Need,
 }
 
 impl Pass {
-    /// A row that runs a compute grid.
+    /// A pass that dispatches a compute shader over `groups` workgroups.
     pub fn compute(
         name: &'static str,
         shader: Module,
@@ -243,13 +243,13 @@ impl Pass {
         Self { name, uses, push, work, need: *need }
     }
 
-    /// Whether a row of its name can be recorded with what was made for this one.
+    /// Whether `other`, a pass of the same name, can be recorded with the objects that were made for this one.
     pub fn is_kind_of(&self, other: &Self) -> bool {
-        self.is_row_of(other) && self.push.bytes().len() == other.push.bytes().len()
+        self.does_work_of(other) && self.push.bytes().len() == other.push.bytes().len()
     }
 
-    /// Whether it does what another one does, with other numbers: push constants, workgroups, view of the meshes.
-    pub(super) fn is_row_of(&self, other: &Self) -> bool {
+    /// Whether two passes differ in numbers alone: push constants, workgroups, view of the meshes.
+    pub(super) fn does_work_of(&self, other: &Self) -> bool {
         let same_work = match (self.work, other.work) {
             (Work::Dispatch { shader: a, .. }, Work::Dispatch { shader: b, .. }) => a == b,
             (
@@ -261,12 +261,12 @@ impl Pass {
         self.name == other.name && self.uses == other.uses && same_work
     }
 
-    /// The resources it writes.
+    /// The resources that the pass writes.
     pub fn writes(&self) -> impl Iterator<Item = ResourceId> + '_ {
         self.uses.iter().filter(|u| u.access.writes()).map(|u| u.resource)
     }
 
-    /// The resources it reads.
+    /// The resources that the pass reads.
     pub fn reads(&self) -> impl Iterator<Item = ResourceId> + '_ {
         self.uses.iter().filter(|u| u.access.reads()).map(|u| u.resource)
     }

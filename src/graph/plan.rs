@@ -1,11 +1,11 @@
-//! From a graph to what one frame records.
+//! Compiles a graph into the plan of one frame.
 
 use super::{Access, Barrier, Graph, Owner, Pass, ResourceId, Scope, State, Why};
 use crate::Error;
 use ash::vk;
 use smallvec::SmallVec;
 
-/// How the host left an imported or exported resource, and how it wants it back.
+/// The host's uses of a shared resource before and after the node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Border {
     /// The resource.
@@ -16,24 +16,24 @@ pub struct Border {
     pub after: Scope,
 }
 
-/// How the node touches one of the host's resources, for hosts that place barriers themselves.
+/// How the node uses a resource that it shares with the host, for hosts that record barriers themselves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BoundaryUse {
     /// The resource.
     pub resource: ResourceId,
-    /// Its name in the graph.
+    /// The resource's name in the graph.
     pub name: &'static str,
-    /// Stages and accesses of the node's first use (of all its uses, where it only reads), and the
-    /// layout it must be in by then.
+    /// The scope of the node's first use, or of all its uses where it only reads, with the layout that the resource must
+    /// be in then.
     pub entry: Scope,
-    /// Who touched it last behind the node's commands, and the layout it is left in: the node's own
-    /// last uses, or, where the node places the barriers at the border, what it was handed over to.
+    /// The scope of the node's last uses, with the layout that the resource is left in; where the node records the host's
+    /// barriers, the scope of the host's next use.
     pub exit: Scope,
-    /// Whether the node writes it.
+    /// Whether the node writes the resource.
     pub writes: bool,
 }
 
-/// A barrier and the resource it is for.
+/// A barrier for one resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ResourceBarrier {
     /// The resource.
@@ -42,49 +42,49 @@ pub struct ResourceBarrier {
     pub barrier: Barrier,
 }
 
-/// The barriers before a row: as many as rows have lie in the step itself.
+/// The barriers before a pass, stored in the step itself for as many as passes usually have.
 pub type Barriers = SmallVec<[ResourceBarrier; 6]>;
 
-/// A row that runs, behind the barriers it needs.
+/// A pass that runs, and the barriers before it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Step {
-    /// The row's place in [`Graph::passes`].
+    /// The pass's index in [`Graph::passes`].
     pub pass: usize,
-    /// No earlier step is of its kind: later ones find their descriptors written.
+    /// Whether no earlier step is of the pass's kind: this step writes the descriptors of all of them.
     pub first: bool,
-    /// What must happen first.
+    /// The barriers that are recorded first.
     pub barriers: Barriers,
 }
 
-/// A row that does not run; [`Plan::why_skipped`] says why.
+/// A pass that does not run; [`Plan::why_skipped`] says why.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Skipped {
-    /// The row's place in [`Graph::passes`].
+    /// The pass's index in [`Graph::passes`].
     pub pass: usize,
-    /// It is needed, but nothing reads what it writes.
+    /// Whether the pass is needed, but no pass that runs reads its output.
     pub unread: bool,
 }
 
-/// What one frame does: the rows that run, in order, with their barriers.
+/// The passes that one frame runs, in order, with their barriers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plan {
     /// The graph with this frame's push constants and grids.
     pub graph: Graph,
-    /// The rows that run.
+    /// The passes that run, in order.
     pub steps: Vec<Step>,
-    /// Barriers behind the last row, which hand the host's resources back.
+    /// The barriers after the last pass, which make shared resources ready for the host.
     pub handover: Vec<ResourceBarrier>,
-    /// The rows that do not run.
+    /// The passes that do not run.
     pub skipped: Vec<Skipped>,
-    /// How the host's resources are touched.
+    /// How the node uses the resources that it shares with the host.
     pub boundary: Vec<BoundaryUse>,
-    /// What it was compiled for, beyond the graph.
+    /// The borders that the plan was compiled for.
     borders: Vec<Border>,
     places_borders: bool,
 }
 
 impl Plan {
-    /// Why a row does not run.
+    /// Why a pass does not run.
     pub fn why_skipped(&self, skipped: &Skipped) -> Why {
         let pass = &self.graph.passes()[skipped.pass];
         if !skipped.unread {
@@ -99,45 +99,47 @@ impl Plan {
             .and(" in this frame")
     }
 
-    /// Every row that does not run, and why.
+    /// Every pass that does not run, and why.
     pub fn reasons(&self) -> impl Iterator<Item = (&Pass, Why)> {
         self.skipped.iter().map(|s| (&self.graph.passes()[s.pass], self.why_skipped(s)))
     }
 }
 
-/// Drops rows that are not needed or whose output nobody reads, and derives the barriers.
+/// Drops passes that are not needed or whose output nobody reads, and derives the barriers.
 ///
-/// `borders` says how the host leaves and takes back its resources; with `place_borders` the plan
-/// holds the barriers at the border too, without it the host places them from [`Plan::boundary`].
+/// `borders` has the host's uses of shared resources before and after the node. With `place_borders` the plan contains the
+/// barriers against these uses too; without, the host records them from [`Plan::boundary`].
 ///
 /// # Errors
-/// [`Error::Frame`] where a row reads what none has written, touches one resource twice, or does other
-/// work than the rows of its name before it; or where a resource of the host's has no border.
+/// [`Error::Frame`] where a pass reads a resource that no pass has written, uses a resource that it writes twice, or does
+/// other work than earlier passes of its name; or where a shared resource has no border.
 pub fn compile(mut graph: Graph, borders: &[Border], place_borders: bool) -> Result<Plan, Error> {
     let mut plan = Plan::default();
     Compiler::default().compile(&mut graph, borders, place_borders, false, &mut plan)?;
     Ok(plan)
 }
 
-/// Compiles frame after frame in the same memory.
+/// Compiles plans in memory that it keeps from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Compiler {
-    /// Of each resource.
+    /// The state of each resource.
     states: Vec<State>,
+    /// Whether each resource has content.
     there: Vec<bool>,
+    /// Whether a later pass or the host reads each resource.
     wanted: Vec<bool>,
-    /// The rows that run.
+    /// The indices of the passes that run.
     kept: Vec<usize>,
-    /// Of each kind of row.
+    /// Whether a step of each kind of pass has been placed.
     recorded: Vec<bool>,
 }
 
 impl Compiler {
-    /// As [`compile`], into a plan of an earlier frame, whose graph is exchanged for this one. Where the caller knows the
-    /// two to differ by numbers alone (`same`), the steps stay as they are. After an error the plan is of no frame.
+    /// Compiles a graph into a plan of an earlier frame, and exchanges the two graphs; see [`compile`]. Where the caller
+    /// knows that both differ in numbers alone (`same`), the steps stay as they are. After an error the plan is of no frame.
     ///
     /// # Errors
-    /// As [`compile`].
+    /// See [`compile`].
     pub fn compile(
         &mut self,
         graph: &mut Graph,
@@ -155,9 +157,9 @@ impl Compiler {
         }
         plan.places_borders = place_borders;
         plan.borders.clear();
-        if let Some(pass) = plan.graph.mismatched_row() {
+        if let Some(pass) = plan.graph.mismatched_pass() {
             return Err(Error::Frame(format!(
-                "{}: rows of one name must touch the same resources in the same way with one shader; \
+                "{}: passes of one name must touch the same resources in the same way with one shader; \
                  give this one another name",
                 pass.name
             )));
@@ -170,7 +172,7 @@ impl Compiler {
         Ok(())
     }
 
-    /// The state of each resource before the first row.
+    /// Sets the state of each resource before the first pass.
     fn start(&mut self, graph: &Graph, borders: &[Border]) -> Result<(), Error> {
         self.states.clear();
         for (index, resource) in graph.resources().iter().enumerate() {
@@ -200,7 +202,7 @@ impl Compiler {
         Ok(())
     }
 
-    /// The rows that run, with their barriers, and how they touch the host's resources.
+    /// Fills in the steps with their barriers, and how they use shared resources.
     fn place_steps(&mut self, plan: &mut Plan, borders: &[Border]) {
         let Plan { graph, steps, boundary, places_borders, .. } = plan;
         let (kept, states) = (&self.kept, &mut self.states);
@@ -219,9 +221,10 @@ impl Compiler {
                 let first = host_owned && !boundary.iter().any(|b| b.resource == u.resource);
                 if first {
                     let entry = if resource.owner == Owner::Imported {
-                        // Never written here, so one barrier can reach all of its readers.
-                        let rows = kept.iter().map(|&p| &graph.passes()[p]);
-                        let uses = rows.flat_map(|p| &p.uses).filter(|o| o.resource == u.resource);
+                        // No pass writes it, so that one barrier serves all of its readers.
+                        let passes = kept.iter().map(|&p| &graph.passes()[p]);
+                        let uses =
+                            passes.flat_map(|p| &p.uses).filter(|o| o.resource == u.resource);
                         uses.map(|o| o.access.scope()).fold(scope, |all, one| Scope {
                             stage: all.stage | one.stage,
                             access: all.access | one.access,
@@ -239,10 +242,10 @@ impl Compiler {
                         writes: false,
                     });
                     if !*places_borders {
-                        // The host's own barrier has made it ready for exactly this.
+                        // The host's own barrier has made it ready for this use.
                         states[u.resource.index()] = State::left_in(entry);
                     } else if graph.resource(resource).owner.is_result() {
-                        // Written whole: what it held may be forgotten, in whatever layout.
+                        // The node overwrites it: its content may be discarded, whatever its layout.
                         let before = border.map_or(scope, |b| b.before);
                         states[u.resource.index()] = State::forgotten(before);
                     }
@@ -262,7 +265,7 @@ impl Compiler {
         }
     }
 
-    /// What is left to whoever comes behind.
+    /// Fills in the barriers after the last pass, for later frames and the host.
     fn hand_over(&mut self, plan: &mut Plan, borders: &[Border]) {
         let Plan { graph, boundary, handover, places_borders, .. } = plan;
         let states = &mut self.states;
@@ -270,17 +273,17 @@ impl Compiler {
             b.exit = states[b.resource.index()].scope();
         }
         handover.clear();
-        // What is kept is left as its readers find it.
+        // A kept resource is left ready for its readers in later frames.
         for (index, resource) in graph.resources().iter().enumerate() {
             let (id, state) = (ResourceId(index as u16), &mut states[index]);
-            let mut rows = self.kept.iter().map(|&p| &graph.passes()[p]);
-            if resource.owner == Owner::Kept && rows.any(|p| p.writes().any(|r| r == id)) {
+            let mut passes = self.kept.iter().map(|&p| &graph.passes()[p]);
+            if resource.owner == Owner::Kept && passes.any(|p| p.writes().any(|r| r == id)) {
                 let barrier = state.touch(readers(graph, id), false);
                 handover.extend(barrier.map(|barrier| ResourceBarrier { resource: id, barrier }));
             }
         }
         if *places_borders {
-            // What no row of this frame touches is handed over too: its next user counts on it.
+            // A resource that no pass of this frame uses is handed over too: the host expects its layout.
             for &Border { resource, after, .. } in borders {
                 let state = &mut states[resource.index()];
                 let barrier = state.touch(after, after.writes());
@@ -292,7 +295,7 @@ impl Compiler {
         }
     }
 
-    /// The rows that run, and those that do not.
+    /// Sorts the passes into those that run and those that do not.
     fn select(&mut self, graph: &Graph, skipped: &mut Vec<Skipped>) -> Result<(), Error> {
         let Self { there, wanted, kept, .. } = self;
         there.clear();
@@ -328,7 +331,7 @@ impl Compiler {
             }
             pass.writes().for_each(|r| there[r.index()] = true);
         }
-        // From the last back: what is read is wanted of those before.
+        // From the last pass back: a pass that runs makes the resources that it reads wanted.
         let mut place = kept.len();
         for n in (0..kept.len()).rev() {
             let index = kept[n];
@@ -347,7 +350,7 @@ impl Compiler {
     }
 }
 
-/// Every stage and access that any frame may have left a transient with.
+/// The scope of all uses of a resource: an earlier frame may have ended with any of them.
 fn everything(graph: &Graph, id: ResourceId) -> Scope {
     let none = Scope {
         stage: vk::PipelineStageFlags::empty(),
@@ -361,7 +364,7 @@ fn everything(graph: &Graph, id: ResourceId) -> Scope {
     })
 }
 
-/// Every stage and access that reads a resource, in the layout of the last of them.
+/// The scope of all reads of a resource, in the layout of the last of them.
 fn readers(graph: &Graph, id: ResourceId) -> Scope {
     let reads = graph.uses_of(id).filter(|access| !access.writes()).map(Access::scope);
     reads.fold(Scope::UNUSED, |all, one| Scope {
@@ -371,8 +374,7 @@ fn readers(graph: &Graph, id: ResourceId) -> Scope {
     })
 }
 
-/// The scope of a use; an imported image is fetched in the layout the host keeps it in, where that
-/// is one that can be fetched from.
+/// The scope of an access. An imported image stays in the host's layout where shaders can fetch from it.
 fn scope_at(access: Access, border: Option<&Border>) -> Scope {
     let scope = access.scope();
     match border {

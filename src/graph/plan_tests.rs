@@ -15,14 +15,14 @@ const FETCHED: Scope = Scope {
     layout: L::SHADER_READ_ONLY_OPTIMAL,
 };
 
-/// One imported image; one exported one, which a row writes that reads the import by `reads`.
+/// A plan with an imported image that passes read by `reads`, and an exported image that a last pass writes.
 fn plan_of(reads: &[Access], place_borders: bool) -> (Plan, ResourceId) {
     let mut graph = Graph::new();
     let extent = [4, 4];
     let depth = graph.image("depth", vk::Format::D32_SFLOAT, extent, Owner::Imported);
     let result = graph.image("result", vk::Format::R32_SFLOAT, extent, Owner::Exported);
     let middle = graph.buffer("middle", 4);
-    let row = |name, uses| Pass {
+    let pass = |name, uses| Pass {
         name,
         uses,
         push: Push::NONE,
@@ -31,28 +31,28 @@ fn plan_of(reads: &[Access], place_borders: bool) -> (Plan, ResourceId) {
     };
     for (&read, name) in reads.iter().zip(["one", "two"]) {
         let write = Use::fixed(middle, Access::BufferWriteCompute);
-        graph.push(row(name, smallvec![Use::fixed(depth, read), write]));
+        graph.push(pass(name, smallvec![Use::fixed(depth, read), write]));
     }
     let mut last = smallvec![Use::fixed(result, Access::ImageWrite)];
     if !reads.is_empty() {
         last.push(Use::fixed(middle, Access::BufferReadCompute));
     }
-    graph.push(row("last", last));
+    graph.push(pass("last", last));
     let borders =
         [depth, result].map(|resource| Border { resource, before: DRAWN, after: FETCHED });
     (compile(graph, &borders, place_borders).unwrap(), depth)
 }
 
-/// The next user of a lent image counts on its layout, whether or not a row touched it.
+/// The host expects a shared image in its layout whether or not a pass used it.
 #[test]
-fn what_no_row_touches_is_handed_over_too() {
+fn what_no_pass_uses_is_handed_over_too() {
     let (plan, depth) = plan_of(&[], true);
     assert!(plan.boundary.iter().all(|b| b.resource != depth));
     let barrier = plan.handover.iter().find(|b| b.resource == depth).unwrap().barrier;
     assert_eq!((barrier.src_stage, barrier.src_access), (DRAWN.stage, DRAWN.access));
     assert_eq!((barrier.dst_stage, barrier.dst_access), (FETCHED.stage, FETCHED.access));
     assert_eq!((barrier.old_layout, barrier.new_layout), (DRAWN.layout, FETCHED.layout));
-    // Left to the host, all of that is the host's.
+    // Without the host's barriers the plan hands over nothing.
     assert!(plan_of(&[], false).0.handover.is_empty());
 }
 
@@ -72,7 +72,7 @@ fn buffers() -> (Graph, [ResourceId; 2], ResourceId) {
     (graph, buffers, result)
 }
 
-fn row(name: &'static str, uses: Uses, need: Need) -> Pass {
+fn pass(name: &'static str, uses: Uses, need: Need) -> Pass {
     let work = Work::Dispatch { shader: shaders::LIT, groups: [1; 3] };
     Pass { name, uses, push: Push::NONE, work, need }
 }
@@ -90,31 +90,31 @@ fn nothing_is_read_before_it_is_written() {
     use Access::{BufferReadCompute as R, BufferWriteCompute as W, ImageWrite as I};
     let (mut graph, [a, b], result) = buffers();
     let uses = smallvec![Use::fixed(a, R), Use::fixed(result, I)];
-    graph.push(row("early", uses.clone(), needed()));
+    graph.push(pass("early", uses.clone(), needed()));
     let error = compiled(graph, result).unwrap_err().to_string();
     assert!(error.contains("early") && error.contains("reads a,"), "{error}");
-    // A row that does not run writes nothing.
+    // A pass that does not run writes nothing.
     let (mut graph, _, _) = buffers();
-    graph.push(row("writer", smallvec![Use::fixed(a, W)], Need::No(Reason::default())));
-    graph.push(row("reader", uses, needed()));
+    graph.push(pass("writer", smallvec![Use::fixed(a, W)], Need::No(Reason::default())));
+    graph.push(pass("reader", uses, needed()));
     assert!(compiled(graph, result).is_err());
-    // Nor may a row read what it writes itself.
+    // Nor may a pass read what it writes itself.
     let (mut graph, _, _) = buffers();
-    graph.push(row("writer", smallvec![Use::fixed(b, W)], needed()));
-    graph.push(row("both", smallvec![Use::fixed(b, R), Use::fixed(b, W)], needed()));
+    graph.push(pass("writer", smallvec![Use::fixed(b, W)], needed()));
+    graph.push(pass("both", smallvec![Use::fixed(b, R), Use::fixed(b, W)], needed()));
     let error = compiled(graph, result).unwrap_err().to_string();
     assert!(error.contains("touches b twice"), "{error}");
 }
 
 #[test]
-fn rows_whose_output_nobody_reads_drop_out_with_all_that_fed_them() {
+fn passes_whose_output_nobody_reads_drop_out_with_all_that_fed_them() {
     use Access::{BufferReadCompute as R, BufferWriteCompute as W, ImageWrite as I};
     let (mut graph, [a, b], result) = buffers();
-    graph.push(row("feeds", smallvec![Use::fixed(a, W)], needed()));
-    graph.push(row("unread", smallvec![Use::fixed(a, R), Use::fixed(b, W)], needed()));
-    graph.push(row("result", smallvec![Use::fixed(result, I)], needed()));
+    graph.push(pass("feeds", smallvec![Use::fixed(a, W)], needed()));
+    graph.push(pass("unread", smallvec![Use::fixed(a, R), Use::fixed(b, W)], needed()));
+    graph.push(pass("result", smallvec![Use::fixed(result, I)], needed()));
     let why = graph.because("not today");
-    graph.push(row("off", smallvec![Use::fixed(b, W)], Need::No(why)));
+    graph.push(pass("off", smallvec![Use::fixed(b, W)], Need::No(why)));
     let plan = compiled(graph, result).unwrap();
     assert_eq!(plan.steps.iter().map(|s| s.pass).collect::<Vec<_>>(), [2]);
     let why: Vec<_> =
@@ -133,33 +133,33 @@ fn rows_whose_output_nobody_reads_drop_out_with_all_that_fed_them() {
 #[test]
 fn a_lent_image_without_a_border_is_refused() {
     let (mut graph, _, result) = buffers();
-    graph.push(row("result", smallvec![Use::fixed(result, Access::ImageWrite)], needed()));
+    graph.push(pass("result", smallvec![Use::fixed(result, Access::ImageWrite)], needed()));
     let error = compile(graph, &[], true).unwrap_err().to_string();
     assert!(error.contains("result") && error.contains("host must say"), "{error}");
 }
 
-/// A map that is drawn and added n times: rows of one name, with other numbers.
+/// A map that is drawn and added n times: passes of one name, with other numbers.
 fn repeated(times: u32) -> (Graph, ResourceId) {
     use Access::{
         BufferReadCompute as R, BufferWriteCompute as W, ImageUpdate as U, ImageWrite as I,
     };
     let (mut graph, [map, _], result) = buffers();
     let sum = graph.image("sum", vk::Format::R32_SFLOAT, [4; 2], Owner::Transient);
-    graph.push(row("clear", smallvec![Use::bound(0, sum, I)], needed()));
+    graph.push(pass("clear", smallvec![Use::bound(0, sum, I)], needed()));
     for nth in 0..times {
         let push = Push::new(&nth);
-        let draw = row("draw", smallvec![Use::bound(0, map, W)], needed());
+        let draw = pass("draw", smallvec![Use::bound(0, map, W)], needed());
         graph.push(Pass { push, ..draw });
-        let add = row("add", smallvec![Use::bound(0, map, R), Use::bound(1, sum, U)], needed());
+        let add = pass("add", smallvec![Use::bound(0, map, R), Use::bound(1, sum, U)], needed());
         graph.push(Pass { push, ..add });
     }
     let uses = smallvec![Use::bound(0, sum, Access::SampledCompute), Use::bound(1, result, I)];
-    graph.push(row("average", uses, needed()));
+    graph.push(pass("average", uses, needed()));
     (graph, result)
 }
 
 #[test]
-fn rows_of_one_name_are_one_kind_and_one_line() {
+fn passes_of_one_name_are_one_kind_and_one_line() {
     let (graph, result) = repeated(5);
     assert_eq!(graph.passes().len(), 12);
     assert_eq!(
@@ -180,7 +180,7 @@ fn rows_of_one_name_are_one_kind_and_one_line() {
 
 /// The second map is drawn when the first has been read; each sum waits for the one before.
 #[test]
-fn a_row_that_repeats_waits_for_itself() {
+fn a_pass_that_repeats_waits_for_itself() {
     let (graph, result) = repeated(2);
     let plan = compiled(graph, result).unwrap();
     let of = |step: usize, name: &str| {
@@ -198,7 +198,7 @@ fn a_row_that_repeats_waits_for_itself() {
 fn what_is_updated_must_have_been_written() {
     let (mut graph, _, result) = buffers();
     let uses = smallvec![Use::fixed(result, Access::ImageUpdate)];
-    graph.push(row("add", uses, needed()));
+    graph.push(pass("add", uses, needed()));
     let error = compiled(graph, result).unwrap_err().to_string();
     assert!(error.contains("add: reads result"), "{error}");
 }
@@ -207,18 +207,18 @@ fn what_is_updated_must_have_been_written() {
 fn one_name_for_two_kinds_of_work_is_refused() {
     let (mut graph, [a, b], result) = buffers();
     for id in [a, b] {
-        graph.push(row(
+        graph.push(pass(
             "writer",
             smallvec![Use::bound(0, id, Access::BufferWriteCompute)],
             needed(),
         ));
     }
-    graph.push(row("result", smallvec![Use::fixed(result, Access::ImageWrite)], needed()));
+    graph.push(pass("result", smallvec![Use::fixed(result, Access::ImageWrite)], needed()));
     let error = compiled(graph, result).unwrap_err().to_string();
-    assert!(error.contains("writer: rows of one name"), "{error}");
+    assert!(error.contains("writer: passes of one name"), "{error}");
 }
 
-/// What is kept is left as its readers find it, and read without a barrier by a frame that does not make it.
+/// A kept image is left ready for its readers: a frame that does not write it reads it without a barrier.
 #[test]
 fn what_is_kept_needs_no_barrier_again() {
     let plan_of = |makes: Need| {
@@ -229,19 +229,19 @@ fn what_is_kept_needs_no_barrier_again() {
         let map = image(&mut graph, "map", Owner::Transient);
         let result = image(&mut graph, "result", Owner::Exported);
         graph.keep(map);
-        let row = |name, uses, need| Pass {
+        let pass = |name, uses, need| Pass {
             name,
             uses,
             push: Push::NONE,
             work: Work::Dispatch { shader: shaders::LIT, groups: [1; 3] },
             need,
         };
-        graph.push(row("make", smallvec![Use::fixed(map, Access::ImageWrite)], makes));
+        graph.push(pass("make", smallvec![Use::fixed(map, Access::ImageWrite)], makes));
         let look = smallvec![
             Use::fixed(map, Access::SampledCompute),
             Use::fixed(result, Access::ImageWrite)
         ];
-        graph.push(row("look", look, Need::Yes(Reason::default())));
+        graph.push(pass("look", look, Need::Yes(Reason::default())));
         let borders = [Border { resource: result, before: FETCHED, after: FETCHED }];
         (compile(graph, &borders, true).unwrap(), map)
     };
@@ -251,7 +251,7 @@ fn what_is_kept_needs_no_barrier_again() {
     };
     let made = of_map(&plan_of(Need::Yes(Reason::default())));
     assert_eq!(made.len(), 2);
-    // Frames before may still read what is overwritten.
+    // Earlier frames may still read what is overwritten.
     assert!(made[0].src_stage.contains(S::COMPUTE_SHADER) && made[0].new_layout == L::GENERAL);
     assert_eq!((made[1].src_access, made[1].new_layout), (A::SHADER_WRITE, FETCHED.layout));
     let kept = plan_of(Need::No(Reason::default()));

@@ -1,35 +1,35 @@
-//! What passes read and write: images and buffers, and who owns them.
+//! The images and buffers that passes read and write, and who owns them.
 
 use ash::vk;
 
-/// Names a resource of one [`Graph`](super::Graph); made by its `image` and `buffer`.
+/// Identifies a resource of one [`Graph`](super::Graph), whose methods `image`, `image_array` and `buffer` return it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ResourceId(pub(super) u16);
 
 impl ResourceId {
-    /// The resource's place in [`Graph::resources`](super::Graph::resources).
+    /// The resource's index in [`Graph::resources`](super::Graph::resources).
     pub fn index(self) -> usize {
         usize::from(self.0)
     }
 }
 
-/// Whose the memory is, and how long its content lives.
+/// Who owns a resource's memory, and how long its content lives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Owner {
-    /// The node's; written before it is read in every frame.
+    /// The node owns it; in every frame a pass writes it before another reads it.
     Transient,
-    /// The node's; what a frame wrote stays until one writes it again.
+    /// The node owns it; its content stays from frame to frame until a pass writes it again.
     Kept,
-    /// The host's; written before the frame's first pass.
+    /// The host owns it and writes it before the frame's first pass.
     Imported,
-    /// The node's; read by the host after the frame's last pass.
+    /// The node owns it; the host reads it after the frame's last pass.
     Exported,
-    /// The host's; written whole by the node, read by the host after the frame's last pass.
+    /// The host owns it and reads it after the frame's last pass; the node overwrites all of it.
     Lent,
 }
 
 impl Owner {
-    /// Whether the host reads it behind the node.
+    /// Whether the host reads the resource after the node.
     pub fn is_result(self) -> bool {
         matches!(self, Self::Exported | Self::Lent)
     }
@@ -46,7 +46,7 @@ pub enum Shape {
         width: u32,
         /// Height in texels.
         height: u32,
-        /// How many layers shaders see as an array of images; none where they see one image.
+        /// The number of array layers; `None` where shaders see a single image and no array.
         layers: Option<u32>,
     },
     /// A buffer.
@@ -59,22 +59,22 @@ pub enum Shape {
 /// One image or buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Resource {
-    /// `room.thing`, as shown in plans, labels and errors.
+    /// The name that plans, labels and errors show, as `room.thing`.
     pub name: &'static str,
-    /// Image or buffer, and its size.
+    /// Whether it is an image or a buffer, and its size.
     pub shape: Shape,
-    /// Whose it is.
+    /// Who owns it.
     pub owner: Owner,
 }
 
 impl Resource {
-    /// Whether it is an image with a depth format.
+    /// Whether the resource is an image with a depth format.
     pub fn is_depth(&self) -> bool {
         matches!(self.shape, Shape::Image { format, .. } if is_depth_format(format))
     }
 }
 
-/// Whether a format holds depth (with or without stencil).
+/// Whether a format has a depth component, with or without stencil.
 pub fn is_depth_format(format: vk::Format) -> bool {
     matches!(
         format,
@@ -87,7 +87,7 @@ pub fn is_depth_format(format: vk::Format) -> bool {
     )
 }
 
-/// Whether a format holds color that shaders read as floats: no whole numbers, no depth, no stencil.
+/// Whether a format has color that shaders read as floats: neither integers nor depth nor stencil.
 pub fn is_color_format(format: vk::Format) -> bool {
     use vk::Format as F;
     let whole = matches!(

@@ -1,21 +1,21 @@
-//! A plan as text: a table for people, Graphviz for pictures.
+//! A plan as text: a table to read, and a graph in Graphviz's language.
 
 use super::{Graph, Owner, Pass, Plan, Shape, Work};
 use std::fmt::Write as _;
 
-/// The steps of one kind, as a reader sees them: once.
+/// All steps of one kind of pass, as one line of a plan's table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Run<'a> {
-    /// The first of them.
+    /// The pass of the first step.
     pub pass: &'a Pass,
-    /// How many there are.
+    /// The number of steps.
     pub times: usize,
-    /// Barriers before all of them together.
+    /// The number of barriers before all of these steps.
     pub barriers: usize,
 }
 
 impl Plan {
-    /// What runs, a line for each kind of row, in the order of their first steps.
+    /// The kinds of pass that run, in the order of their first steps.
     pub fn runs(&self) -> Vec<Run<'_>> {
         let mut runs: Vec<Run> = Vec::new();
         let mut of_kind = vec![None; self.graph.kinds().len()];
@@ -31,7 +31,8 @@ impl Plan {
         runs
     }
 
-    /// One line a kind of row: what runs, how often and why, what does not and why not.
+    /// The plan as a table: a line for each kind of pass that runs, with how often and why, then one for each pass that
+    /// does not, with why not.
     pub fn table(&self) -> String {
         let mut text = String::new();
         let width = self.graph.kinds().map(|p| p.name.len()).max().unwrap_or(0);
@@ -54,7 +55,7 @@ impl Plan {
         text
     }
 
-    /// The rows that run, each kind once, and the resources between them, for `dot -Tsvg`.
+    /// The plan as a graph for `dot -Tsvg`: each kind of pass that runs, and the resources between them.
     pub fn graphviz(&self) -> String {
         let mut text =
             String::from("digraph plan {\n  rankdir=LR; node [fontname=\"sans-serif\"];\n");

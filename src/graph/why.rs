@@ -1,5 +1,5 @@
-//! Why a pass runs or does not: kept as words and numbers, and put together when somebody reads it, so that
-//! planning a frame makes no text.
+//! The reason why a pass runs or does not, kept as words and numbers. They become text when it is shown, so that planning
+//! a frame formats none.
 
 use std::fmt;
 
@@ -9,14 +9,14 @@ const PARTS: usize = 10;
 /// A piece of a sentence.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Part {
-    /// Nothing.
+    /// No text.
     #[default]
     Nothing,
-    /// Words, with the spaces around them.
+    /// Words, including the spaces around them.
     Words(&'static str),
-    /// A number of things.
+    /// A whole number.
     Count(u64),
-    /// A number with so many decimals.
+    /// A number, and how many decimals of it are shown.
     Decimal(f64, u8),
 }
 
@@ -38,7 +38,7 @@ impl From<u64> for Part {
     }
 }
 
-/// A reason, part of a sentence; its `Display` is the text.
+/// A reason, as part of a sentence; its `Display` writes the text.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Why {
     parts: [Part; PARTS],
@@ -46,7 +46,7 @@ pub struct Why {
 }
 
 impl Why {
-    /// What has been said so far, and a further part. A reason has ten at most; more are left out.
+    /// Appends a part. A reason has at most ten; further ones are left out.
     #[must_use]
     pub fn and(mut self, part: impl Into<Part>) -> Self {
         if let Some(place) = self.parts.get_mut(usize::from(self.len)) {
@@ -56,13 +56,13 @@ impl Why {
         self
     }
 
-    /// And a number with so many decimals.
+    /// Appends a number that is shown with `decimals` decimals.
     #[must_use]
     pub fn number(self, number: f64, decimals: u8) -> Self {
         self.and(Part::Decimal(number, decimals))
     }
 
-    /// And another reason.
+    /// Appends the parts of another reason.
     #[must_use]
     pub fn because(self, other: &Self) -> Self {
         other.parts[..usize::from(other.len)].iter().fold(self, |why, part| why.and(*part))

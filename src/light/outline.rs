@@ -16,18 +16,18 @@ use crate::Error;
 use glam::{DMat3, DVec2, DVec3};
 use std::ops::RangeInclusive;
 
-/// How many corners an outline may have: a technique may go round them at every pixel.
+/// The number of corners that an outline may have: a technique may visit them at every pixel.
 pub(crate) const CORNERS: RangeInclusive<usize> = 3..=16;
 
-/// How far from their common plane corners may be, relative to the light's size: what f32 corners are
-/// off by within a hundred times that size from the origin.
+/// The largest distance of corners from their common plane, relative to the light's size: the rounding of f32 corners
+/// within a hundred times that size from the origin.
 const MAX_WARP: f64 = 1e-5;
 
 /// Parts of an outline this near to each other, relative to its size, touch: thousands of times what
 /// rounding moves f64 corners by within a thousand sizes from the origin.
 const TOUCHING: f64 = 1e-9;
 
-/// How far outside of its rectangle a corner may lie, relative to the rectangle: what f32 makes of one.
+/// The largest distance of a corner outside its rectangle, relative to the rectangle: the rounding of f32 corners.
 const SLACK: f64 = 1e-6;
 
 /// Twice the area that an outline encloses, above 0 where it runs counter-clockwise.
@@ -51,7 +51,7 @@ fn bounds(corners: &[[f64; 2]]) -> [DVec2; 2] {
         .fold([DVec2::MAX, DVec2::MIN], |[low, high], p| [low.min(p), high.max(p)])
 }
 
-/// What is wrong with an outline in a light's space, in a sentence that goes on behind its name.
+/// Why an outline in a light's space is invalid, as the end of a sentence that names it; `None` for a valid one.
 pub(crate) fn problem(corners: &[[f64; 2]], half_extents: [f64; 2]) -> Option<String> {
     if let Some(problem) = wrong_shape(corners) {
         return Some(problem);
@@ -74,7 +74,7 @@ pub(crate) fn problem(corners: &[[f64; 2]], half_extents: [f64; 2]) -> Option<St
     None
 }
 
-/// What is wrong with the corners, whichever way they run and wherever they lie.
+/// Why corners make no outline, apart from their direction and their place; `None` where they make one.
 fn wrong_shape(corners: &[[f64; 2]]) -> Option<String> {
     if let Some(problem) = wrong_number(corners.len()) {
         return Some(problem);
@@ -192,7 +192,7 @@ struct Around {
 }
 
 impl Around {
-    /// With x along a direction of the plane.
+    /// The rectangle around the corners with its x axis along a direction of their plane.
     fn new(corners: &[DVec3], z: DVec3, x: DVec3) -> Self {
         let axes = DMat3::from_cols(x, z.cross(x), z);
         let mut around = Self { axes, area: 0.0 };

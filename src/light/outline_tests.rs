@@ -1,4 +1,4 @@
-//! Which outlines are lights, and which rectangle is around one.
+//! Outlines that are refused as lights, and the rectangles around others.
 
 // A test may panic: that is how it fails.
 #![allow(clippy::unwrap_used)]

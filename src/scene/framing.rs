@@ -6,15 +6,15 @@ use glam::{DMat3, DMat4, DVec3};
 /// The vertical field of view, about 40°: little distortion at the rim.
 const YFOV: f64 = 0.7;
 
-/// How far round from +Z towards +X, and how far up, the camera stands, in radians: from the front
-/// left it shows three sides of a thing, and its shadow lies open on the ground.
+/// The camera's direction, in radians from +Z towards +X, and upwards: from the front left it shows three sides of an
+/// object, and the object's shadow on the ground.
 const AZIMUTH: f64 = -0.6;
 const ELEVATION: f64 = 0.55;
 
 /// Empty space left at the rim of the image, as a fraction of it.
 const MARGIN: f64 = 0.05;
 
-/// How far the shadows are taken to reach beyond what casts them, in its largest extents.
+/// The assumed length of shadows beyond their occluders, in the occluders' largest extent.
 const SHADOW_REACH: f64 = 0.75;
 
 /// The near plane's distance over the distance to the nearest framed point: things in front of the
@@ -38,7 +38,7 @@ impl Camera {
         let axes = DMat3::from_cols(x, z.cross(x), z);
         let tan = DVec3::new((0.5 * YFOV).tan() * aspect, (0.5 * YFOV).tan(), 1.0) * (1.0 - MARGIN);
 
-        // Back away until the corner that asks for the greatest distance is inside the image.
+        // Back away until the corner that needs the greatest distance is inside the image.
         let target = focus.center();
         let corners = focus.corners().map(|c| axes.transpose() * (c - target));
         let distance = corners
@@ -53,8 +53,8 @@ impl Camera {
     }
 }
 
-/// What to look at: the occluders, down to the lowest ground and out to where shadows fall, but no
-/// further than the scene reaches.
+/// The box that the camera frames: the occluders, down to the lowest ground and out to where shadows fall, within the
+/// scene.
 fn focus(scene: &Scene) -> Bounds {
     let unit = Bounds { min: DVec3::splat(-0.5), max: DVec3::splat(0.5) };
     let whole = scene.bounds(|_| true).unwrap_or(unit);
@@ -107,7 +107,7 @@ mod tests {
         }
     }
 
-    /// What casts, its place on the ground, and no more ground than that.
+    /// The frame holds the occluder, its shadow's place on the ground, and no more ground than that.
     #[test]
     fn the_frame_is_what_casts_and_where_the_shadow_falls() {
         let mut scene = stage(square_light(1.0).unwrap());

@@ -19,7 +19,7 @@ use std::f64::consts::{PI, TAU};
 /// The ground's side, in metres: wide enough for the penumbra of a light of side 3.
 pub const GROUND_SIDE: f64 = 8.0;
 
-/// Where an object's centre is put.
+/// The place of an object's centre, metres.
 const OBJECT_CENTER: DVec3 = DVec3::new(0.0, 2.0, 0.0);
 
 /// The light's centre.
@@ -69,7 +69,7 @@ pub fn line_light(length: f64, turn: f64) -> Result<RectangleLight, Error> {
 /// [`Scene::with_outline`] of a scene under the light.
 ///
 /// # Errors
-/// As [`RectangleLight::around`].
+/// See [`RectangleLight::around`].
 pub fn polygon_light(corners: &[[f64; 2]]) -> Result<(RectangleLight, Vec<[f64; 2]>), Error> {
     let mut placed: Vec<DVec3> =
         corners.iter().map(|&[x, z]| LIGHT_CENTER + DVec3::new(x, 0.0, z)).collect();
@@ -212,8 +212,8 @@ pub fn normalized(object: &Scene, light: RectangleLight) -> Result<Scene, Error>
 }
 
 impl Scene {
-    /// The same scene with all that is an occluder only made something else: `Both` to let it
-    /// receive shadows too, its own included.
+    /// The scene with `role` for every instance whose role is `Occluder`: with `Both` they receive shadows too, their own
+    /// included.
     pub fn with_occluders_as(mut self, role: Role) -> Self {
         for instance in self.instances.iter_mut().filter(|i| i.role == Role::Occluder) {
             instance.role = role;
@@ -221,7 +221,7 @@ impl Scene {
         self
     }
 
-    /// The same scene with its first light cut to a polygon, as the field [`AreaLight::outline`](field@AreaLight::outline) has it.
+    /// The scene with its first light cut to a polygon, as the field [`AreaLight::outline`](field@AreaLight::outline) has it.
     pub fn with_outline(mut self, outline: Vec<[f64; 2]>) -> Self {
         if let Some(light) = self.lights.first_mut() {
             light.outline = outline;

@@ -96,7 +96,7 @@ pub struct AreaLight {
 }
 
 impl AreaLight {
-    /// The corners of its polygon, where it has one.
+    /// The corners of the light's polygon; `None` where the light is its whole rectangle.
     pub fn outline(&self) -> Option<&[[f64; 2]]> {
         (!self.outline.is_empty()).then_some(self.outline.as_slice())
     }
@@ -124,12 +124,12 @@ pub struct Camera {
     pub near: f64,
 }
 
-/// All that an image is made of.
+/// The meshes, lights and camera of an image.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
-    /// The triangles, each set once.
+    /// The meshes, each once however often it is placed.
     pub meshes: Vec<Mesh>,
-    /// Where they stand.
+    /// The placements of the meshes.
     pub instances: Vec<Instance>,
     /// The area lights, in the order of the file.
     pub lights: Vec<AreaLight>,
@@ -171,7 +171,7 @@ impl Bounds {
 }
 
 impl Scene {
-    /// How many triangles all instances draw together; `usize::MAX` where that cannot be said.
+    /// The number of triangles that all instances draw together; `usize::MAX` where it overflows.
     pub fn triangles(&self) -> usize {
         let of_each = self.instances.iter().map(|i| self.meshes[i.mesh].indices.len() / 3);
         of_each.fold(0, usize::saturating_add)
@@ -250,7 +250,7 @@ impl Scene {
     }
 }
 
-/// How many names a sentence lists before it says how many more there are.
+/// The number of names that a sentence lists before it counts the rest.
 const NAMES_LISTED: usize = 6;
 
 /// The first of some names, each once, and how many more there are.

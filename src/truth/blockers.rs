@@ -15,7 +15,7 @@ use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 /// The relative error of one rounding to f32.
 pub(super) const F32_ROUNDING: f64 = 1.0 / (1 << 24) as f64;
 
-/// How many roundings of the largest coordinate a receiver's position may be off by: a vertex
+/// The error of a receiver's position, in roundings of the largest coordinate: a vertex
 /// transform in f32 is three products and three sums, its interpolation over a triangle two more.
 const POSITION_ROUNDINGS: f64 = 8.0;
 
@@ -27,7 +27,7 @@ const OFFSET_PER_ERROR: f64 = 4.0;
 /// the slab test take three, for rays up to five times as long as the scene.
 pub(super) const PAD_ROUNDINGS: f64 = 16.0;
 
-/// Beyond this, in metres, the areas of the hierarchy's f32 boxes overflow.
+/// The largest coordinate, in metres, for which the areas of the hierarchy's f32 boxes do not overflow.
 const LARGEST_COORDINATE: f64 = 1e18;
 
 /// The blocking triangles of a scene, each in the form that its user wants.
@@ -99,7 +99,7 @@ impl<T> Blockers<T> {
         }
     }
 
-    /// How far a receiver is moved off its surface along its normal, in metres, where its position
+    /// The distance that a receiver is moved off its surface along its normal, in metres, where its position
     /// may be off by `position_error` beyond what f32 arithmetic on scene-sized coordinates
     /// explains; about 2 µm a metre of the scene's extent without.
     ///
@@ -112,11 +112,11 @@ impl<T> Blockers<T> {
     }
 }
 
-/// What of space lies inside each of a few planes.
+/// The region of space inside all of a few planes.
 pub(super) struct Region<const N: usize> {
-    /// Relative to the blockers' origin.
+    /// The common point of the planes, relative to the blockers' origin.
     pub(super) apex: DVec3,
-    /// Each with its normal inwards and its distance from the apex.
+    /// The planes, each as its inward normal and its distance from the apex.
     pub(super) planes: [(DVec3, f64); N],
 }
 

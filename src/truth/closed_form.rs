@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 
 /// The share of the light's area, 0..1, that `receiver` sees past one convex planar quad.
 ///
-/// As [`visible_fraction_of_polygon`].
+/// See [`visible_fraction_of_polygon`] for degenerate cases.
 pub fn visible_fraction_of_quad(light: &RectangleLight, quad: [DVec3; 4], receiver: DVec3) -> f64 {
     visible_fraction_of_polygon(light, &quad, receiver)
 }

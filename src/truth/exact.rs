@@ -42,10 +42,10 @@ use std::fmt;
 /// coordinates would overflow.
 pub(super) const FURTHEST: f64 = 1e100;
 
-/// The blocking triangles of a scene, ready to be asked about a light with an area.
+/// The blocking triangles of a scene, for exact visible fractions of a light with an area.
 ///
-/// A line ([`crate::RectangleLight::line`]) has none: it is refused with a sentence, and
-/// [`super::ExactLine`] is the one to ask.
+/// A line ([`crate::RectangleLight::line`]) has none and is refused: use
+/// [`super::ExactLine`].
 pub struct Exact {
     blockers: Blockers<[DVec3; 3]>,
     position_error: f64,
@@ -63,7 +63,7 @@ impl Exact {
 
     /// Says how far, in metres, the receivers may lie off their surfaces beyond what f32
     /// arithmetic on scene-sized coordinates explains; not negative, 0 by default. As
-    /// [`super::Sampling::with_position_error`], so that both ask from the same point.
+    /// [`super::Sampling::with_position_error`], so that both compute from the same point.
     ///
     /// # Errors
     /// [`Error::Setting`] for an error that is negative or not finite.
@@ -72,7 +72,7 @@ impl Exact {
         Ok(Self { position_error: metres, ..self })
     }
 
-    /// How far a receiver is moved off its surface along its normal, in metres: as
+    /// The distance that a receiver is moved off its surface along its normal, in metres: that of
     /// [`super::Tracer::offset`].
     pub fn offset(&self, light: &PolygonLight, position: DVec3) -> f64 {
         self.blockers.offset(light.frame().center, position, self.position_error)
@@ -111,10 +111,10 @@ impl Exact {
 
     /// The visible fraction from each receiver, on all cores, in the order they were given.
     ///
-    /// The same inputs give the same bits, whatever the number of cores.
+    /// Equal inputs give equal bits, whatever the number of cores.
     ///
     /// # Errors
-    /// As [`Self::visible_fraction`].
+    /// See [`Self::visible_fraction`].
     pub fn visible_fractions(
         &self,
         light: &PolygonLight,
@@ -141,7 +141,7 @@ impl Exact {
         self.of_point(light, from, offset, union)
     }
 
-    /// From a point relative to the blockers' origin. What lies within `panel` of the light's
+    /// The visible fraction from a point relative to the blockers' origin. What lies within `panel` of the light's
     /// plane, be it the point or a triangle, counts as in it.
     fn of_point(
         &self,

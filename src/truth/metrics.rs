@@ -1,4 +1,4 @@
-//! How far an image of visible fractions is from the truth.
+//! The errors of an image of visible fractions against the truth.
 
 use crate::Error;
 
@@ -9,8 +9,8 @@ use crate::Error;
 /// dilute its mean error.
 pub const FULL_TOLERANCE: f32 = 1e-3;
 
-/// How far the truth must be from what the image plainly says for a pixel to count as false umbra
-/// or false light.
+/// The least difference from the truth for which a pixel that is umbra or light in the image counts as false umbra or
+/// false light.
 ///
 /// Six times the standard error that one straight shadow edge can give a truth traced with 256 rays
 /// (0.0085, [`super::trace::Sampling`]; measured 0.007 in the penumbra of scanned models), so noise
@@ -24,7 +24,7 @@ pub const FALSE_MARGIN: f32 = 0.05;
 /// all others of an image would only flatter it. A mean over no pixels is 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ErrorSummary {
-    /// How many pixels are counted.
+    /// The number of counted pixels.
     pub pixels: usize,
     /// Mean |error| over the counted pixels: the metric of Atty 2006 section 5.2.1.
     pub mean_abs_error: f64,
@@ -37,9 +37,9 @@ pub struct ErrorSummary {
     pub worst: f64,
     /// Mean error over the counted pixels, signed: above 0 the image is too bright.
     pub bias: f64,
-    /// How many pixels the truth puts in the penumbra ([`FULL_TOLERANCE`] from both ends).
+    /// The number of pixels that the truth puts in the penumbra ([`FULL_TOLERANCE`] from both ends).
     pub penumbra_pixels: usize,
-    /// Mean |error| over those.
+    /// Mean |error| over the pixels in the penumbra.
     pub penumbra_mean: f64,
     /// The share of counted pixels that the image puts in the umbra while the truth is above
     /// [`FALSE_MARGIN`].
@@ -47,9 +47,9 @@ pub struct ErrorSummary {
     /// The share of counted pixels that the image puts in full light while the truth is below
     /// 1 − [`FALSE_MARGIN`]: leaks.
     pub false_light: f64,
-    /// How many pixels the truth puts in full light.
+    /// The number of pixels that the truth puts in full light.
     pub lit_pixels: usize,
-    /// Mean |error| over those, counted above or not: acne, and shadows cast where none belong.
+    /// Mean |error| over the pixels in full light, counted above or not: acne, and shadows cast where none belong.
     pub lit_error: f64,
 }
 

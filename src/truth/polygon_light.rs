@@ -5,7 +5,7 @@ use super::union::{LightOutline, to_grid};
 use crate::{Error, RectangleLight};
 use glam::{DVec2, DVec3};
 
-/// How far from their common plane the corners may be, relative to the light's size: f32 corners
+/// The largest distance of corners from their common plane, relative to the light's size: f32 corners
 /// are off by less within a hundred times the light's size from the origin.
 const MAX_WARP: f64 = 1e-5;
 

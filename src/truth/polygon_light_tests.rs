@@ -1,4 +1,4 @@
-//! Which outlines are lights.
+//! Outlines that are refused as lights, and others that are not.
 
 // A test may panic: that is how it fails.
 #![allow(clippy::unwrap_used)]

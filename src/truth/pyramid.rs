@@ -28,7 +28,7 @@ impl Frame {
         }
     }
 
-    /// The same frame for points that are given relative to `origin`.
+    /// The frame for points that are given relative to `origin`.
     pub(super) fn relative_to(&self, origin: DVec3) -> Self {
         Self { center: self.center - origin, ..*self }
     }
@@ -42,12 +42,12 @@ impl Frame {
     }
 }
 
-/// Where rays start.
+/// The point that rays start from.
 #[derive(Clone, Copy)]
 pub(super) struct Apex<'a> {
     frame: &'a Frame,
     point: DVec3,
-    /// In light space.
+    /// The point in light space.
     pub(super) local: DVec3,
 }
 
@@ -97,7 +97,7 @@ impl Ray {
     }
 }
 
-/// What of a convex polygon is inside the pyramid over the square −half..half and before the
+/// The part of a convex polygon inside the pyramid over the square −half..half and before the
 /// light's plane (Sutherland and Hodgman 1974, "Reentrant polygon clipping").
 ///
 /// An edge that two polygons share is cut at the same bits in both.

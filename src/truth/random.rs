@@ -15,7 +15,7 @@ impl Random {
         low + (high - low) * bits as f64 / (1_u64 << 53) as f64
     }
 
-    /// Each coordinate uniform in −size..size.
+    /// A random point with each coordinate uniform in −size..size.
     pub fn vector(&mut self, size: f64) -> DVec3 {
         DVec3::from_array([(); 3].map(|()| self.within(-size, size)))
     }

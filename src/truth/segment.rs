@@ -32,10 +32,10 @@ use crate::{Error, RectangleLight};
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// What is hidden of the light, in half-lengths from its centre.
+/// A hidden interval of the light, in half-lengths from its centre.
 type Interval = [f64; 2];
 
-/// The blocking triangles of a scene, ready to be asked about a line light.
+/// The blocking triangles of a scene, for exact visible fractions of a line light.
 pub struct ExactLine {
     blockers: Blockers<[DVec3; 3]>,
     position_error: f64,
@@ -61,7 +61,7 @@ impl ExactLine {
         Ok(Self { position_error: metres, ..self })
     }
 
-    /// How far a receiver is moved off its surface along its normal, in metres: as
+    /// The distance that a receiver is moved off its surface along its normal, in metres: that of
     /// [`super::Tracer::offset`].
     pub fn offset(&self, light: &RectangleLight, position: DVec3) -> f64 {
         self.blockers.offset(light.center(), position, self.position_error)
@@ -86,7 +86,7 @@ impl ExactLine {
     /// [`super::Exact::visible_from`].
     ///
     /// # Errors
-    /// As [`Self::visible_fraction`].
+    /// See [`Self::visible_fraction`].
     pub fn visible_from(&self, light: &RectangleLight, point: DVec3) -> Result<f64, Error> {
         let (frame, panel) = (self.frame(light)?, self.offset(light, point));
         self.of_point(&frame, point - self.blockers.origin, panel, &mut Vec::new())
@@ -94,10 +94,10 @@ impl ExactLine {
 
     /// The visible fraction from each receiver, on all cores, in the order they were given.
     ///
-    /// The same inputs give the same bits, whatever the number of cores.
+    /// Equal inputs give equal bits, whatever the number of cores.
     ///
     /// # Errors
-    /// As [`Self::visible_fraction`].
+    /// See [`Self::visible_fraction`].
     pub fn visible_fractions(
         &self,
         light: &RectangleLight,
@@ -134,7 +134,7 @@ impl ExactLine {
         self.of_point(frame, from, offset, hidden)
     }
 
-    /// From a point relative to the blockers' origin. What lies within `panel` of the light's plane, be
+    /// The visible fraction from a point relative to the blockers' origin. What lies within `panel` of the light's plane, be
     /// it the point or a triangle, counts as in it.
     fn of_point(
         &self,
@@ -169,7 +169,7 @@ impl ExactLine {
 struct Eye<'a> {
     frame: &'a Frame,
     point: DVec3,
-    /// In light space, x in half-lengths.
+    /// The point in light space, x in half-lengths.
     local: DVec3,
     /// Distance from the light's line.
     distance: f64,
@@ -233,7 +233,7 @@ impl Mark {
         Self { x: mix(a.x, b.x), w: mix(a.w, b.w), z: mix(a.z, b.z), side: mix(a.side, b.side) }
     }
 
-    /// Where the edge crosses the plane of receiver and light: at the same bits whichever triangle asks.
+    /// The point where an edge crosses the plane of receiver and light, equal to the bit for both of its triangles.
     fn crossing(a: &Self, b: &Self) -> Option<Self> {
         let cut = |a: &Self, b: &Self| Self::between(a, b, a.side / (a.side - b.side));
         if a.side > 0.0 && b.side < 0.0 {
@@ -246,8 +246,8 @@ impl Mark {
     }
 }
 
-/// What of a triangle is in the plane of receiver and light: none where it only touches with a corner, or
-/// lies in the plane.
+/// The part of a triangle in the plane of receiver and light; `None` where it touches the plane with a corner alone, or
+/// lies in it.
 fn section(corners: &[Mark; 3]) -> Option<[Mark; 2]> {
     let [a, b, c] = corners;
     let touching = corners.iter().filter(|corner| corner.side == 0.0).copied();
@@ -257,7 +257,7 @@ fn section(corners: &[Mark; 3]) -> Option<[Mark; 2]> {
     ends.next().is_none().then_some(pair)
 }
 
-/// What of a piece lies between receiver and light, and before the light's plane.
+/// The part of a piece that lies between receiver and light and before the light's plane.
 fn clip(piece: [Mark; 2]) -> Option<[Mark; 2]> {
     // The first two imply w ≥ 0: nothing behind the receiver is inside.
     let sides: [fn(&Mark) -> f64; 3] = [|m| m.w - m.x, |m| m.w + m.x, |m| m.z];

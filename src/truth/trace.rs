@@ -16,7 +16,7 @@ pub use sampling::Sampling;
 pub(super) use sampling::check_position_error;
 use sampling::{LightFrame, Stream};
 
-/// A point that is asked how much of the light it sees.
+/// A point whose visible fraction of the light is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Receiver {
     /// World space, metres.
@@ -45,15 +45,15 @@ pub struct Traced {
     pub visible: Vec<f32>,
     /// The standard error of one penumbra pixel: the root of the mean square of
     /// [`Estimate::half_difference`] over the receivers for which rays were both blocked and not.
-    /// 0 where there are none, NaN where it cannot be told ([`Sampling::one_grid`]).
+    /// 0 where there are none, NaN where it cannot be estimated ([`Sampling::one_grid`]).
     pub noise: f64,
-    /// How many receivers `noise` is taken over.
+    /// The number of receivers that `noise` is the mean over.
     pub penumbra: usize,
-    /// How many rays were asked for, over all receivers.
+    /// The number of rays of all receivers.
     pub rays: u64,
 }
 
-/// The blocking triangles of a scene, ready to be asked.
+/// The blocking triangles of a scene, for visible fractions by tracing rays.
 pub struct Tracer {
     blockers: Blockers<Triangle>,
 }
@@ -68,7 +68,7 @@ impl Tracer {
         Ok(Self { blockers: Blockers::new(scene, Triangle::new)? })
     }
 
-    /// How far a receiver is moved off its surface along its normal, in metres, before its rays
+    /// The distance that a receiver is moved off its surface along its normal, in metres, before its rays
     /// start; rays also end this far before the light's plane.
     ///
     /// It is derived: four times the sum of the error that f32 gives a position whose coordinates
@@ -131,7 +131,7 @@ impl Tracer {
 
     /// The visible fraction from each receiver, on all cores.
     ///
-    /// The same inputs give the same bits, whatever the number of cores.
+    /// Equal inputs give equal bits, whatever the number of cores.
     ///
     /// # Errors
     /// [`Error::Frame`] where a position or normal is not finite.
@@ -166,7 +166,7 @@ impl Tracer {
 
     /// Whether a triangle crosses the segment from `from` to `from + along`.
     ///
-    /// The triangle that blocked the receiver's last ray is asked first: any blocker will do, and
+    /// The triangle that blocked the receiver's last ray is tested first: any blocker will do, and
     /// neighbouring rays mostly share theirs.
     fn blocked(&self, from: DVec3, along: DVec3, last_hit: &mut Option<usize>) -> bool {
         let Blockers { triangles, tree: Some(tree), .. } = &self.blockers else { return false };

@@ -26,7 +26,7 @@ use i_overlay::vector::edge::{CLIP_LEFT, CLIP_RIGHT, SUBJ_LEFT, SUBJ_RIGHT};
 /// Units of the grid in half the light's width or height.
 const UNITS: f64 = (1_u64 << 60) as f64;
 
-/// How far from the centre coordinates may be: the 64-bit engine takes ±2⁶² units. Polygons are
+/// The largest distance of coordinates from the centre: the 64-bit engine takes ±2⁶² units. Polygons are
 /// clipped here rather than at the light's rim so that cutting edges of triangles that share them,
 /// which rounds, happens where it does not count.
 pub(super) const MARGIN: f64 = 2.0;

@@ -23,7 +23,7 @@ impl Gpu {
         let wanted = std::env::var("ANTUMBRA_DRIVER").unwrap_or_default().to_lowercase();
         let mut names = Vec::new();
         let mut best: Option<(u32, PhysicalDevice, u32)> = None;
-        // Listed here are those that offer Vulkan 1.3, which vk-graph asks for.
+        // Listed here are those that offer Vulkan 1.3, which vk-graph requires.
         for found in Instance::physical_devices(&instance)? {
             let name = found.properties_v1_0.device_name.clone();
             let both = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;

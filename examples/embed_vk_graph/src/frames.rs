@@ -12,7 +12,7 @@ use vk_graph::driver::image::Image;
 use vk_graph::driver::sync::AccessType;
 use vk_graph::pool::hash::HashPool;
 
-/// How many frames are recorded before the first of them must be done.
+/// The number of frames that are recorded before the device must have completed the first of them.
 pub const FRAMES_IN_FLIGHT: u32 = 2;
 
 /// The frames in flight: of each slot, the last frame's number and fence.
@@ -29,7 +29,7 @@ impl Frames {
         Self { slots: [const { None }; _], pool, queue_family: gpu.queue_family }
     }
 
-    /// Which of the frames in flight a frame is.
+    /// The slot of a frame: its index among the frames in flight.
     pub fn slot_of(number: u64) -> u32 {
         (number % u64::from(FRAMES_IN_FLIGHT)) as u32
     }

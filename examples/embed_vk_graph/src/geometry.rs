@@ -55,7 +55,7 @@ struct Uploaded {
 }
 
 impl Uploaded {
-    /// None for a mesh without triangles. (An engine would stage its geometry into device memory;
+    /// Uploads a mesh; `None` for one without triangles. (An engine would stage its geometry into device memory;
     /// the node does not mind either way.)
     fn new(gpu: &Gpu, mesh: &Mesh) -> Outcome<Option<Self>> {
         if mesh.indices.len() < 3 {

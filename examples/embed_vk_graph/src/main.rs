@@ -42,7 +42,7 @@ use targets::Targets;
 use vk_graph::Graph;
 use world::World;
 
-/// What goes wrong in an example is told and ends it.
+/// A result whose error, of any kind, is printed and ends the example.
 type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
 
 fn main() -> ExitCode {
@@ -156,7 +156,7 @@ fn run(options: &Options, world: &World) -> Outcome<()> {
     Ok(())
 }
 
-/// How many resizes come before a frame: they are spread over the run.
+/// The number of resizes that come before a frame: they are spread over the run.
 fn resizes_due(options: &Options, number: u64) -> u64 {
     let steps = (options.frames - 1).max(1);
     (options.resizes * number + steps / 2) / steps

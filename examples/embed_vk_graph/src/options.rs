@@ -37,7 +37,7 @@ pub struct Options {
     /// synchronization checks report as a hazard
     #[arg(long)]
     pub lie: bool,
-    /// What the assignments amount to.
+    /// The technique that the assignments describe.
     #[arg(skip)]
     pub settings: Technique,
 }
@@ -46,7 +46,7 @@ pub struct Options {
 pub fn parse() -> Result<Options, String> {
     let mut options = match Options::try_parse() {
         Ok(options) => options,
-        // Help was asked for.
+        // Help was requested.
         Err(e) if !e.use_stderr() => e.exit(),
         Err(e) => {
             // The first paragraph names the argument; usage and tips follow it.

@@ -60,7 +60,7 @@ impl Shadows {
         Ok(Self { node, allocator, retired: RetireQueue::default() })
     }
 
-    /// What the node will do in a frame.
+    /// Plans the node's work for a frame.
     pub fn plan(&self, shot: &Shot) -> Outcome<FramePlan> {
         let meshes: Vec<_> = shot.models.iter().map(mesh).collect();
         let frame = Frame {

@@ -1,13 +1,13 @@
-//! What every pass of a frame is given.
+//! The inputs that every pass of a frame gets.
 
 use crate::geometry::Model;
 use crate::targets::Targets;
 use antumbra::scene::AreaLight;
 use glam::DMat4;
 
-/// One frame: where from, in what light, of what, into which images.
+/// One frame: its camera, its light, its models and its images.
 pub struct Shot<'a> {
-    /// Which of the frames in flight it is.
+    /// Which of the frames in flight it is, counted from 0.
     pub slot: u32,
     /// World space to clip space.
     pub clip_from_world: DMat4,

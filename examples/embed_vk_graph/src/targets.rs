@@ -11,7 +11,7 @@ pub const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 pub const MASK: vk::Format = vk::Format::R8_UNORM;
 const NORMAL: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 const VISIBILITY: vk::Format = vk::Format::R32_SFLOAT;
-/// What every device can write from a compute shader.
+/// The picture's format, which every device can write from a compute shader.
 const PICTURE: vk::Format = vk::Format::R8G8B8A8_UNORM;
 
 /// The images. There is one set for all frames in flight: vk-graph remembers how the frame before

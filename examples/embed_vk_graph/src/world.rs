@@ -1,4 +1,4 @@
-//! What there is to see: a glTF scene, its first light and its camera.
+//! The world of the example: a glTF scene, its first light and its camera.
 
 use crate::Outcome;
 use antumbra::scene::{AreaLight, Camera, Scene, from_gltf};

@@ -38,7 +38,7 @@ impl Uniforms {
     }
 }
 
-/// The pipeline and what the shader is told.
+/// The pipeline and the shader's uniforms.
 pub struct ComposePass {
     pipeline: wgpu::ComputePipeline,
     uniforms: wgpu::Buffer,

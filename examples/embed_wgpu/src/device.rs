@@ -1,4 +1,4 @@
-//! The program's device, as wgpu gives it to anyone: no feature asked for, default limits.
+//! The program's device, as wgpu creates it without any feature and with default limits.
 
 use crate::Outcome;
 use crate::raw::{self, RawImage};
@@ -9,7 +9,7 @@ use std::task::{Context, Poll, Waker};
 use wgpu::util::{DeviceExt, TextureDataOrder};
 use wgpu::{Backends, DeviceType, SubmissionIndex, TextureFormat, TextureUsages};
 
-/// What the rest of the program calls wgpu with.
+/// The wgpu handles that the rest of the program uses.
 #[derive(Clone)]
 pub struct Gpu {
     pub device: wgpu::Device,
@@ -83,7 +83,7 @@ impl Gpu {
         Target::of(self, texture)
     }
 
-    /// The same, full of zeros that wgpu knows it has written.
+    /// A texture of zeros that wgpu knows it has written.
     ///
     /// wgpu clears a texture that was never written before a shader's first use of it. What others
     /// write behind its back does not count: it would clear the node's first result away.

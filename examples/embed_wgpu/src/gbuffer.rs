@@ -37,7 +37,7 @@ pub struct GBufferPass {
 }
 
 impl GBufferPass {
-    /// The pipeline, and room for what it is told of `objects` objects.
+    /// The pipeline, with uniforms for `objects` objects.
     pub fn new(gpu: &Gpu, objects: usize) -> Self {
         let device = &gpu.device;
         let uniforms = PerObject::new(gpu, objects);
@@ -80,7 +80,7 @@ impl GBufferPass {
     /// Images of a size, not yet drawn.
     pub fn images(&self, gpu: &Gpu, extent: [u32; 2]) -> Outcome<GBuffer> {
         use TextureUsages as Usage;
-        // Sampled is what the node asks of both images that it is lent.
+        // The node needs SAMPLED usage of both images that it is lent.
         let drawn = Usage::RENDER_ATTACHMENT | Usage::TEXTURE_BINDING;
         Ok(GBuffer {
             depth: gpu.target("gbuffer.depth", DEPTH, extent, drawn | Usage::COPY_SRC)?,

@@ -1,4 +1,4 @@
-//! The scene's triangles in vertex and index buffers, and what shaders are told of each object.
+//! The scene's triangles in vertex and index buffers, and the uniforms of each object.
 
 use crate::device::Gpu;
 use antumbra::Role;
@@ -22,7 +22,7 @@ pub const STRIDE: u32 = size_of::<Vertex>() as u32;
 const ATTRIBUTES: [wgpu::VertexAttribute; 2] =
     wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
 
-/// How pipelines read the first `attributes` of a vertex.
+/// The layout of the first `attributes` attributes of a vertex.
 pub fn vertex_layout(attributes: usize) -> wgpu::VertexBufferLayout<'static> {
     wgpu::VertexBufferLayout {
         array_stride: u64::from(STRIDE),
@@ -35,7 +35,7 @@ pub fn vertex_layout(attributes: usize) -> wgpu::VertexBufferLayout<'static> {
 pub struct Object {
     pub vertices: wgpu::Buffer,
     pub indices: wgpu::Buffer,
-    /// How many indices.
+    /// The number of indices.
     pub count: u32,
     /// Least and largest corner of the mesh.
     pub bounds: [[f32; 3]; 2],

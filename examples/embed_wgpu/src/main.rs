@@ -43,10 +43,10 @@ use std::time::Instant;
 use wgpu::{SubmissionIndex, TextureFormat, TextureUsages};
 use world::{View, World};
 
-/// How many frames are submitted before the first of them must be done.
+/// The number of frames that are submitted before the device must have completed the first of them.
 const FRAMES_IN_FLIGHT: usize = 2;
 
-/// What goes wrong in an example is told and ends it.
+/// A result whose error, of any kind, is printed and ends the example.
 type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
 
 /// Everything of the window's size, had there been a window.
@@ -68,17 +68,17 @@ impl Targets {
     }
 }
 
-/// What one frame shows.
+/// The inputs of one frame.
 struct Seen<'a> {
     world: &'a World,
     view: View,
     targets: &'a Targets,
-    /// Occluder maps of the program's own.
+    /// The program's own occluder maps.
     maps: Option<&'a LightView>,
     slot: usize,
 }
 
-/// What a resize replaced, and the last frame that may use it.
+/// The objects that a resize replaced, and the last frame that may use them.
 struct Replaced {
     last_frame: u64,
     /// wgpu would keep what its own commands use; of the node's it does not know.

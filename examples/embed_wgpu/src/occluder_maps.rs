@@ -9,13 +9,13 @@ use crate::world::{World, down_from_up};
 use glam::{DMat4, DVec2, DVec3, DVec4, Vec3Swizzles as _};
 use wgpu::{CompareFunction as Compare, Face, FrontFace, TextureUsages};
 
-/// What the light sees, and the matrix it was drawn with.
+/// The occluder maps from the light, and the matrix they were drawn with.
 pub struct LightView {
-    /// The nearest faces of what casts shadows; 1 where there are none.
+    /// The occluders' nearest faces; 1 where there are none.
     pub front: Target,
     /// The furthest back faces; 0 where there are none.
     pub back: Target,
-    /// As Vulkan counts: y down.
+    /// The matrix with Vulkan's y, which runs down.
     pub clip_from_world: DMat4,
 }
 
@@ -64,12 +64,12 @@ impl LightView {
 pub struct OccluderPass {
     uniforms: PerObject<[f32; 16]>,
     front: wgpu::RenderPipeline,
-    /// Where fronts are counter-clockwise, clockwise, and where every face is a back.
+    /// The pipelines for counter-clockwise front faces, for clockwise ones, and for double-sided meshes.
     backs: [wgpu::RenderPipeline; 3],
 }
 
 impl OccluderPass {
-    /// The pipelines, and room for what they are told of `objects` objects.
+    /// The pipelines, with uniforms for `objects` objects.
     pub fn new(gpu: &Gpu, objects: usize) -> Self {
         let uniforms = PerObject::new(gpu, objects);
         let shader = wgpu::include_wgsl!("shaders/occluders.wgsl");

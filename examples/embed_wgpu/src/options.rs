@@ -33,7 +33,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// How many resizes come before a frame: they are spread over the run, none before the first.
+    /// The number of resizes that come before a frame: they are spread over the run, none before the first.
     pub fn resizes_before(&self, frame: u64) -> u64 {
         self.resizes * frame / (self.frames - 1).max(1)
     }

@@ -5,7 +5,7 @@ use crate::device::{Gpu, Target};
 use exr::prelude::{Image as ExrImage, SpecificChannels, Vec2, WritableImage};
 use std::path::Path;
 
-/// What a texture of four bytes a texel held, on its way to the processor.
+/// A copy of a texture of four bytes a texel, on its way to the processor.
 pub struct Copied {
     buffer: wgpu::Buffer,
     extent: [u32; 2],

@@ -14,7 +14,7 @@ pub struct RawImage {
     pub image: vk::Image,
     pub view: vk::ImageView,
     pub format: vk::Format,
-    /// What it was created for, as far as shaders see it.
+    /// The usage that it was created with, as far as shaders see it.
     pub usage: vk::ImageUsageFlags,
 }
 

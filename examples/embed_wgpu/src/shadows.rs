@@ -58,7 +58,7 @@ impl Shadows {
         Ok(Self { node, allocator, gpu: gpu.clone() })
     }
 
-    /// What the node will do this frame, from what the program says of it.
+    /// Plans the node's work for this frame.
     pub fn plan(&self, seen: &Seen, meshes: &[MeshInstance]) -> Result<FramePlan, antumbra::Error> {
         let Targets { gbuffer, visibility, .. } = seen.targets;
         let depth = lend(&gbuffer.depth, DEPTH_SAMPLED);

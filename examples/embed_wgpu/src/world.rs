@@ -1,4 +1,4 @@
-//! What there is to see, from a glTF file, and the camera as a matrix.
+//! The world of the example, from a glTF file, and the camera as a matrix.
 
 use crate::Outcome;
 use antumbra::RectangleLight;
@@ -29,8 +29,8 @@ impl World {
         &self.light.light
     }
 
-    /// What the light emits, red, green and blue, so bright that white paper in the middle of what
-    /// casts shadows would be white in the picture.
+    /// The light's radiance in red, green and blue, chosen so that white paper in the middle of the occluders would be
+    /// white in the picture.
     pub fn radiance(&self) -> DVec3 {
         let light = self.rectangle();
         let middle = self.scene.bounds(|i| i.role.blocks()).map_or(DVec3::ZERO, |b| b.center());
@@ -63,8 +63,8 @@ pub struct View {
 }
 
 impl View {
-    /// Pixels and depth to the world, as Vulkan counts and so the node does: y runs down, and row 0
-    /// of the image lies at −1.
+    /// The matrix from pixels and depth to the world, with y as in Vulkan and so in the node: y runs down, and row 0 of the
+    /// image lies at −1.
     pub fn world_from_ndc(&self) -> DMat4 {
         (down_from_up() * self.clip_from_world).inverse()
     }

@@ -96,7 +96,7 @@ fn integer_size(component: u32) -> Option<usize> {
 
 /// Elements that replace others.
 struct Overlay<'a> {
-    /// Which, in rising order.
+    /// The indices of the replaced elements, in rising order.
     indices: Integers<'a>,
     values: Elements<'a>,
     count: usize,
@@ -225,7 +225,7 @@ fn overlay<'a>(
 pub(super) struct Vectors<'a>(View<'a>);
 
 impl<'a> Vectors<'a> {
-    /// Opens `accessors[index]`; `owner` says who asks, as in `the POSITION of mesh "bunny"`.
+    /// Opens `accessors[index]`; `owner` names the user in errors, as in `the POSITION of mesh "bunny"`.
     pub fn open(
         root: &Root,
         buffers: &'a Buffers<'_>,
@@ -261,7 +261,7 @@ impl<'a> Vectors<'a> {
 pub(super) struct Indices<'a>(View<'a>);
 
 impl<'a> Indices<'a> {
-    /// Opens `accessors[index]`; `owner` says who asks.
+    /// Opens `accessors[index]`; `owner` names the user in errors.
     pub fn open(
         root: &Root,
         buffers: &'a Buffers<'_>,

@@ -72,16 +72,16 @@ fn chunk(bytes: &[u8]) -> Result<Chunk<'_>, Problem> {
     Ok((*kind, chunk, after))
 }
 
-/// The file's buffers, each read when first asked for: what only an animation needs is not opened.
+/// The file's buffers, each read when it is first used: a buffer that only an animation needs is not opened.
 pub(super) struct Buffers<'a> {
     root: &'a Root,
     /// The .glb's binary chunk.
     chunk: Option<&'a [u8]>,
     folder: &'a Path,
     read: Vec<OnceCell<Rc<Vec<u8>>>>,
-    /// By where they really are: a file is read once, however many buffers name it, and in whatever way.
+    /// The files by their canonical path: a file is read once, however many buffers name it, and in whatever way.
     files: RefCell<BTreeMap<PathBuf, Rc<Vec<u8>>>>,
-    /// How much `files` hold together.
+    /// The bytes of all `files` together.
     total: Cell<u64>,
     /// The scene's own file, data URIs and all.
     own: usize,
@@ -94,12 +94,12 @@ impl<'a> Buffers<'a> {
         Self { root, chunk, folder, read, files: RefCell::default(), total: Cell::new(0), own }
     }
 
-    /// How many bytes were had so far: the file's own and those of files beside it.
+    /// The number of bytes in memory: the scene file's and those of the buffer files read so far.
     pub fn held(&self) -> u64 {
         (self.own as u64).saturating_add(self.total.get())
     }
 
-    /// The bytes of `bufferViews[index]`, and its stride; `owner` is who asks, for the sentence.
+    /// The bytes of `bufferViews[index]`, and its stride; `owner` names the user in errors.
     pub fn view(
         &self,
         index: usize,

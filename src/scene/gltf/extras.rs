@@ -1,4 +1,4 @@
-//! What nodes say in their extras: area lights and shadow roles.
+//! Area lights and shadow roles, read from the extras of nodes.
 //!
 //! glTF 2.0 has no area light; extras are what Blender writes a node's custom properties to.
 
@@ -91,7 +91,7 @@ fn line(center: DVec3, half: DVec3, world: &DMat4) -> Result<RectangleLight, Err
     RectangleLight::line(center, half, emission(world))
 }
 
-/// Where a light that lies in the node's X and Y shines.
+/// The direction in which a light in the node's XY plane shines.
 fn emission(world: &DMat4) -> DVec3 {
     let [x, y, z] = [world.x_axis, world.y_axis, world.z_axis].map(|axis| axis.truncate());
     // Flattened along its own normal it is the same light.
@@ -129,7 +129,7 @@ fn polygon(extras: &Value, world: &DMat4) -> Result<(RectangleLight, Vec<[f64; 2
     Ok(found)
 }
 
-/// In the node's space; how many there must be, the light itself says.
+/// The corners in the node's space; the light checks their number.
 fn corners(extras: &Value) -> Result<Vec<[f64; 2]>, Problem> {
     let value = extras.get("corners").ok_or(
         "its area_light has no corners; give it 3 to 16 in metres, as in \"corners\": [[0, 0], [1, 0], [0, 1]]",

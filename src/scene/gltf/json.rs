@@ -9,7 +9,7 @@ use serde::Deserialize;
 use serde_json::Value;
 use std::cell::Cell;
 
-/// What decides whether the rest can be read: another version's members have other types.
+/// The members that decide whether the rest can be read: members of another version have other types.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 struct Head {
@@ -175,8 +175,7 @@ pub(super) struct Buffer {
     pub byte_length: u64,
 }
 
-/// How the extensions begin that a file may require because they change neither triangles nor
-/// transforms.
+/// The first letters of the extensions that a file may require because they change neither triangles nor transforms.
 const HARMLESS: [&str; 5] =
     ["KHR_lights_punctual", "KHR_materials_", "KHR_technique", "KHR_texture_", "EXT_texture_"];
 
@@ -206,10 +205,10 @@ fn from_json<'a, T: Deserialize<'a>>(text: &'a [u8]) -> Result<T, Problem> {
     })
 }
 
-/// How many characters a sentence shows of the beginning and of the end of what the JSON parser says.
+/// The numbers of characters that a sentence shows of the beginning and of the end of a JSON parser's error.
 const SHOWN: [usize; 2] = [100, 60];
 
-/// What the parser says, without the middle of a string that it quotes whole; where it stands is at the end.
+/// The parser's error without the middle of a long string that it quotes; the position in the file is at its end.
 fn shortened(message: &str) -> String {
     let length = message.chars().count();
     let [first, last] = SHOWN;

@@ -24,10 +24,10 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::Path;
 
-/// What is wrong with a file: one sentence, to which the file's name is put before.
+/// A problem with a file, as a sentence that is shown after the file's name.
 type Problem = String;
 
-/// How far from the origin things may lie, in metres. Beyond it f64 itself gets coarser than a
+/// The largest distance of things from the origin, in metres. Beyond it f64 itself gets coarser than a
 /// shadow's edge, and squares leave f32's range.
 const MAX_COORDINATE: f64 = 1e9;
 
@@ -59,7 +59,7 @@ const MAX_COORDINATE: f64 = 1e9;
 /// its buffers, and 1 MiB; time grows with them and no faster; the stack is of no account, 128 KiB will
 /// do. So that this holds, all meshes together have no more triangles than there are bytes, of which real
 /// ones take twenty. What instances draw together is a product, which nothing bounds: [`Scene::triangles`]
-/// tells it before anything is drawn.
+/// counts it before anything is drawn.
 ///
 /// # Errors
 /// [`Error::File`] for a file that cannot be read, is not glTF 2.0, requires an extension that is not
@@ -71,12 +71,11 @@ pub fn from_gltf(path: &Path) -> Result<Scene, Error> {
     from_gltf_bytes(&bytes, path)
 }
 
-/// As [`from_gltf`], of a file that is in the memory already, out of an archive perhaps. `path` is what
-/// sentences call it, and its folder where buffers of their own files are looked for; nothing has to be
-/// there.
+/// Reads a glTF file that is in memory already, perhaps from an archive; see [`from_gltf`]. Errors name it by `path`, in whose
+/// folder buffer files are looked for; no file has to exist at `path`.
 ///
 /// # Errors
-/// As [`from_gltf`].
+/// See [`from_gltf`].
 pub fn from_gltf_bytes(bytes: &[u8], path: &Path) -> Result<Scene, Error> {
     let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
     parse(bytes, folder).map_err(|problem| about(path, problem))
@@ -144,11 +143,11 @@ fn parse(bytes: &[u8], folder: &Path) -> Result<Scene, Problem> {
 struct Meshes<'a> {
     root: &'a json::Root,
     reader: triangles::Reader<'a>,
-    /// What will be the scene's.
+    /// The meshes of the scene.
     read: Vec<Mesh>,
-    /// The box around each of those, in mesh space.
+    /// The box around each of the scene's meshes, in mesh space.
     boxes: Vec<Bounds>,
-    /// Where the triangles of each of the file's are among them.
+    /// For each mesh of the file, the range of the scene's meshes that hold its triangles.
     of_index: Vec<Option<Range<usize>>>,
     of_shape: BTreeMap<triangles::Shape, Range<usize>>,
 }
@@ -165,7 +164,8 @@ impl<'a> Meshes<'a> {
         }
     }
 
-    /// Where the triangles of `meshes[index]` are; `owner` is the node that places it, for the sentence.
+    /// The range of the scene's meshes that hold the triangles of `meshes[index]`; `owner` is the node that places it, which
+    /// errors name.
     fn find(
         &mut self,
         index: usize,

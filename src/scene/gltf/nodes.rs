@@ -11,11 +11,11 @@ use std::f64::consts::PI;
 pub(super) struct Placed {
     /// Index into the file's nodes.
     pub node: usize,
-    /// Its space to the world's, finite.
+    /// The finite transform from the node's space to the world.
     pub world: DMat4,
 }
 
-/// How far a matrix's last row may be from 0, 0, 0, 1: it is written as f32 and means exactly that.
+/// The largest difference of a matrix's last row from 0, 0, 0, 1, for files that write it as f32.
 const AFFINE: f64 = 1e-5;
 
 /// The node's name, or `node N`.

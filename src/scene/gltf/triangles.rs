@@ -15,7 +15,7 @@ const MAX_TRIANGLES: usize = 1 << 25;
 /// The normal of a triangle without area, which no pixel shows.
 const ANY_NORMAL: DVec3 = DVec3::Y;
 
-/// How a primitive's corners make triangles.
+/// The topology that makes triangles of a primitive's corners.
 #[derive(Clone, Copy, PartialEq)]
 enum Topology {
     List,
@@ -24,7 +24,7 @@ enum Topology {
 }
 
 impl Topology {
-    /// How many triangles `corners` make.
+    /// The number of triangles that `corners` corners make.
     fn triangles(self, corners: usize) -> Result<usize, Problem> {
         match self {
             Self::List if !corners.is_multiple_of(3) => {
@@ -48,7 +48,7 @@ impl Topology {
     }
 }
 
-/// What of a mesh its triangles depend on: meshes that differ in names and colors alone are one.
+/// The members of a mesh that its triangles depend on: meshes that differ in names and colors alone have one shape.
 pub(super) type Shape = Vec<PrimitiveShape>;
 
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -85,7 +85,7 @@ impl<'a> Reader<'a> {
         Self { root, buffers, limit: triangles, made: 0, placed: Placed::default() }
     }
 
-    /// What `meshes[index]` looks like, whatever it is called.
+    /// The shape of `meshes[index]`, which does not depend on its name.
     pub fn shape(&self, index: usize) -> Result<Shape, Problem> {
         let mesh = at(&self.root.meshes, index, "meshes", || "a node".into())?;
         let shape = |(i, primitive): (usize, &json::Primitive)| {
@@ -224,12 +224,11 @@ impl fmt::Display for Label<'_> {
     }
 }
 
-/// Where the vertices of a primitive went in its mesh. One table for all primitives that is never
-/// cleared, so that a primitive takes as long as it has corners, however many vertices it shares with
-/// others.
+/// The places of a primitive's vertices in its mesh. One table serves all primitives and is never cleared, so that a
+/// primitive's time depends on its corners alone, however many vertices it shares with others.
 struct Placed {
     /// The number of a vertex that was placed, or 0. Numbers rise from primitive to primitive, so that
-    /// those of earlier ones are told by being too low.
+    /// those of earlier ones are too low to be mistaken for the present one's.
     numbers: Vec<u32>,
     next: u32,
 }
@@ -252,8 +251,8 @@ struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// How many vertices its triangles may share. Flat normals differ from triangle to triangle, so
-    /// that nothing is shared then.
+    /// The number of vertices that the primitive's triangles may share; 0 with flat normals, which differ from triangle to
+    /// triangle.
     fn shared(&self) -> usize {
         if self.normals.is_some() { self.positions.len() } else { 0 }
     }
@@ -296,7 +295,7 @@ impl Source<'_> {
         Ok(())
     }
 
-    /// Which vertex a corner is, and where.
+    /// The index and the position of a corner's vertex.
     fn vertex(&self, corner: usize) -> Result<(u32, [f32; 3]), Problem> {
         let vertex = match &self.indices {
             Some(indices) => indices.get(corner),

@@ -14,7 +14,7 @@ use glam::DMat4;
 pub(in crate::truth) mod bunny;
 mod laws;
 
-/// What the truth promises where distances are of one order (the module's derivation gives a
+/// The error bound of the truth where distances are of one order (the module's derivation gives a
 /// hundredth of it).
 const PROMISED: f64 = 1e-9;
 
@@ -48,7 +48,7 @@ fn ceiling() -> RectangleLight {
     RectangleLight::new(up, DVec3::X / 2.0, DVec3::NEG_Z / 2.0).unwrap()
 }
 
-/// Over the whole of x and z in −half..half.
+/// A card over x and z in −half..half.
 fn card(half: f64, y: f64) -> [[DVec3; 3]; 2] {
     halves(
         [[-1.0, -1.0], [-1.0, 1.0], [1.0, 1.0], [1.0, -1.0]]

@@ -13,15 +13,15 @@ use crate::truth::{Exact, PolygonLight};
 mod bunny;
 mod laws;
 
-/// What the truth promises where distances are of one order and no edge lies in the receiver's plane.
+/// The error bound of the truth where distances are of one order and no edge lies in the receiver's plane.
 const PROMISED: f64 = 1e-9;
 
-/// Over x in −1..1 at y = 2, shining down.
+/// A line light over x in −1..1 at y = 2, shining down.
 fn tube() -> RectangleLight {
     RectangleLight::line(DVec3::Y * 2.0, DVec3::X, DVec3::NEG_Y).unwrap()
 }
 
-/// Over these x and |z| ≤ `half`.
+/// A card over x in `from..to` and |z| ≤ `half`.
 fn card([from, to]: [f64; 2], y: f64, half: f64) -> [[DVec3; 3]; 2] {
     halves([[from, -half], [from, half], [to, half], [to, -half]].map(|[x, z]| DVec3::new(x, y, z)))
 }
@@ -35,7 +35,7 @@ fn assert_near(value: f64, expected: f64, tolerance: f64) {
     assert!((value - expected).abs() <= tolerance, "{value} is not {expected}");
 }
 
-/// Of random triangles before a random line, seen from a random point: loose ones of many sizes, some of
+/// Random triangles before a random line, seen from a random point: loose ones of many sizes, some of
 /// which reach through the light's plane, some behind the receiver.
 struct Case {
     light: RectangleLight,

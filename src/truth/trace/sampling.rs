@@ -1,4 +1,4 @@
-//! Which points on the light the rays go to.
+//! The points on the light that rays are traced to.
 
 use crate::{Error, RectangleLight};
 use glam::DVec3;
@@ -6,10 +6,10 @@ use glam::DVec3;
 /// The most rays a receiver may ask for.
 const MAX_RAYS: u32 = 1 << 20;
 
-/// How many rays a receiver sends, and with which random numbers.
+/// The number of rays for each receiver, and their random numbers.
 ///
 /// The light is cut into n×n equal strata with one uniformly random point in each (jittered
-/// sampling, Cook 1986), twice over with independent numbers: the two grids' difference tells the
+/// sampling, Cook 1986), twice over with independent numbers: the two grids' difference estimates the
 /// noise without bias, which one grid cannot. Only strata that a shadow's edge crosses have any
 /// noise, each at most ¼ in variance, and there are of the order n of them: n for one straight
 /// edge along the strata, at most 4n for any convex outline. So the standard error is at most
@@ -24,7 +24,7 @@ pub struct Sampling {
 }
 
 impl Sampling {
-    /// At least `rays` rays a receiver, 2..=2²⁰: two grids of the fewest strata that reach it.
+    /// Sampling with at least `rays` rays for each receiver, 2..=2²⁰: two grids of the fewest strata that reach it.
     /// 256 gives 288 (two of 12×12), 512 gives 512 (two of 16×16). The same seed gives the same
     /// bits.
     ///
@@ -42,8 +42,8 @@ impl Sampling {
         Ok(Self { side, grids: 2, seed, position_error: 0.0 })
     }
 
-    /// One grid of `side` × `side` strata a receiver, 1..=1024: 1, 4, 16, 64 rays are what a renderer
-    /// would send. Its noise cannot be told ([`super::Estimate::half_difference`] is NaN).
+    /// Sampling with one grid of `side` × `side` strata for each receiver, 1..=1024: 1, 4, 16, 64 rays are what a renderer
+    /// would send. Its noise cannot be estimated ([`super::Estimate::half_difference`] is NaN).
     ///
     /// # Errors
     /// [`Error::Setting`] for a side outside the range.
@@ -107,7 +107,7 @@ pub(in crate::truth) fn check_position_error(metres: f64) -> Result<(), Error> {
 /// The light relative to an origin: f64 dot products, no matrix that holds a far translation.
 pub(super) struct LightFrame {
     corner: DVec3,
-    /// From corner to corner.
+    /// The sides, as vectors from corner to corner.
     sides: [DVec3; 2],
     emission: DVec3,
 }

@@ -59,7 +59,7 @@ fn on_floor(x: f64, z: f64) -> Receiver {
 /// A random light, a random parallelogram before it, and receivers in its shadow.
 struct Case {
     light: RectangleLight,
-    /// As f32 mesh coordinates hold it, so that both methods are asked about the same quad.
+    /// The quad as f32 mesh coordinates hold it, so that both methods compute with the same one.
     quad: [DVec3; 4],
     receivers: Vec<Receiver>,
 }

@@ -1,4 +1,4 @@
-//! What the loader must read.
+//! Features that the loader must read.
 
 use super::*;
 use crate::scene::Role;

@@ -174,7 +174,7 @@ impl Drop for Folder {
     }
 }
 
-/// Half of f32's last place, about 1: what is asked of transforms that a file wrote in f32.
+/// Half of f32's last place at about 1: the precision required of transforms that a file wrote in f32.
 fn close(a: DMat4, b: DMat4) -> bool {
     a.abs_diff_eq(b, 1e-7)
 }

@@ -1,4 +1,4 @@
-//! What the loader must refuse, and the sentence it gives.
+//! Files that the loader must refuse, each with its sentence.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! What a file cannot make the loader do: read more, make more or say more than it is long.
+//! The loader reads, makes and says no more than a file's length allows.
 //! tests/untrusted measures what that takes of the memory.
 
 use super::super::buffers::Buffers;

@@ -5,10 +5,10 @@ use crate::scene::from_gltf;
 use crate::truth::{Sampling, Traced, Tracer};
 use std::path::Path;
 
-/// How many receivers, half of them on the ground.
+/// The number of receivers, half of them on the ground.
 const POINTS: usize = 1000;
 
-/// How many times each is traced.
+/// The number of times that each receiver is traced.
 const SEEDS: u64 = 4;
 
 pub(in crate::truth) struct Bunny {
@@ -45,7 +45,7 @@ impl Bunny {
         exact.visible_fractions(&PolygonLight::from(light), &self.receivers).unwrap()
     }
 
-    /// The same receivers with independent random numbers, a few times.
+    /// The fractions of the receivers, traced a few times with independent random numbers.
     pub(in crate::truth) fn traced(&self, rays: u32) -> Vec<Traced> {
         let tracer = Tracer::new(&self.scene).unwrap();
         let sampling = |seed| Sampling::new(rays, seed).unwrap();
@@ -78,7 +78,7 @@ impl Surface {
         (b - a).cross(c - a)
     }
 
-    /// Each triangle as likely as its area, by refusal.
+    /// A receiver on a random triangle, each as likely as its area, by rejection.
     fn random_receiver(&mut self, random: &mut Random) -> Receiver {
         loop {
             let i = random.within(0.0, self.triangles.len() as f64) as usize;
@@ -98,7 +98,7 @@ pub(in crate::truth) struct Deviation {
     pub(in crate::truth) worst: f64,
     pub(in crate::truth) rms: f64,
     pub(in crate::truth) mean: f64,
-    /// How many receivers these are over: those in the penumbra by exact.
+    /// The number of receivers in the exact penumbra, which the figures are over.
     pub(in crate::truth) penumbra: usize,
 }
 

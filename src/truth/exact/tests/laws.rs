@@ -1,4 +1,4 @@
-//! What visibility is, whatever the scene.
+//! Laws of visibility that hold in every scene.
 
 use super::*;
 
@@ -183,7 +183,7 @@ fn the_same_inputs_give_the_same_bits_on_any_number_of_threads() {
     };
     let one = on(1);
     assert_eq!(one, on(3));
-    // Whatever was asked before.
+    // Earlier calls change nothing.
     let alone = exact.visible_fraction(&light, &receivers[7]).unwrap();
     assert_eq!(alone, one[7]);
     assert!(one.iter().any(|&v| v > 0.0 && v < 1.0));

@@ -1,4 +1,4 @@
-//! What visibility is, whatever the scene.
+//! Laws of visibility that hold in every scene.
 
 use super::*;
 
