@@ -10,4 +10,5 @@ mod house;
 mod naga_translation;
 mod one_build;
 mod programs;
+mod surface;
 mod untrusted;
