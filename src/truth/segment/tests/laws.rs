@@ -1,4 +1,4 @@
-//! What visibility is, whatever the scene; with many random scenes in `tests/line_truth.rs`.
+//! What visibility is, whatever the scene; with many random scenes in `tests/laws/line_truth.rs`.
 
 use super::*;
 use crate::scene::Scene;
