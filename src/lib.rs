@@ -16,34 +16,35 @@
 //!    ├─ linear_light              maps from points of a line; skins between them say what penumbrae see
 //!    └─ many_lights               a map for each of many points of the light; the mean of all
 //!         │
-//!         ▼   one of them, chosen by settings or by auto
+//!         ▼   one of them, chosen by the description or by auto
 //!  visibility            the visible fraction at each pixel
 //!    │
 //!    ▼
 //!  the host: visibility × unshadowed irradiance
 //! ```
-//! Each technique is a folder of [`techniques`]; what they share is in [`stages`].
+//! Each technique is a folder of [`techniques`]; what they share is in [`stages`]. A [`Technique`] is one of them with its
+//! settings, and reads from text: `"pcss taps=32".parse()`.
 //!
-//! Values go down and never back up. Each of these modules declares its passes as data in a [`graph`];
-//! [`ShadowNode::plan`] keeps the passes that the frame in front of it needs and derives their barriers;
-//! [`ShadowNode::record`] turns the plan into commands.
+//! Data flows down the picture and never back up. Each of these modules declares its passes as data in a [`graph`];
+//! [`ShadowNode::plan`] keeps the passes that a frame needs and derives their barriers; [`ShadowNode::record`] turns the
+//! plan into commands.
 //!
 //! ```no_run
 //! # use antumbra::{Allocator, Description, Error, Frame, Host, Requirements, ShadowNode};
 //! # fn host_frame(
 //! #     host: Host, memory: &mut dyn Allocator, cmd: ash::vk::CommandBuffer, frame: &Frame,
 //! # ) -> Result<(), Error> {
-//! // Once: lend a device (Host::borrow), ask whether it will do, make the node.
+//! // Once: lend a device (Host::borrow), check that it has what the node needs, make the node.
 //! Requirements::of(&host).met()?;
 //! let mut node = ShadowNode::new(host.clone(), memory, Description::new([1920, 1080]))?;
 //!
-//! // Each frame: say what is where, plan, record between the G-buffer and the shading.
+//! // Each frame: describe it (Frame::new), plan, record between the G-buffer and the shading.
 //! let plan = node.plan(frame)?;
 //! println!("{}", plan.explain()); // what runs, what does not, and why
 //! node.record(cmd, &plan)?;
-//! let result = node.visibility(); // sample this where you shade
+//! let result = node.visibility(); // sample this where you shade; None where you lend the image
 //!
-//! // Another size. What it replaced lives until the frames recorded before are done.
+//! // Another size. Keep the replaced objects until the device has completed the frames recorded before.
 //! let retired = node.resize(memory, [1280, 720])?;
 //! retired.destroy(memory);
 //!
@@ -52,15 +53,15 @@
 //! # Ok(())
 //! # }
 //! ```
-//! `examples/embed`, `examples/embed_vk_graph` and `examples/embed_wgpu` are this in whole engines.
+//! `examples/embed`, `examples/embed_vk_graph` and `examples/embed_wgpu` do this in whole engines.
 //!
 //! | to … | read |
 //! |---|---|
 //! | host the node | [`embedding`], then [`node`], [`frame`], [`gpu::Host`], [`gpu::Allocator`], [`light`] |
-//! | choose a technique and its settings | [`Technique`] |
+//! | choose a technique and its settings | [`Technique`], [`Description`], [`Omit`] |
 //! | ask for an error or a time instead | [`auto`], [`effects`] |
 //! | follow a technique | its module: the idea, the paper's sections, where it departs, its limits |
-//! | see what a frame does | [`graph`], [`graph::Plan::table`], [`graph::Plan::graphviz`] |
+//! | see what a frame does | [`FramePlan::explain`], [`FramePlan::doubts`], [`graph::Plan::table`], [`graph::Plan::graphviz`] |
 //! | load or make scenes | [`scene`] |
 //! | measure error | `truth` (feature `truth`) |
 

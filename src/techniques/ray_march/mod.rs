@@ -54,7 +54,7 @@
 //! renderer, which traces rays for every fragment as it is drawn: `antumbra_harness::Forward` calls the same functions
 //! from a fragment shader. A cube takes about as long that way, a scan of 48 thousand triangles 1.6 to 3 times as long
 //! (800×600 pixels, 4 and 9 rays, no filter, lavapipe). A fragment has its exact plane, though, which depths do not
-//! give for facets as small as pixels: 1.3 instead of 2.0 % mean error on the bunny (tests/forward.rs).
+//! give for facets as small as pixels: 1.3 instead of 2.0 % mean error on the bunny (tests/techniques/forward.rs).
 //!
 //! **Limits.** Three pieces of matter over one texel lose the middle one, unless they overlap. Meshes are
 //! expected closed or thin: an open sheet above a solid counts as solid down to the solid's back.

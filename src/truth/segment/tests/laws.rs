@@ -1,4 +1,4 @@
-//! Laws of visibility that hold in every scene; for many random scenes in `tests/line_truth.rs`.
+//! What visibility is, whatever the scene; with many random scenes in `tests/laws/line_truth.rs`.
 
 use super::*;
 use crate::scene::Scene;
@@ -124,7 +124,7 @@ fn the_same_inputs_give_the_same_bits_on_any_number_of_threads() {
     };
     let one = on(1);
     assert_eq!(one, on(3));
-    // Earlier calls change nothing.
+    // Whatever was asked before.
     assert_eq!(exact.visible_fraction(&light, &receivers[7]).unwrap(), one[7]);
     assert!(one.iter().any(|&v| v > 0.0 && v < 1.0));
 }
