@@ -55,17 +55,12 @@ impl Shadows {
         let meshes = seen.models.iter().zip(0..).map(|(model, n)| mesh(model, n, seen.seconds));
         let meshes: Vec<_> = meshes.collect();
         let depth = lend(&seen.gbuffer.depth, DEPTH_DRAWN);
+        let slot = Slot(seen.slot as u32);
         self.node.plan(&Frame {
             mask: Some(lend(&seen.gbuffer.mask, COLOR_DRAWN)),
             visibility: Visibility::Own { before: COMPOSE_READS, after: COMPOSE_READS },
             border_barriers: self.border_barriers,
-            ..Frame::new(
-                Slot(seen.slot as u32),
-                *seen.light,
-                seen.clip_from_world.inverse(),
-                &meshes,
-                depth,
-            )
+            ..Frame::new(slot, *seen.light, seen.clip_from_world.inverse(), &meshes, depth)
         })
     }
 

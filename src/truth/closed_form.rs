@@ -58,7 +58,3 @@ fn area(polygon: &[DVec2]) -> f64 {
         polygon.windows(2).map(|edge| (edge[0] - first).perp_dot(edge[1] - first)).sum();
     (twice / 2.0).abs()
 }
-
-#[cfg(test)]
-#[path = "closed_form_tests.rs"]
-mod tests;

@@ -210,4 +210,4 @@ fn pyramid(frame: &Frame, apex: &Apex, point: DVec3) -> Region<6> {
 }
 
 #[cfg(test)]
-pub(super) mod tests;
+mod tests;

@@ -166,7 +166,3 @@ impl Mean {
         self.sum / self.count.max(1) as f64
     }
 }
-
-#[cfg(test)]
-#[path = "metrics_tests.rs"]
-mod tests;

@@ -1,6 +1,7 @@
 //! Random test inputs: a generator of their own, so that no test shares numbers with the tracer.
 
-use glam::DVec3;
+use crate::scene::{Mesh, Role, Scene};
+use glam::{DMat4, DVec3};
 
 /// Marsaglia's xorshift64* (2003), from a fixed seed.
 pub struct Random(pub u64);
@@ -27,4 +28,17 @@ impl Random {
         let x = x.reject_from(z).normalize_or(z.any_orthonormal_vector());
         [x, z.cross(x), z]
     }
+}
+
+/// 400 triangles within two metres of the origin, small and large ones in turn, as a scene of meshes that block light.
+pub fn scattered(random: &mut Random) -> Scene {
+    let mut scene = Scene::default();
+    for i in 0..400 {
+        let at = random.vector(1.0);
+        let size = [0.02, 0.3][i % 2];
+        let corners = [(); 3].map(|()| random.vector(size).as_vec3().to_array());
+        let mesh = Mesh { positions: corners.into(), indices: vec![0, 1, 2], ..Mesh::default() };
+        scene.add(&format!("triangle {i}"), mesh, DMat4::from_translation(at), Role::Both);
+    }
+    scene
 }

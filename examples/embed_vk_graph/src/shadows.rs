@@ -11,9 +11,7 @@ use crate::frames::FRAMES_IN_FLIGHT;
 use crate::geometry::{Model, STRIDE};
 use crate::shot::Shot;
 use crate::targets::{DEPTH, MASK};
-use antumbra::{
-    BorderBarriers, Description, Error, Frame, FramePlan, Geometry, Host, HostImage, Slot,
-};
+use antumbra::{BorderBarriers, Description, Error, Frame, FramePlan, Geometry, Host, HostImage};
 use antumbra::{MeshBuffers, MeshInstance, RetireQueue, Scope, ShadowNode, Technique, Visibility};
 use gpu_allocator::vulkan::Allocator;
 use std::sync::{Arc, mpsc};
@@ -63,17 +61,12 @@ impl Shadows {
     /// Plans the node's work for a frame.
     pub fn plan(&self, shot: &Shot) -> Outcome<FramePlan> {
         let meshes: Vec<_> = shot.models.iter().map(mesh).collect();
+        let depth = lend(&shot.targets.depth)?;
         let frame = Frame {
             mask: Some(lend(&shot.targets.mask)?),
             visibility: Visibility::Lent(lend(&shot.targets.visibility)?),
             border_barriers: BorderBarriers::Host,
-            ..Frame::new(
-                Slot(shot.slot),
-                shot.light.shape()?,
-                shot.world_from_ndc,
-                &meshes,
-                lend(&shot.targets.depth)?,
-            )
+            ..Frame::new(shot.slot, shot.light.shape()?, shot.world_from_ndc, &meshes, depth)
         };
         Ok(self.node.plan(&frame)?)
     }

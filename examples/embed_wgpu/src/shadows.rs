@@ -62,6 +62,7 @@ impl Shadows {
     pub fn plan(&self, seen: &Seen, meshes: &[MeshInstance]) -> Result<FramePlan, antumbra::Error> {
         let Targets { gbuffer, visibility, .. } = seen.targets;
         let depth = lend(&gbuffer.depth, DEPTH_SAMPLED);
+        let slot = Slot(seen.slot as u32);
         self.node.plan(&Frame {
             mask: Some(lend(&gbuffer.mask, Scope::COMPUTE_SAMPLED)),
             visibility: Visibility::Lent(lend(visibility, Scope::COMPUTE_WRITTEN)),
@@ -71,13 +72,7 @@ impl Shadows {
                 clip_from_world: maps.clip_from_world,
             }),
             border_barriers: BorderBarriers::Host,
-            ..Frame::new(
-                Slot(seen.slot as u32),
-                seen.world.light.shape()?,
-                seen.view.world_from_ndc(),
-                meshes,
-                depth,
-            )
+            ..Frame::new(slot, seen.world.light.shape()?, seen.view.world_from_ndc(), meshes, depth)
         })
     }
 

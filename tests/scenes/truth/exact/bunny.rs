@@ -1,8 +1,8 @@
 //! A scanned model: the tracer against exact, on the ground and on the model itself.
 
 use super::*;
-use crate::scene::from_gltf;
-use crate::truth::{Sampling, Traced, Tracer};
+use antumbra::scene::from_gltf;
+use antumbra::truth::{Sampling, Traced, Tracer};
 use std::path::Path;
 
 /// The number of receivers, half of them on the ground.
@@ -11,15 +11,15 @@ const POINTS: usize = 1000;
 /// The number of times that each receiver is traced.
 const SEEDS: u64 = 4;
 
-pub(in crate::truth) struct Bunny {
-    pub(in crate::truth) scene: Scene,
-    pub(in crate::truth) light: RectangleLight,
-    pub(in crate::truth) receivers: Vec<Receiver>,
+pub struct Bunny {
+    pub scene: Scene,
+    pub light: RectangleLight,
+    pub receivers: Vec<Receiver>,
 }
 
 impl Bunny {
-    pub(in crate::truth) fn new() -> Self {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    pub fn new() -> Self {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
         let scene = from_gltf(&root.join("bunny.glb")).unwrap();
         let light = scene.lights[0].light;
         let mut random = Random(61);
@@ -46,7 +46,7 @@ impl Bunny {
     }
 
     /// The fractions of the receivers, traced a few times with independent random numbers.
-    pub(in crate::truth) fn traced(&self, rays: u32) -> Vec<Traced> {
+    pub fn traced(&self, rays: u32) -> Vec<Traced> {
         let tracer = Tracer::new(&self.scene).unwrap();
         let sampling = |seed| Sampling::new(rays, seed).unwrap();
         let of = |seed| tracer.visible_fractions(&self.light, &self.receivers, &sampling(seed));
@@ -94,15 +94,15 @@ impl Surface {
 }
 
 /// Traced − exact in units of the noise that the tracer states.
-pub(in crate::truth) struct Deviation {
-    pub(in crate::truth) worst: f64,
-    pub(in crate::truth) rms: f64,
-    pub(in crate::truth) mean: f64,
+pub struct Deviation {
+    pub worst: f64,
+    pub rms: f64,
+    pub mean: f64,
     /// The number of receivers in the exact penumbra, which the figures are over.
-    pub(in crate::truth) penumbra: usize,
+    pub penumbra: usize,
 }
 
-pub(in crate::truth) fn deviation(traced: &[Traced], exact: &[f64]) -> Deviation {
+pub fn deviation(traced: &[Traced], exact: &[f64]) -> Deviation {
     let penumbra = |v: f64| v > 0.0 && v < 1.0;
     let noise = stated_noise(traced);
     let errors: Vec<f64> = traced
@@ -121,7 +121,7 @@ pub(in crate::truth) fn deviation(traced: &[Traced], exact: &[f64]) -> Deviation
 }
 
 /// The root mean square of what each image states.
-pub(in crate::truth) fn stated_noise(traced: &[Traced]) -> f64 {
+pub fn stated_noise(traced: &[Traced]) -> f64 {
     (traced.iter().map(|traced| traced.noise.powi(2)).sum::<f64>() / traced.len() as f64).sqrt()
 }
 

@@ -1,10 +1,10 @@
 //! The models that come with the repository.
 
 use super::*;
-use crate::scene::{Role, generate};
+use antumbra::scene::{Role, generate};
 
 fn model(name: &str) -> Scene {
-    from_gltf(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name)).unwrap()
+    from_gltf(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name)).unwrap()
 }
 
 #[test]

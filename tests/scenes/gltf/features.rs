@@ -1,7 +1,7 @@
 //! Features that the loader must read.
 
 use super::*;
-use crate::scene::Role;
+use antumbra::scene::Role;
 use std::f64::consts::FRAC_1_SQRT_2;
 
 #[test]

@@ -1,7 +1,7 @@
 //! A scanned model under a line: the tracer against the exact fraction.
 
 use super::*;
-use crate::truth::exact::tests::bunny::{Bunny, Deviation, deviation, stated_noise};
+use crate::truth::exact::bunny::{Bunny, Deviation, deviation, stated_noise};
 
 /// The model's own light without its height, three times as long.
 fn under_a_line() -> Bunny {
@@ -59,7 +59,10 @@ fn a_wrong_light_is_noticed() {
     let bunny = under_a_line();
     let traced = bunny.traced(8192);
     let longer = line(&bunny.light, 1.01);
-    let aside = bunny.light.moved([0.0, 0.003]);
+    let world = bunny.light.world_from_light();
+    let half = world.transform_vector3(DVec3::X * bunny.light.half_extents()[0]);
+    let there = world.transform_point3(DVec3::Y * 0.003);
+    let aside = RectangleLight::line(there, half, bunny.light.emission()).unwrap();
     for wrong in [longer, aside] {
         let off = deviation(&traced, &exact(&bunny, &wrong));
         println!("{:.2} standard errors", off.rms);

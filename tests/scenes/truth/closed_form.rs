@@ -1,10 +1,9 @@
 //! Values derived by hand, and laws.
 
-// A test may panic: that is how it fails.
-#![allow(clippy::unwrap_used)]
-
-use super::*;
 use crate::truth::random::Random;
+use antumbra::RectangleLight;
+use antumbra::truth::closed_form::*;
+use glam::DVec3;
 
 /// A few hundred roundings of f64: every case below has coordinates of the order 1.
 const ROUNDING: f64 = 1e-13;

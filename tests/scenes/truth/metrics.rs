@@ -1,9 +1,6 @@
 //! Numbers worked out by hand, and wrong images that must be noticed.
 
-// A test may panic: that is how it fails.
-#![allow(clippy::unwrap_used)]
-
-use super::*;
+use antumbra::truth::metrics::*;
 
 /// Values are multiples of 1/8 where exactness is wanted: their differences are exact.
 const TRUTH: [f32; 8] = [1.0, 1.0, 1.0, 0.75, 0.5, 0.25, 0.0, 0.0];

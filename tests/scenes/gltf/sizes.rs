@@ -1,14 +1,7 @@
 //! The loader reads, makes and says no more than a file's length allows.
 //! tests/untrusted measures what that takes of the memory.
 
-use super::super::buffers::Buffers;
-use super::super::json::Root;
-use super::super::triangles::Reader;
 use super::*;
-
-fn root(file: &File, primitives: &Value, members: Value) -> Root {
-    serde_json::from_value(file.root(primitives, members)).unwrap()
-}
 
 /// Five primitives of as many triangles, which share their accessors: a byte an index.
 fn five_times(triangles: usize) -> (File, Value) {
@@ -20,23 +13,6 @@ fn five_times(triangles: usize) -> (File, Value) {
     ));
     let primitive = json!({"attributes": {"POSITION": position}, "indices": indices});
     (file, json!(vec![primitive; 5]))
-}
-
-#[test]
-fn triangles_beyond_the_limit_are_refused_before_they_are_made() {
-    let most = 1 << 16;
-    let (file, primitives) = five_times(most);
-    let root = root(&file, &primitives, json!({}));
-    // As of a file so long that its length is no limit.
-    let buffers = Buffers::new(&root, 5 * most, Some(&file.bin), Path::new("."));
-    let read = |limit| {
-        let mut reader = Reader::with_limit(&root, &buffers, limit);
-        let shape = reader.shape(0).unwrap();
-        reader.read(0, &shape)
-    };
-    let found = read(4 * most).unwrap_err();
-    assert!(found.starts_with("mesh \"shape\", primitive 4: its triangles exceed"), "{found}");
-    assert_eq!(read(5 * most).unwrap()[0].indices.len(), 15 * most);
 }
 
 /// Primitives that share one accessor over and over must not multiply without end.
@@ -77,29 +53,6 @@ fn meshes_of_the_same_triangles_are_one() {
     assert_eq!(found, [0, 1, 2, 0, 1]);
     let looks: Vec<_> = scene.meshes.iter().map(|m| (m.double_sided, m.cut_out)).collect();
     assert_eq!(looks, [(false, false), (true, false), (false, true)]);
-}
-
-/// However a file's buffers write its name, it is in the memory once.
-#[test]
-fn one_file_for_many_buffers() {
-    let folder = Folder::new("one file");
-    let (file, primitives) = square();
-    folder.write("a.bin", &file.bin);
-    let names = ["a.bin", "./a.bin", "%61.bin", "././%61.bin"];
-    let length = file.bin.len();
-    let views = [0, 1, 2, 3].map(|i| json!({"buffer": i, "byteLength": length}));
-    let members = json!({
-        "buffers": names.map(|uri| json!({"byteLength": length, "uri": uri})),
-        "bufferViews": views,
-    });
-    let root = root(&file, &primitives, members);
-    let buffers = Buffers::new(&root, 0, None, &folder.0);
-    let of = |index: usize| buffers.view(index, || "a test".into()).unwrap().0;
-    for (index, name) in names.iter().enumerate() {
-        assert_eq!(of(index), file.bin);
-        assert!(std::ptr::eq(of(index), of(0)), "{name}");
-    }
-    assert_eq!(buffers.held(), length as u64);
 }
 
 #[test]

@@ -1,0 +1,8 @@
+//! The truth against values worked out by hand, against itself by other means, and against laws.
+
+mod closed_form;
+mod exact;
+mod metrics;
+mod random;
+mod segment;
+mod trace;
