@@ -362,6 +362,3 @@ fn unit_hash(x: u32, y: u32, z: u32) -> f64 {
     mix(&mut v);
     f64::from(v[0]) / (f64::from(u32::MAX) + 1.0)
 }
-
-#[cfg(test)]
-mod tests;

@@ -271,4 +271,17 @@ fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use super::*;
+    use crate::error::NAME_SHOWN;
+
+    #[test]
+    fn a_sentence_lists_a_few_names_on_one_line() {
+        let names: Vec<String> = (0..9).map(|i| format!("n\n{i}")).collect();
+        let sentence = listed(names.iter().map(String::as_str));
+        assert!(sentence.ends_with(r#""n\n5" and 3 more"#), "{sentence}");
+        assert!(!sentence.contains('\n'));
+        assert_eq!(listed(["a", "a", "b"].into_iter()), r#""a", "b""#);
+        assert_eq!(quoted(&"é".repeat(100)).chars().count(), NAME_SHOWN + 3);
+    }
+}

@@ -4,5 +4,8 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
+mod generate;
 mod gltf;
+mod light;
+mod scene;
 mod truth;

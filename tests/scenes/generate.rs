@@ -1,7 +1,14 @@
-#![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
+//! The generated scenes are whole, and models are put into their set-up.
 
-use super::*;
-use crate::scene::Bounds;
+use antumbra::RectangleLight;
+use antumbra::scene::generate::*;
+use antumbra::scene::{Bounds, Mesh, Role, Scene};
+use glam::{DMat4, DVec3};
+use std::f64::consts::PI;
+
+/// Where the generated scenes have their object and their light.
+const OBJECT_CENTER: DVec3 = DVec3::new(0.0, 2.0, 0.0);
+const LIGHT_CENTER: DVec3 = DVec3::new(0.0, 4.0, 0.0);
 
 fn light() -> RectangleLight {
     square_light(1.0).unwrap()

@@ -1,7 +1,7 @@
-#![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
+//! Roles, names, normals and the camera that frames a scene.
 
-use super::*;
-use crate::error::NAME_SHOWN;
+use antumbra::scene::{Camera, Instance, Mesh, Role, Scene, generate};
+use glam::{DMat4, DVec3};
 
 fn two_nodes() -> Scene {
     let mut scene = generate::card(generate::square_light(1.0).unwrap());
@@ -43,16 +43,6 @@ fn a_light_is_found_by_name_and_the_first_without_one() {
     assert_eq!(sentence, "no light is named \"sun\"; the lights are \"light\", \"lamp\"");
     scene.lights.clear();
     assert!(scene.light(None).unwrap_err().to_string().contains("\"area_light\": \"rectangle\""));
-}
-
-#[test]
-fn a_sentence_lists_a_few_names_on_one_line() {
-    let names: Vec<String> = (0..9).map(|i| format!("n\n{i}")).collect();
-    let sentence = listed(names.iter().map(String::as_str));
-    assert!(sentence.ends_with(r#""n\n5" and 3 more"#), "{sentence}");
-    assert!(!sentence.contains('\n'));
-    assert_eq!(listed(["a", "a", "b"].into_iter()), r#""a", "b""#);
-    assert_eq!(quoted(&"é".repeat(100)).chars().count(), NAME_SHOWN + 3);
 }
 
 /// Normals follow any transform, mirrored and flattening ones, as cross products of edges do.
