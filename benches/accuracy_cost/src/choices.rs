@@ -36,8 +36,8 @@ const MAPS: [&str; 13] = [
 /// A sentence where the run or the table's file cannot be read or written.
 pub fn write(options: &Options) -> Result<(), Problem> {
     let (_, rows) = Store::read(&options.out.join("measured.jsonl"))?;
-    let device = HeadlessDevice::new(&HeadlessOptions::default()).map_err(|e| e.to_string())?;
-    let Measured { maps_ms, pixels_ms, .. } = probe(&device).map_err(|e| e.to_string())?;
+    let device = HeadlessDevice::new(&HeadlessOptions::default())?;
+    let Measured { maps_ms, pixels_ms, .. } = probe(&device)?;
     let mut lines = vec![
         COLUMNS.split(',').map(String::from).collect(),
         vec![PROBE.into(), format!("{maps_ms:.3}"), format!("{pixels_ms:.3}")],
@@ -82,7 +82,7 @@ const ASKED: [f64; 4] = [0.05, 0.03, 0.02, 0.01];
 /// A sentence where the run cannot be read.
 pub fn exam(options: &Options) -> Result<(), Problem> {
     let (_, rows) = Store::read(&options.out.join("measured.jsonl"))?;
-    let device = HeadlessDevice::new(&HeadlessOptions::default()).map_err(|e| e.to_string())?;
+    let device = HeadlessDevice::new(&HeadlessOptions::default())?;
     let mut views = Vec::new();
     for group in studies::choices(&options.choice()) {
         let own: Vec<&Row> =
@@ -146,7 +146,7 @@ pub fn exam(options: &Options) -> Result<(), Problem> {
 }
 
 fn write_to(path: &Path, text: &str) -> Result<(), Problem> {
-    std::fs::write(path, text).map_err(|e| format!("{}: {e}", path.display()))
+    std::fs::write(path, text).map_err(Problem::of(path.display()))
 }
 
 /// What the planner sees of a view.
@@ -154,14 +154,12 @@ fn write_to(path: &Path, text: &str) -> Result<(), Problem> {
 /// # Errors
 /// A sentence where the scene cannot be made, or where nothing in it can be shadowed.
 pub fn situation(device: &HeadlessDevice, group: &Group) -> Result<Situation, Problem> {
-    let told = |e: antumbra::Error| e.to_string();
     let ready = group.ready()?;
     let settings = technique("hard");
     let keep = |i: &Instance| ready.keeps(i);
-    let mut stage = Stage::new(device, &ready.scene, &ready.view, group.extent, settings, keep)
-        .map_err(told)?;
-    let light = ready.scene.light(None).map_err(told)?.light;
-    let plan = stage.plan(&light, ready.window).map_err(told)?;
+    let mut stage = Stage::new(device, &ready.scene, &ready.view, group.extent, settings, keep)?;
+    let light = ready.scene.light(None)?.light;
+    let plan = stage.plan(&light, ready.window)?;
     let situation = plan.verdicts().situation().copied();
-    situation.ok_or_else(|| format!("{}: nothing can be shadowed", group.key()))
+    situation.ok_or_else(|| format!("{}: nothing can be shadowed", group.key()).into())
 }

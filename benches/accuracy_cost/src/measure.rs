@@ -50,7 +50,7 @@ impl Bench<'_> {
         let done = catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
             let text = panic.downcast_ref::<String>().map(String::as_str);
             let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
-            Err(format!("it panicked: {}", text.unwrap_or("without a word")))
+            Err(format!("it panicked: {}", text.unwrap_or("without a word")).into())
         });
         done.unwrap_or_else(|problem| vec![failed(group, problem)])
     }
@@ -64,10 +64,10 @@ impl Bench<'_> {
         }
         tell("scene");
         let ready = group.ready()?;
-        let light = ready.scene.light(None).map_err(|e| e.to_string())?.clone();
+        let light = ready.scene.light(None)?.clone();
         let pixels = ready.stage(self.device, group.extent, Technique::default())?;
         let receivers = truth::receivers(pixels.gbuffer())?;
-        let tracer = Tracer::new(&ready.scene).map_err(|e| e.to_string())?;
+        let tracer = Tracer::new(&ready.scene)?;
         let mut candidates: Vec<Candidate> = Vec::new();
         for (entry, method) in group.entries.iter().zip(methods) {
             let state =
@@ -103,7 +103,13 @@ impl Bench<'_> {
                 let errors = errors(&truth, &image, &receivers, &seen, group)?;
                 Ok(Outcome::Measured { errors, times })
             });
-            blank(group, Some(entry), triangles, half, outcome.unwrap_or_else(Outcome::Failed))
+            blank(
+                group,
+                Some(entry),
+                triangles,
+                half,
+                outcome.unwrap_or_else(|problem| Outcome::Failed(problem.0)),
+            )
         });
         Ok(compared.collect())
     }
@@ -219,11 +225,10 @@ struct Seen {
 
 impl Seen {
     fn of(stage: &Stage, light: &AreaLight) -> Result<Self, Problem> {
-        let told = |e: antumbra::Error| e.to_string();
         Ok(Self {
             light: light.clone(),
-            positions: stage.gbuffer().positions().map_err(told)?,
-            normals: stage.gbuffer().normals().map_err(told)?,
+            positions: stage.gbuffer().positions()?,
+            normals: stage.gbuffer().normals()?,
         })
     }
 
@@ -241,7 +246,7 @@ fn errors(
     group: &Group,
 ) -> Result<Errors, Problem> {
     let mask = mask(receivers);
-    let s = ErrorSummary::between(&truth.visible, image, Some(&mask)).map_err(|e| e.to_string())?;
+    let s = ErrorSummary::between(&truth.visible, image, Some(&mask))?;
     // E|noise| of a normal error, in the penumbra alone, over all that is counted.
     let floor = (2.0 / std::f64::consts::PI).sqrt() * truth.noise * s.penumbra_pixels as f64
         / s.pixels.max(1) as f64;
@@ -291,5 +296,5 @@ fn blank(
 
 /// The row of a group that could not be measured at all.
 fn failed(group: &Group, problem: Problem) -> Row {
-    blank(group, None, 0, [0.0; 2], Outcome::Failed(problem))
+    blank(group, None, 0, [0.0; 2], Outcome::Failed(problem.0))
 }

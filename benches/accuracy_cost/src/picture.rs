@@ -57,7 +57,7 @@ pub fn png([width, height]: [u32; 2], rgb: &[u8]) -> Result<Vec<u8>, Problem> {
         image::codecs::png::FilterType::Adaptive,
     )
     .write_image(rgb, width, height, ExtendedColorType::Rgb8)
-    .map_err(|e| format!("PNG: {e}"))?;
+    .map_err(Problem::of("PNG"))?;
     Ok(bytes)
 }
 

@@ -190,19 +190,19 @@ pub struct Store {
 impl Store {
     /// Opens the file of a run, or begins it.
     pub fn open(path: &Path, header: &Header) -> Result<Self, Problem> {
-        let problem = |e: std::io::Error| format!("{}: {e}", path.display());
-        let text = if path.exists() { std::fs::read(path).map_err(problem)? } else { Vec::new() };
+        let problem = Problem::of::<std::io::Error>(path.display());
+        let text = if path.exists() { std::fs::read(path).map_err(&problem)? } else { Vec::new() };
         let (mut told, mut good) = Told::read(&text);
         let same = told.header.as_ref() == Some(header);
         if !same && good > 0 {
-            std::fs::rename(path, path.with_extension("earlier.jsonl")).map_err(problem)?;
+            std::fs::rename(path, path.with_extension("earlier.jsonl")).map_err(&problem)?;
         }
         if !same {
             (told, good) = (Told::default(), 0);
         }
         let open = OpenOptions::new().create(true).truncate(false).write(true).open(path);
-        let mut file = open.map_err(problem)?;
-        file.set_len(good as u64).and_then(|()| file.seek(SeekFrom::End(0))).map_err(problem)?;
+        let mut file = open.map_err(&problem)?;
+        file.set_len(good as u64).and_then(|()| file.seek(SeekFrom::End(0))).map_err(&problem)?;
         let mut store = Self { file, path: path.into(), told };
         if !same {
             store.write(&Line::Run(header.clone()))?;
@@ -212,18 +212,18 @@ impl Store {
 
     /// The run that a file is of, and its whole groups' rows in the order they were measured.
     pub fn read(path: &Path) -> Result<(Header, Vec<Row>), Problem> {
-        let text = std::fs::read(path).map_err(|e| format!("{}: {e}", path.display()))?;
+        let text = std::fs::read(path).map_err(Problem::of(path.display()))?;
         let mut told = Told::read(&text).0;
         let header = told.header.ok_or_else(|| format!("{}: no run is in it", path.display()))?;
         Ok((header, told.whole.iter().filter_map(|g| told.rows.remove(g)).flatten().collect()))
     }
 
     fn write(&mut self, line: &Line) -> Result<(), Problem> {
-        let problem = |e: std::io::Error| format!("{}: {e}", self.path.display());
+        let problem = Problem::of::<std::io::Error>(self.path.display());
         let text = serde_json::to_string(line).map_err(|e| problem(e.into()))? + "\n";
-        self.file.write_all(text.as_bytes()).map_err(problem)?;
+        self.file.write_all(text.as_bytes()).map_err(&problem)?;
         // A killed program loses nothing that was written; a machine that stops may.
-        self.file.sync_data().map_err(problem)
+        self.file.sync_data().map_err(&problem)
     }
 
     /// Whether the group is there, whole.
@@ -306,7 +306,7 @@ pub(crate) mod tests {
         drop(store);
         let (of, rows) = Store::read(&path).unwrap();
         assert_eq!((of, rows.len()), (header, 3));
-        assert!(Store::read(Path::new("/nowhere")).unwrap_err().contains("/nowhere"));
+        assert!(Store::read(Path::new("/nowhere")).unwrap_err().0.contains("/nowhere"));
     }
 
     #[test]

@@ -82,7 +82,7 @@ pub fn json(report: &Report) -> Result<String, Problem> {
         "not_there": missing,
         "left_out": report.left_out,
     });
-    serde_json::to_string_pretty(&whole).map_err(|e| format!("accuracy_cost.json: {e}"))
+    serde_json::to_string_pretty(&whole).map_err(Problem::of("accuracy_cost.json"))
 }
 
 /// The rows measured and failed. Without any, the head alone.
@@ -104,11 +104,10 @@ pub fn csv(report: &Report) -> Result<String, Problem> {
 
 /// Lines of cells as CSV.
 pub fn csv_of(lines: impl IntoIterator<Item = Vec<String>>) -> Result<String, Problem> {
-    let told = |e: &dyn std::fmt::Display| format!("CSV: {e}");
     let mut csv = csv::WriterBuilder::new().flexible(true).from_writer(Vec::new());
-    lines.into_iter().try_for_each(|line| csv.write_record(line)).map_err(|e| told(&e))?;
-    let bytes = csv.into_inner().map_err(|e| told(&e))?;
-    String::from_utf8(bytes).map_err(|e| told(&e))
+    lines.into_iter().try_for_each(|line| csv.write_record(line)).map_err(Problem::of("CSV"))?;
+    let bytes = csv.into_inner().map_err(Problem::of("CSV"))?;
+    String::from_utf8(bytes).map_err(Problem::of("CSV"))
 }
 
 #[cfg(test)]
