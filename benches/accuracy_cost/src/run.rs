@@ -53,16 +53,9 @@ pub fn run(options: &Options) -> Result<bool, Problem> {
     if options.report {
         let (header, rows) = Store::read(&measured)?;
         let cache = kept(&options.out, &header)?;
-        return finish(
-            &Report {
-                header: &header,
-                rows: &rows,
-                left_out: &[],
-                cache: &cache,
-                hard_cases: &store::read(&options.out)?,
-            },
-            options,
-        );
+        let (rows, hard_cases) = (&rows, &store::read(&options.out)?);
+        let report = Report { header: &header, rows, left_out: &[], cache: &cache, hard_cases };
+        return finish(&report, options);
     }
     let scale = match (options.choices, options.quick) {
         (true, _) => options.choice(),
@@ -85,7 +78,7 @@ pub fn run(options: &Options) -> Result<bool, Problem> {
         quick: scale.quick,
         extent: scale.view,
         truth_rays: scale.rays,
-        scenes: own.iter().map(told).collect(),
+        scenes: own.iter().map(dated).collect(),
     };
     let cache = kept(&options.out, &header)?;
     let mut store = Store::open(&measured, &header)?;
@@ -204,8 +197,8 @@ fn kept(out: &Path, header: &Header) -> Result<PathBuf, Problem> {
     Ok(own)
 }
 
-/// A scene's file, so that a run with another one is another run.
-fn told(spec: &SceneSpec) -> String {
+/// A scene's file with its size and date, so that a run with another one is another run.
+fn dated(spec: &SceneSpec) -> String {
     let Source::File(path) = &spec.source else { return spec.name.clone() };
     let date = std::fs::metadata(path).and_then(|m| Ok((m.len(), m.modified()?)));
     format!("{} {:?}", path.display(), date.ok())

@@ -50,7 +50,7 @@ fn tip(row: &Row) -> String {
         "{} {}: {:.2} % in {} ms (quartiles {} to {})",
         row.technique,
         row.settings,
-        100.0 * e.mean_abs_error,
+        100.0 * e.summary.mean_abs_error,
         ms(t.frame_ms[1]),
         ms(t.frame_ms[0]),
         ms(t.frame_ms[2])
