@@ -89,7 +89,7 @@ impl Bench<'_> {
             truth::truth(&ready.scene, &receivers, group.against, self.scale.rays, self.cache)?;
         say("errors");
         let seen = ready.occluders_seen.then(|| Seen::of(&pixels, &light)).transpose()?;
-        let half = light.light.half_extents().map(|h| 2.0 * h);
+        let sides = light.light.half_extents().map(|h| 2.0 * h);
         let triangles = ready.scene.triangles();
         if let Some(seen) = &seen
             && candidates.iter().any(|c| c.entry.shown)
@@ -103,13 +103,8 @@ impl Bench<'_> {
                 let errors = errors(&truth, &image, &receivers, &seen, group)?;
                 Ok(Outcome::Measured { errors, times })
             });
-            blank(
-                group,
-                Some(entry),
-                triangles,
-                half,
-                outcome.unwrap_or_else(|problem| Outcome::Failed(problem.0)),
-            )
+            let outcome = outcome.unwrap_or_else(|problem| Outcome::Failed(problem.0));
+            blank(group, Some(entry), triangles, sides, outcome)
         });
         Ok(compared.collect())
     }

@@ -8,6 +8,7 @@ use antumbra::scene::generate::{self, GROUND_SIDE, cuboid};
 use antumbra::scene::{Camera, Role, Scene, from_gltf};
 use antumbra_harness::ply::ply;
 use glam::{DMat4, DVec3};
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 /// The three lights of the made scenes: names and sides in metres, over objects 1 m across whose top
@@ -62,14 +63,10 @@ pub fn standard() -> Vec<SceneSpec> {
 /// The glTF files of a folder, sorted by name.
 pub fn own(folder: &Path) -> Result<Vec<SceneSpec>, Problem> {
     let problem = Problem::of::<std::io::Error>(format!("--scenes {}", folder.display()));
-    let mut files = Vec::new();
-    for entry in std::fs::read_dir(folder).map_err(&problem)? {
-        let path = entry.map_err(&problem)?.path();
-        let extension = path.extension().map(|e| e.to_ascii_lowercase());
-        if extension.is_some_and(|e| e == "glb" || e == "gltf") {
-            files.push(path);
-        }
-    }
+    let paths = std::fs::read_dir(folder).map_err(&problem)?.map(|e| e.map(|e| e.path()));
+    let mut files: Vec<PathBuf> = paths.collect::<Result<_, _>>().map_err(&problem)?;
+    let is_gltf = |e: &OsStr| ["glb", "gltf"].iter().any(|known| e.eq_ignore_ascii_case(known));
+    files.retain(|path| path.extension().is_some_and(is_gltf));
     files.sort();
     if files.is_empty() {
         let sentence = "there is no .glb or .gltf in it; give a folder of glTF files";
@@ -143,7 +140,7 @@ pub fn square(side: f64) -> Result<RectangleLight, Problem> {
     Ok(generate::square_light(side)?)
 }
 
-/// The same light, its sides times `by`.
+/// A light with its sides times `by`.
 pub fn scaled(light: &RectangleLight, by: f64) -> Result<RectangleLight, Problem> {
     let frame = light.world_from_light();
     let [a, b] = light.half_extents().map(|half| half * by);

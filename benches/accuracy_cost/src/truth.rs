@@ -19,7 +19,7 @@ const SEED: u64 = 1;
 /// Visible fractions to compare with.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Truth {
-    /// Of each pixel, row by row.
+    /// The visible fraction of each pixel, row by row.
     pub visible: Vec<f32>,
     /// The standard error of a penumbra pixel; 0 where the truth is exact.
     pub noise: f64,
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn the_cards_two_truths_agree_within_the_noise_that_is_told() {
+    fn the_cards_two_truths_agree_within_the_noise_that_is_reported() {
         let folder = std::env::temp_dir().join(format!("antumbra-truth-{}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
         let scene = scenes::made("card", scenes::square(0.4).unwrap()).unwrap();

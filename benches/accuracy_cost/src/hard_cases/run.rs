@@ -58,9 +58,9 @@ pub fn settings(words: &str, map: u32) -> Result<Technique, Problem> {
     Ok(settings)
 }
 
-/// What ranges are asked for.
+/// What ranges depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Asked {
+struct Expectation {
     expected: Expected,
     windowed: bool,
     reach: Reach,
@@ -74,8 +74,8 @@ struct Prepared<'a> {
     pixels: Vec<Option<pixels::Seen>>,
     /// Through the window that a host gives, and fitted.
     maps: [Maps; 2],
-    /// What is known already, by what it was asked for.
-    ranges: Vec<(Asked, Vec<Range>)>,
+    /// The ranges that are known already.
+    ranges: Vec<(Expectation, Vec<Range>)>,
 }
 
 impl<'a> Prepared<'a> {
@@ -120,11 +120,11 @@ impl<'a> Prepared<'a> {
 
     fn ranges_of(&mut self, held: &Held) -> Result<&[Range], Problem> {
         let reach = Reach { texels: held.texels, receiver_texels: held.receiver_texels };
-        let asked = Asked { expected: held.expected, windowed: held.windowed, reach };
-        let at = match self.ranges.iter().position(|(known, _)| *known == asked) {
+        let wanted = Expectation { expected: held.expected, windowed: held.windowed, reach };
+        let at = match self.ranges.iter().position(|(known, _)| *known == wanted) {
             Some(at) => at,
             None => {
-                self.ranges.push((asked, self.make_ranges(asked)?));
+                self.ranges.push((wanted, self.make_ranges(wanted)?));
                 self.ranges.len() - 1
             }
         };
@@ -133,7 +133,7 @@ impl<'a> Prepared<'a> {
 
     fn make_ranges(
         &self,
-        Asked { expected, windowed, reach }: Asked,
+        Expectation { expected, windowed, reach }: Expectation,
     ) -> Result<Vec<Range>, Problem> {
         let maps = &self.maps[usize::from(!windowed)];
         let set = if windowed { self.case.truth_set() } else { self.case.set.clone() };
