@@ -2,12 +2,12 @@
 
 use crate::Scale;
 use crate::ray_march::ms;
-use crate::ready::{median_of, passes_ms, settings};
+use crate::ready::{median_of, passes_ms};
 use crate::table::Table;
 use antumbra::scene::{Camera, Instance, Role, Scene, generate};
 use antumbra_bench::scenes::committed;
 use antumbra_bench::stats::median;
-use antumbra_harness::{Forward, HeadlessDevice, Stage, View};
+use antumbra_harness::{Forward, HeadlessDevice, Stage, View, technique};
 
 const EXTENT: [u32; 2] = [640, 480];
 
@@ -25,16 +25,15 @@ fn scenes() -> [(&'static str, Scene); 3] {
 /// a triangle that its edge pixels' 2×2 quads are filled up with, which cost as much; small triangles have
 /// three of those for each that is seen. What deferred pays for: a plane from a dozen depths, and the list.
 pub fn forward(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let columns =
-        ["scene", "rays", "levels ms", "gbuffer", "pixels", "forward", "ratio", "differ %", "mean"];
-    let mut table = Table::new("forward", &columns);
+    let mut table =
+        Table::new("forward", "scene|rays|levels ms|gbuffer|pixels|forward|ratio|differ %|mean");
     for (name, scene) in scenes() {
         let light = scene.light(None).unwrap().light;
         let aspect = f64::from(EXTENT[0]) / f64::from(EXTENT[1]);
         let camera = scene.camera.unwrap_or_else(|| Camera::framing(&scene, aspect));
         let view = View::perspective(&camera, EXTENT);
         for rays in [4, 9, 16] {
-            let settings = settings(&format!("ray-march map=512 rays={rays} filter=off"));
+            let settings = technique(&format!("ray-march map=512 rays={rays} filter=off"));
             let keep = |_: &Instance| true;
             let mut stage = Stage::new(device, &scene, &view, EXTENT, settings, keep).unwrap();
             let plan = stage.plan(&light, None).unwrap();

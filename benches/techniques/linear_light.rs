@@ -50,8 +50,8 @@ fn counts(ready: &mut Ready) -> Vec<u32> {
 /// Error against evenly spaced samples, beside many lights with as many maps and with 200 (Fig. 9), and how many of
 /// those are as good as eight.
 fn samples(device: &HeadlessDevice, _: &Scale) -> Table {
-    let columns = ["scene", "n", "linear %", "rational %", "hard %", "hard 200 %", "as good as 8"];
-    let mut table = Table::new("samples", &columns);
+    let mut table =
+        Table::new("samples", "scene|n|linear %|rational %|hard %|hard 200 %|as good as 8");
     for name in SCENES {
         let scene = scene_under(name, metre());
         let truth = lines(device, &scene, "samples=2").truth(&scene);
@@ -81,8 +81,7 @@ fn samples(device: &HeadlessDevice, _: &Scale) -> Table {
 
 /// Error and samples by the error asked for.
 fn added(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let columns = ["scene", "asked %", "samples", "error %", "ms", "even 2 %", "even 16 %"];
-    let mut table = Table::new("added", &columns);
+    let mut table = Table::new("added", "scene|asked %|samples|error %|ms|even 2 %|even 16 %");
     for name in SCENES {
         let scene = scene_under(name, metre());
         let asked = [0.05, 0.02, 0.01, 0.005, 0.002];
@@ -106,9 +105,8 @@ fn added(device: &HeadlessDevice, scale: &Scale) -> Table {
 
 /// A frame with kept maps against hard shadows with as many points, whose maps are drawn too.
 fn kept(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let pixels_and_all = ["ratio", "hard's pixels ms", "ratio", "all made ms", "hard all ms"];
-    let columns = [&["scene", "n", "kept ms", "hard ms"][..], &pixels_and_all].concat();
-    let mut table = Table::new("kept", &columns);
+    let columns = "scene|n|kept ms|hard ms|ratio|hard's pixels ms|ratio|all made ms|hard all ms";
+    let mut table = Table::new("kept", columns);
     for name in ["bunny", "foliage"] {
         let scene = scene_under(name, metre());
         for n in [2, 4, 8, 16] {
@@ -133,7 +131,7 @@ fn kept(device: &HeadlessDevice, scale: &Scale) -> Table {
 
 /// Where a frame's time goes.
 fn passes(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let mut table = Table::new("passes", &["map", "words", "pass", "ms"]);
+    let mut table = Table::new("passes", "map|words|pass|ms");
     let scene = scene_under("bunny", metre());
     for side in scale.sides {
         for words in ["samples=4 error=0", "samples=8"] {
@@ -151,7 +149,7 @@ fn passes(device: &HeadlessDevice, scale: &Scale) -> Table {
 
 /// A square of 0.4 m as lines, beside the other techniques.
 fn rectangles(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let mut table = Table::new("rectangles", &["scene", "technique", "words", "error %", "ms"]);
+    let mut table = Table::new("rectangles", "scene|technique|words|error %|ms");
     let kinds = [
         ("linear-light", "lines=1 samples=4 error=0"),
         ("linear-light", "lines=4 samples=2 error=0"),

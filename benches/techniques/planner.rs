@@ -1,20 +1,16 @@
 //! What leaving out what a scene does not call for saves, and what planning takes.
 
-use crate::ready::{frame_ms, median_of, settings};
+use crate::ready::{frame_ms, median_of};
 use crate::table::Table;
 use crate::{Bench, Scale};
-use antumbra::LightIndex;
-use antumbra::Omit;
-use antumbra::RectangleLight;
 use antumbra::frame::{Limits, plan_all};
 use antumbra::graph::{MeshList, Scope};
 use antumbra::scene::{Instance, Role, generate};
-use antumbra::{
-    Description, Frame, FramePlans, Geometry, HostImage, MeshBuffers, MeshInstance, Slot,
-};
+use antumbra::{Description, Frame, FramePlans, Geometry, HostImage, LightIndex};
+use antumbra::{MeshBuffers, MeshInstance, Omit, RectangleLight, Slot};
 use antumbra_bench::stats::median;
-use antumbra_harness::cases;
 use antumbra_harness::{FrameTimes, HeadlessDevice, HeadlessOptions, Invocations, Stage, View};
+use antumbra_harness::{cases, technique, technique_of};
 use ash::vk::{self, Handle};
 use glam::{DMat4, DVec3};
 use std::time::Instant;
@@ -34,18 +30,17 @@ const SIDE: u32 = 256;
 fn pruned(_: &HeadlessDevice, scale: &Scale) -> Table {
     let wish = HeadlessOptions { statistics: true, ..Default::default() };
     let device = HeadlessDevice::new(&wish).unwrap();
-    let counted = ["passes", "of", "ms", "of ", "vertices", "of  "];
-    let columns = [&counted[..], &["fragments", "of   ", "threads", "of    "]].concat();
-    let mut table = Table::new("pruned", &columns);
+    let columns = "passes|of|ms|of |vertices|of  |fragments|of   |threads|of    ";
+    let mut table = Table::new("pruned", columns);
     for case in cases::cases() {
         let scene = &case.scene;
         let light = scene.light(None).unwrap().light;
         let view = View::map_of_ground(case.half, 8.0);
         let mut stages = [Omit::default(), Omit::Nothing].map(|omit| {
             let keep = |i: &Instance| i.role != Role::Occluder;
-            let hard = settings("hard map=16");
+            let hard = technique("hard map=16");
             let mut stage = Stage::new(&device, scene, &view, [SIDE; 2], hard, keep).unwrap();
-            stage.configure_with(settings(case.words), |d| d.omit = omit).unwrap();
+            stage.configure_with(technique_of(case.words).unwrap(), |d| d.omit = omit).unwrap();
             stage
         });
         let plans = stages.each_mut().map(|stage| stage.plan(&light, None).unwrap());
@@ -74,8 +69,8 @@ fn pruned(_: &HeadlessDevice, scale: &Scale) -> Table {
 
 /// Frames of many meshes under many lights, of which each reaches some; no device.
 fn planning(_: &HeadlessDevice, scale: &Scale) -> Table {
-    let columns = ["meshes", "lights", "reach m", "scene", "draws", "us a frame", "us a light"];
-    let mut table = Table::new("planning", &columns);
+    let mut table =
+        Table::new("planning", "meshes|lights|reach m|scene|draws|us a frame|us a light");
     for (meshes, lights) in [(10, 1), (100, 4), (1000, 1), (1000, 4), (1000, 16)] {
         for (reach, stays) in [(None, false), (Some(8.0), false), (None, true), (Some(8.0), true)] {
             let all = instances(meshes);

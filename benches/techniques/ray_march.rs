@@ -37,8 +37,7 @@ pub fn ms(times: &FrameTimes, names: &[&str]) -> f64 {
 /// texels they hold for each that is asked for. N-buffers have shaders of their own, without the branches
 /// of the others.
 fn kinds(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let columns = ["scene", "N", "levels", "MB", "build ms", "classify", "trace", "sum", "held"];
-    let mut table = Table::new("levels", &columns);
+    let mut table = Table::new("levels", "scene|N|levels|MB|build ms|classify|trace|sum|held");
     for name in ["bunny", "foliage"] {
         let scene = scene(name, 0.4);
         for &n in scale.sides {
@@ -62,8 +61,7 @@ fn kinds(device: &HeadlessDevice, scale: &Scale) -> Table {
 
 /// Hierarchical against linear search: the same rays, so the same error but for what each misses.
 fn search(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let columns = ["scene", "N", "rays", "hier. ms", "linear ms", "ratio", "error %", "error %"];
-    let mut table = Table::new("search", &columns);
+    let mut table = Table::new("search", "scene|N|rays|hier. ms|linear ms|ratio|error %|error %");
     for (name, side) in [("bunny", 0.4), ("suzanne", 1.0), ("slats", 0.4), ("foliage", 0.4)] {
         let scene = scene(name, side);
         let mut truth = None;
@@ -87,8 +85,7 @@ fn search(device: &HeadlessDevice, scale: &Scale) -> Table {
 
 /// With and without classification and early outs.
 fn classification(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let columns = ["scene", "L", "rays", "on ms", "off ms", "ratio", "differ by"];
-    let mut table = Table::new("classification", &columns);
+    let mut table = Table::new("classification", "scene|L|rays|on ms|off ms|ratio|differ by");
     for (name, side) in [("bunny", 0.1), ("bunny", 0.4), ("bunny", 1.0), ("foliage", 0.4)] {
         let scene = scene(name, side);
         for rays in [4, 16, 64] {
@@ -107,7 +104,7 @@ fn classification(device: &HeadlessDevice, scale: &Scale) -> Table {
 
 /// Making the levels beside copying as many bytes, by the processor's two cores as the driver has them.
 fn bandwidth(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let mut table = Table::new("bandwidth", &["N", "MB", "build ms", "copy ms", "ratio"]);
+    let mut table = Table::new("bandwidth", "N|MB|build ms|copy ms|ratio");
     let scene = scene("bunny", 0.4);
     for &n in scale.sides {
         let mut ready = ready(device, &scene, &format!("map={n}"));

@@ -2,11 +2,11 @@
 
 use antumbra::scene::{Instance, Role, Scene, generate};
 use antumbra::truth::{ErrorSummary, ExactLine, Sampling, Tracer};
-use antumbra::{FramePlan, RectangleLight, Technique};
+use antumbra::{FramePlan, RectangleLight};
 use antumbra_bench::scenes::made;
 use antumbra_bench::stats::median;
 use antumbra_bench::truth::receivers;
-use antumbra_harness::{FrameTimes, HeadlessDevice, Stage, View, technique_of};
+use antumbra_harness::{FrameTimes, HeadlessDevice, Stage, View, technique};
 
 /// A model, or one of the generated scenes, under a square light whose side is in metres.
 pub fn scene(name: &str, side: f64) -> Scene {
@@ -20,11 +20,6 @@ pub fn scene_under(name: &str, light: RectangleLight) -> Scene {
         "foliage" => generate::foliage(light, 300, 7),
         name => made(name, light).unwrap(),
     }
-}
-
-/// Settings from a technique's name and KEY=VALUE words.
-pub fn settings(words: &str) -> Technique {
-    technique_of(words).or_else(|_| words.parse()).unwrap_or_else(|e| panic!("{words}: {e}"))
 }
 
 /// A stage with its plan, whose first frame was run.
@@ -54,7 +49,7 @@ impl Ready {
         extent: [u32; 2],
     ) -> Self {
         let keep = |i: &Instance| i.role != Role::Occluder;
-        let mut stage = Stage::new(device, scene, view, extent, settings(words), keep).unwrap();
+        let mut stage = Stage::new(device, scene, view, extent, technique(words), keep).unwrap();
         let light = scene.light(None).unwrap().light;
         let plan = stage.plan(&light, None).unwrap();
         stage.run(&plan).unwrap();

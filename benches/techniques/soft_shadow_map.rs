@@ -42,8 +42,7 @@ fn accumulations(times: &[FrameTimes]) -> Vec<f64> {
 
 /// The gather beside the blend: accumulation passes alone, one side, N = M, in turns.
 fn gather_and_blend(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let columns = ["L", "N", "gather ms", "q1", "q3", "blend ms", "q1", "q3", "ratio"];
-    let mut table = Table::new("gather_and_blend", &columns);
+    let mut table = Table::new("gather_and_blend", "L|N|gather ms|q1|q3|blend ms|q1|q3|ratio");
     let lights = [0.1, 0.4, 1.0];
     let mut all = [Vec::new(), Vec::new()];
     for light in lights {
@@ -77,9 +76,10 @@ fn gather_and_blend(device: &HeadlessDevice, scale: &Scale) -> Table {
 /// The gather beside the paper's own scheme (Atty 2006 section 4.1), whole frames: one side, N = M, in
 /// turns. The node's frame ends in 32×32 pixels, which weigh nothing; the paper's ends with its map.
 fn gather_and_readback(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let columns =
-        ["L", "N", "gather ms", "readback ms", "depth", "rectangles", "blend", "MB moved", "ratio"];
-    let mut table = Table::new("gather_and_readback", &columns);
+    let mut table = Table::new(
+        "gather_and_readback",
+        "L|N|gather ms|readback ms|depth|rectangles|blend|MB moved|ratio",
+    );
     for light in [0.1, 0.4, 1.0] {
         let scene = scene("spheres", light);
         let lamp = scene.light(None).unwrap().light;
@@ -111,8 +111,7 @@ fn gather_and_readback(device: &HeadlessDevice, scale: &Scale) -> Table {
 
 /// One side, the larger of two and their mean, at the pixels and on a map, of the bunny.
 fn sides(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let columns = ["receivers", "one ms", "two ms", "mean ms", "two / one", "mean / two"];
-    let mut table = Table::new("sides", &columns);
+    let mut table = Table::new("sides", "receivers|one ms|two ms|mean ms|two / one|mean / two");
     let scene = scene("bunny", 0.4);
     for receivers in ["pixels", "map"] {
         let mut stages = ["one", "two", "mean"].map(|sides| {
@@ -128,8 +127,7 @@ fn sides(device: &HeadlessDevice, scale: &Scale) -> Table {
 
 /// Visibility at the pixels beside a map projected onto them, on scenes with a split.
 fn pixels_and_map(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let columns = ["scene", "pixels %", "map %", "noise %", "pixels ms", "map ms"];
-    let mut table = Table::new("pixels_and_map", &columns);
+    let mut table = Table::new("pixels_and_map", "scene|pixels %|map %|noise %|pixels ms|map ms");
     for name in ["card", "spheres", "tall box", "bunny", "suzanne"] {
         let scene = scene(name, 0.4);
         let mut stages =
@@ -146,7 +144,7 @@ fn pixels_and_map(device: &HeadlessDevice, scale: &Scale) -> Table {
 
 /// What the tolerance gives and takes, against a tolerance of 0 on the same maps.
 fn tolerance(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let mut table = Table::new("tolerance", &["scene", "tolerance", "worst", "ms"]);
+    let mut table = Table::new("tolerance", "scene|tolerance|worst|ms");
     let tolerances = [0.0, 1e-5, 1e-4, 1e-3, 1e-2];
     for name in ["spheres", "foliage"] {
         let scene = scene(name, 0.4);
@@ -166,8 +164,7 @@ fn tolerance(device: &HeadlessDevice, scale: &Scale) -> Table {
 
 /// The frame's time against triangles: a sphere from 1k to 871k, and the dragon where it was fetched.
 fn triangles(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let columns = ["model", "triangles", "frame ms", "layers ms", "plan us", "record us"];
-    let mut table = Table::new("triangles", &columns);
+    let mut table = Table::new("triangles", "model|triangles|frame ms|layers ms|plan us|record us");
     let folder = antumbra_bench::options::Options::root().join("target/dragon");
     let spheres = [22, 45, 90, 180, 360, 660]
         .map(|rows| ("sphere", Some(generate::uv_sphere(0.5, rows + 1, rows))));

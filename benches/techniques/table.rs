@@ -10,11 +10,12 @@ pub struct Table {
 }
 
 impl Table {
-    /// An empty table; prints its head.
-    pub fn new(name: &'static str, columns: &[&'static str]) -> Self {
+    /// An empty table, whose columns' names are parted by bars; prints its head.
+    pub fn new(name: &'static str, columns: &'static str) -> Self {
+        let columns: Vec<_> = columns.split('|').collect();
         println!("\n== {name}");
         println!("{}", columns.iter().map(|c| format!(" {c:>13}")).collect::<String>());
-        Self { name, columns: columns.to_vec(), rows: Vec::new() }
+        Self { name, columns, rows: Vec::new() }
     }
 
     /// Adds and prints a row, whose cells are parted by bars.

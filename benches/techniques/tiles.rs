@@ -1,6 +1,6 @@
 //! What it saves to find the tiles of pixels that no occluder can affect, and what it costs where there are none.
 //!
-//! With and without are told as medians of the passes over the pixels.
+//! Both are medians of the passes over the pixels.
 
 use crate::ready::{Ready, ending_ms, in_turns, scene};
 use crate::table::Table;
@@ -80,9 +80,7 @@ fn compared(
     device: &HeadlessDevice,
     scale: &Scale,
 ) -> Table {
-    let columns =
-        ["scene", "L", "N", "lit %", "without ms", "tiles ms", "listed ms", "with/without"];
-    let mut table = Table::new(name, &columns);
+    let mut table = Table::new(name, "scene|L|N|lit %|without ms|tiles ms|listed ms|with/without");
     for side in [0.1, 1.0] {
         for (scene_name, scene, view) in &views(side) {
             for n in scale.sides {

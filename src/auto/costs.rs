@@ -17,9 +17,11 @@ const DRAW_MS: f64 = 0.35e-3;
 
 /// Factors from times on the table's device to times on the device at hand; 1 where nothing was measured.
 ///
-/// The factors hold for one device and driver: a host stores [`Self::to_text`] under the device's name and restores it
-/// with [`Self::from_text`] at the next start.
+/// The factors hold for one device and driver: with the feature `serde` a host keeps them under the device's name, in any
+/// format of serde's, until the next start. Factors that are missing, not finite or not above 0 are then read as 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "kept::Kept", into = "kept::Kept"))]
 pub struct Costs {
     /// The factor of passes in light space.
     pub maps: f64,
@@ -78,43 +80,50 @@ impl Costs {
         self.by_technique[i] = (self.by_technique[i] * by).clamp(1.0 / MOST, MOST);
         self.frames[i] = self.frames[i].saturating_add(1);
     }
+}
 
-    /// The factors as text, one to a line.
-    pub fn to_text(&self) -> String {
-        let mut text = format!("maps {}\npixels {}\n", self.maps, self.pixels);
-        for (name, (factor, frames)) in
-            Technique::NAMES.iter().zip(self.by_technique.iter().zip(&self.frames))
-        {
-            text.push_str(&format!("{name} {factor} {frames}\n"));
-        }
-        text
+/// The form in which costs are kept: techniques by name, so that it outlives a release that adds one.
+#[cfg(feature = "serde")]
+mod kept {
+    use super::{Costs, MOST, place};
+    use crate::technique::Technique;
+    use serde::{Deserialize, Serialize};
+    use std::collections::BTreeMap;
+
+    #[derive(Serialize, Deserialize)]
+    #[serde(default)]
+    pub(super) struct Kept {
+        maps: f64,
+        pixels: f64,
+        /// A technique's factor and the number of frames that it was learnt from.
+        techniques: BTreeMap<String, (f64, u32)>,
     }
 
-    /// Reads the text of [`Self::to_text`]; factors that are missing or invalid are 1.
-    pub fn from_text(text: &str) -> Self {
-        let mut costs = Self::default();
-        for line in text.lines() {
-            let mut words = line.split_whitespace();
-            let (Some(name), Some(Ok(factor))) =
-                (words.next(), words.next().map(str::parse::<f64>))
-            else {
-                continue;
-            };
-            if !(factor.is_finite() && factor > 0.0) {
-                continue;
-            }
-            match name {
-                "maps" => costs.maps = factor,
-                "pixels" => costs.pixels = factor,
-                _ => {
-                    if let Some(i) = place(name) {
-                        costs.by_technique[i] = factor.clamp(1.0 / MOST, MOST);
-                        costs.frames[i] = words.next().and_then(|n| n.parse().ok()).unwrap_or(0);
-                    }
+    impl Default for Kept {
+        fn default() -> Self {
+            Costs::default().into()
+        }
+    }
+
+    impl From<Costs> for Kept {
+        fn from(costs: Costs) -> Self {
+            let learnt = costs.by_technique.into_iter().zip(costs.frames);
+            let techniques = Technique::NAMES.iter().map(|name| (*name).into()).zip(learnt);
+            Self { maps: costs.maps, pixels: costs.pixels, techniques: techniques.collect() }
+        }
+    }
+
+    impl From<Kept> for Costs {
+        fn from(kept: Kept) -> Self {
+            let mut costs = Self::new(kept.maps, kept.pixels);
+            for (name, (factor, frames)) in kept.techniques {
+                if let Some(i) = place(&name).filter(|_| factor.is_finite() && factor > 0.0) {
+                    costs.by_technique[i] = factor.clamp(1.0 / MOST, MOST);
+                    costs.frames[i] = frames;
                 }
             }
+            costs
         }
-        costs
     }
 }
 
@@ -123,7 +132,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn frames_correct_what_was_guessed_and_text_keeps_it() {
+    fn frames_correct_what_was_guessed() {
         let mut costs = Costs::new(2.0, 3.0);
         let table = Measured { error: 0.0, maps_ms: 1.0, pixels_ms: 4.0 };
         let ms = |c: &Costs, t| c.ms(t, &table, PIXELS, 0.0);
@@ -134,11 +143,27 @@ mod tests {
         }
         assert!((ms(&costs, "pcss") - 28.0).abs() < 0.5);
         assert_eq!(ms(&costs, "hard"), 14.0, "another technique's frames say nothing of it");
-        assert_eq!(Costs::from_text(&costs.to_text()), costs);
-        for bad in ["", "maps", "maps x", "pixels -1\nmaps NaN", "unknown 3"] {
-            assert_eq!(Costs::from_text(bad), Costs::default(), "{bad}");
-        }
         assert_eq!(Costs::new(f64::NAN, 0.0), Costs::default());
+    }
+
+    #[test]
+    #[cfg(feature = "serde")]
+    fn costs_that_were_kept_are_read_again_and_invalid_factors_are_1() {
+        let mut costs = Costs::new(2.0, 3.0);
+        costs.learn("pcss", 10.0, 25.0);
+        let text = serde_json::to_string(&costs).unwrap();
+        assert_eq!(serde_json::from_str::<Costs>(&text).unwrap(), costs);
+        let invalid = [
+            "{}",
+            r#"{"pixels": -1, "maps": 0}"#,
+            r#"{"techniques": {"unknown": [3, 1], "pcss": [-2, 1], "hard": [0, 9]}}"#,
+        ];
+        for text in invalid {
+            assert_eq!(serde_json::from_str::<Costs>(text).unwrap(), Costs::default(), "{text}");
+        }
+        for text in ["", "maps 2", r#"{"maps": "x"}"#, r#"{"maps": null}"#] {
+            assert!(serde_json::from_str::<Costs>(text).is_err(), "{text}");
+        }
     }
 
     #[test]

@@ -23,6 +23,7 @@ pub const FALSE_MARGIN: f32 = 0.05;
 /// 1 − [`FULL_TOLERANCE`]): Atty 2006 section 5.2.1 divides the summed error by those pixels, since
 /// all others of an image would only flatter it. A mean over no pixels is 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ErrorSummary {
     /// The number of counted pixels.
     pub pixels: usize,

@@ -107,7 +107,7 @@ fn a_fifth_technique_is_a_folder_and_two_lines() {
     assert_eq!(added, 2);
 
     fs::create_dir_all(copied.join("harness/examples")).unwrap();
-    copy(&sketch.join("run.rs"), &copied.join("harness/examples/half.rs"));
+    copy(&sketch.join("host/half.rs"), &copied.join("harness/examples/half.rs"));
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
     let output = Command::new(cargo)
         .args(["run", "--quiet", "-p", "antumbra-harness", "--example", "half"])

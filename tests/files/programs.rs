@@ -24,6 +24,19 @@ fn left_out(text: &str, files: &[PathBuf]) -> Vec<String> {
     names.filter(|name| !text.lines().any(|line| line == format!("mod {name};"))).collect()
 }
 
+/// Checks that a module declares every file of its folder, and so do its own modules: theirs stand in a folder of their
+/// name. Other folders hold data.
+fn check_modules(folder: &Path, text: &str) {
+    let entries = entries(folder);
+    let left_out = left_out(text, &entries);
+    assert!(left_out.is_empty(), "{}: no module declares {left_out:?}", folder.display());
+    for folder in entries.iter().filter(|path| path.is_dir()) {
+        if let Ok(text) = fs::read_to_string(folder.with_extension("rs")) {
+            check_modules(folder, &text);
+        }
+    }
+}
+
 #[test]
 fn every_file_is_a_module_of_its_program() {
     let folders = entries(&root().join("tests"));
@@ -34,13 +47,7 @@ fn every_file_is_a_module_of_its_program() {
         let target = format!("[[test]]\nname = \"{name}\"\npath = \"{name}/main.rs\"\n");
         assert!(manifest.contains(&target), "tests/Cargo.toml has no {target}");
         let main = fs::read_to_string(folder.join("main.rs")).unwrap();
-        for folder in std::iter::once(folder).chain(&entries(folder)).filter(|path| path.is_dir()) {
-            // A module's own modules stand in a folder of its name.
-            let parent = folder.with_extension("rs");
-            let text = fs::read_to_string(parent).unwrap_or_else(|_| main.clone());
-            let left_out = left_out(&text, &entries(folder));
-            assert!(left_out.is_empty(), "{}: no module declares {left_out:?}", folder.display());
-        }
+        check_modules(folder, &main);
         programs.push(name);
     }
     assert!(programs.len() >= 6, "{programs:?}");

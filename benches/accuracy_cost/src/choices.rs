@@ -30,27 +30,41 @@ const MAPS: [&str; 13] = [
     "many_lights.point_depth",
 ];
 
+/// A view that a run of `--choices` has measured.
+struct View {
+    group: Group,
+    situation: Situation,
+    rows: Vec<Row>,
+}
+
+/// The views that a run of `--choices` in --out has measured.
+fn views(options: &Options, device: &HeadlessDevice) -> Result<Vec<View>, Problem> {
+    let (_, all) = Store::read(&options.out.join("measured.jsonl"))?;
+    let mut views = Vec::new();
+    for group in studies::choices(&options.choice()) {
+        let own = |r: &&Row| r.scene == group.scene && r.light == group.light;
+        let rows: Vec<Row> = all.iter().filter(own).cloned().collect();
+        if !rows.is_empty() {
+            views.push(View { situation: situation(device, &group)?, group, rows });
+        }
+    }
+    Ok(views)
+}
+
 /// Writes what a run of `--choices` has measured as the crate's table.
 ///
 /// # Errors
 /// A sentence where the run or the table's file cannot be read or written.
 pub fn write(options: &Options) -> Result<(), Problem> {
-    let (_, rows) = Store::read(&options.out.join("measured.jsonl"))?;
-    let device = HeadlessDevice::new(&HeadlessOptions::default()).map_err(|e| e.to_string())?;
-    let Measured { maps_ms, pixels_ms, .. } = probe(&device).map_err(|e| e.to_string())?;
+    let device = HeadlessDevice::new(&HeadlessOptions::default())?;
+    let Measured { maps_ms, pixels_ms, .. } = probe(&device)?;
     let mut lines = vec![
         COLUMNS.split(',').map(String::from).collect(),
         vec![PROBE.into(), format!("{maps_ms:.3}"), format!("{pixels_ms:.3}")],
     ];
-    for group in studies::choices(&options.choice()) {
-        let own: Vec<&Row> =
-            rows.iter().filter(|r| r.scene == group.scene && r.light == group.light).collect();
-        if own.is_empty() {
-            continue;
-        }
-        let situation = situation(&device, &group)?;
+    for View { situation, rows, .. } in views(options, &device)? {
         let parts = Features::of(&situation).values().map(|p| format!("{p:.3}"));
-        for row in own {
+        for row in &rows {
             let Some((errors, times)) = row.measured() else { continue };
             let is_map = |name: &str| MAPS.iter().any(|m| name.starts_with(m));
             let sum = |maps: bool| -> f64 {
@@ -60,7 +74,9 @@ pub fn write(options: &Options) -> Result<(), Problem> {
             line.push(situation.triangles.to_string());
             line.extend(parts.clone());
             line.extend([row.technique.clone(), row.settings.clone()]);
-            line.extend([errors.mean_abs_error, errors.noise_floor].map(|e| format!("{e:.5}")));
+            line.extend(
+                [errors.summary.mean_abs_error, errors.noise_floor].map(|e| format!("{e:.5}")),
+            );
             line.extend([true, false].map(|maps| format!("{:.3}", sum(maps))));
             lines.push(line);
         }
@@ -72,8 +88,8 @@ pub fn write(options: &Options) -> Result<(), Problem> {
     Ok(())
 }
 
-/// The errors that are asked for in [`exam`].
-const ASKED: [f64; 4] = [0.05, 0.03, 0.02, 0.01];
+/// The errors of [`exam`]'s budgets.
+const GOALS: [f64; 4] = [0.05, 0.03, 0.02, 0.01];
 
 /// How the crate's present table would have chosen in the views that were measured now: how often the error that was
 /// promised is kept, and the time of the choice over that of the fastest that is good enough.
@@ -81,26 +97,18 @@ const ASKED: [f64; 4] = [0.05, 0.03, 0.02, 0.01];
 /// # Errors
 /// A sentence where the run cannot be read.
 pub fn exam(options: &Options) -> Result<(), Problem> {
-    let (_, rows) = Store::read(&options.out.join("measured.jsonl"))?;
-    let device = HeadlessDevice::new(&HeadlessOptions::default()).map_err(|e| e.to_string())?;
-    let mut views = Vec::new();
-    for group in studies::choices(&options.choice()) {
-        let own: Vec<&Row> =
-            rows.iter().filter(|r| r.scene == group.scene && r.light == group.light).collect();
-        if !own.is_empty() {
-            views.push((group.key(), situation(&device, &group)?, own));
-        }
-    }
+    let device = HeadlessDevice::new(&HeadlessOptions::default())?;
+    let views = views(options, &device)?;
     println!(
         "| asked | promised in | kept | rightly not promised | time over the best: median, 90 % |"
     );
     println!("|---|---|---|---|---|");
-    for asked in ASKED {
+    for goal in GOALS {
         let (mut promised, mut kept, mut right) = (0, 0, 0);
         let mut ratios = Vec::new();
-        for (key, situation, rows) in &views {
+        for View { group, situation, rows } in &views {
             let of = |settings: &Technique| {
-                let same = |r: &&&Row| {
+                let same = |r: &&Row| {
                     CANDIDATES.iter().any(|c| {
                         c.technique == r.technique
                             && c.words == r.settings
@@ -108,12 +116,12 @@ pub fn exam(options: &Options) -> Result<(), Problem> {
                     })
                 };
                 let (errors, times) = rows.iter().find(same)?.measured()?;
-                let error = (errors.mean_abs_error - errors.noise_floor).max(0.0);
+                let error = (errors.summary.mean_abs_error - errors.noise_floor).max(0.0);
                 Some((error, times.passes.iter().map(|(_, ms)| ms).sum::<f64>()))
             };
             let all = CANDIDATES.iter().filter_map(|c| of(&c.settings()));
-            let best = all.filter(|x| x.0 <= asked).map(|x| x.1).min_by(f64::total_cmp);
-            let budget = Budget { max_error: Some(asked), max_ms: None };
+            let best = all.filter(|x| x.0 <= goal).map(|x| x.1).min_by(f64::total_cmp);
+            let budget = Budget { max_error: Some(goal), max_ms: None };
             let choice =
                 Auto::new(budget, Costs::default()).choose_in(situation, options.choice().view);
             if choice.problem.is_some() {
@@ -122,10 +130,10 @@ pub fn exam(options: &Options) -> Result<(), Problem> {
             }
             promised += 1;
             let Some((error, ms)) = of(&choice.technique) else { continue };
-            if error <= asked {
+            if error <= goal {
                 kept += 1;
             } else {
-                println!("<!-- {key}: asked {asked}, {choice}, found {error:.4} -->");
+                println!("<!-- {}: asked {goal}, {choice}, found {error:.4} -->", group.key());
             }
             ratios.extend(best.map(|best| ms / best));
         }
@@ -136,7 +144,7 @@ pub fn exam(options: &Options) -> Result<(), Problem> {
         };
         let not = views.len() - promised;
         println!(
-            "| {asked} | {promised} of {} | {kept} | {right} of {not} | {:.2}, {:.2} |",
+            "| {goal} | {promised} of {} | {kept} | {right} of {not} | {:.2}, {:.2} |",
             views.len(),
             at(0.5),
             at(0.9)
@@ -146,7 +154,7 @@ pub fn exam(options: &Options) -> Result<(), Problem> {
 }
 
 fn write_to(path: &Path, text: &str) -> Result<(), Problem> {
-    std::fs::write(path, text).map_err(|e| format!("{}: {e}", path.display()))
+    std::fs::write(path, text).map_err(Problem::of(path.display()))
 }
 
 /// What the planner sees of a view.
@@ -154,14 +162,12 @@ fn write_to(path: &Path, text: &str) -> Result<(), Problem> {
 /// # Errors
 /// A sentence where the scene cannot be made, or where nothing in it can be shadowed.
 pub fn situation(device: &HeadlessDevice, group: &Group) -> Result<Situation, Problem> {
-    let told = |e: antumbra::Error| e.to_string();
     let ready = group.ready()?;
     let settings = technique("hard");
     let keep = |i: &Instance| ready.keeps(i);
-    let mut stage = Stage::new(device, &ready.scene, &ready.view, group.extent, settings, keep)
-        .map_err(told)?;
-    let light = ready.scene.light(None).map_err(told)?.light;
-    let plan = stage.plan(&light, ready.window).map_err(told)?;
+    let mut stage = Stage::new(device, &ready.scene, &ready.view, group.extent, settings, keep)?;
+    let light = ready.scene.light(None)?.light;
+    let plan = stage.plan(&light, ready.window)?;
     let situation = plan.verdicts().situation().copied();
-    situation.ok_or_else(|| format!("{}: nothing can be shadowed", group.key()))
+    situation.ok_or_else(|| format!("{}: nothing can be shadowed", group.key()).into())
 }

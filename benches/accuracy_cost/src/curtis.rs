@@ -2,7 +2,7 @@
 //! tables 4.1 to 4.4 vary.
 
 use crate::findings::{Finding, Verdict};
-use crate::groups::{Against, Entry, Group, Stage};
+use crate::groups::{Entry, Group};
 use crate::options::Scale;
 use crate::scenes::{self, CUBE, DRAGON, SceneSpec, Source};
 use crate::store::Row;
@@ -65,13 +65,11 @@ fn entries(maps: &[u32], shown: bool) -> Vec<Entry> {
     let mut all = Vec::new();
     for version in &VERSIONS {
         for rays in RAYS {
-            all.extend(maps.iter().map(|map| Entry {
-                technique: version.technique,
-                curve: version.name.into(),
-                words: format!("{} rays={rays} map={map}", version.words).trim_start().into(),
-                x: f64::from(*map),
-                light_scale: 1.0,
-                shown: shown && rays == RAYS[1],
+            all.extend(maps.iter().map(|map| {
+                let words = format!("{} rays={rays} map={map}", version.words);
+                let words = words.trim_start().into();
+                let entry = Entry::new(version.technique, version.name, words, f64::from(*map));
+                Entry { shown: shown && rays == RAYS[1], ..entry }
             }));
         }
     }
@@ -83,19 +81,10 @@ pub fn groups(scale: &Scale) -> Vec<Group> {
     let mut groups = Vec::new();
     for (spec, light) in both() {
         for extent in SCREENS {
-            groups.push(Group {
-                study: STUDY,
-                scene: spec.name.clone(),
-                light: light.into(),
-                stage: Stage::Seen(spec.clone(), light),
-                extent,
-                against: Against::Traced,
-                at: Some(f64::from(extent[0])),
-                entries: entries(
-                    if extent == SCREENS[1] { &MAPS } else { &MAPS[1..2] },
-                    extent == SCREENS[0],
-                ),
-            });
+            let maps = if extent == SCREENS[1] { &MAPS[..] } else { &MAPS[1..2] };
+            let entries = entries(maps, extent == SCREENS[0]);
+            let group = Group::seen(STUDY, &spec, light, extent, entries);
+            groups.push(Group { at: Some(f64::from(extent[0])), ..group });
         }
     }
     groups.truncate(if scale.quick { 1 } else { groups.len() });
@@ -124,7 +113,7 @@ fn ratios(
     })
 }
 
-/// The same pixels, rays and map.
+/// Whether two rows have the same pixels, rays and map.
 fn alike(a: &Row, b: &Row) -> bool {
     a.extent == b.extent && a.x == b.x && same_rays(a, b)
 }
@@ -137,8 +126,8 @@ fn same_rays(a: &Row, b: &Row) -> bool {
 pub fn findings(rows: &[Row]) -> Vec<Finding> {
     let [hierarchical, forward, linear, unfiltered, _] = VERSIONS.map(|v| v.name);
     let cube = |r: &Row| r.scene == CUBE;
-    let finding = |figure, claim, told: Option<(bool, String)>| {
-        let (verdict, sentence) = match told {
+    let finding = |figure, claim, measured: Option<(bool, String)>| {
+        let (verdict, sentence) = match measured {
             None => (Verdict::Unmeasured, "not measured".into()),
             Some((true, sentence)) => (Verdict::Holds, sentence),
             Some((false, sentence)) => (Verdict::Refuted, sentence),
@@ -156,20 +145,20 @@ pub fn findings(rows: &[Row]) -> Vec<Finding> {
     };
     let kept: fn(&Row, bool) -> bool = |r, is_cube| (r.scene == CUBE) == is_cube;
     let forward = of(kept, false).zip(of(kept, true)).map(|([d0, d1], [c0, c1])| {
-        let told = format!(
+        let sentence = format!(
             "at fragments the dragon takes {d0:.2} to {d1:.2} times as long, the cube {c0:.2} to {c1:.2} \
              times; 1.4 to 2.1 and 1.0 to 1.2 there"
         );
-        (d0 + d1 > c0 + c1, told)
+        (d0 + d1 > c0 + c1, sentence)
     });
     let grown = |a: &Row, b: &Row| same_rays(a, b) && a.extent == b.extent && a.x == 4.0 * b.x;
     let growth = |version| ratios(rows, [version; 2], cube, grown);
     let sensitive = growth(hierarchical).zip(growth(linear)).map(|([h0, h1], [l0, l1])| {
-        let told = format!(
+        let sentence = format!(
             "from 256² to 1024² the cube takes {h0:.1} to {h1:.1} times as long by it, {l0:.1} to {l1:.1} by \
              the linear search; 1.9 to 2.0 and 1.5 to 1.6 there"
         );
-        (h0 + h1 > l0 + l1, told)
+        (h0 + h1 > l0 + l1, sentence)
     });
     vec![
         finding("4.1–4.4", "The hierarchical search is the faster one throughout.", searches),

@@ -1,6 +1,6 @@
 //! What Atty 2006 found, and whether it holds here, in a sentence made of the rows.
 //!
-//! Each finding is a law of a curve, and each law is asked of every object that was swept. It holds
+//! Each finding is a law of a curve, and each law is applied to every object that was swept. It holds
 //! where it holds for all of them; the sentence says what was measured either way.
 
 use crate::stats::{exponent, jaggedness, line, rising};
@@ -71,7 +71,7 @@ impl Swept<'_> {
 }
 
 /// Whether a law holds of an object, and a phrase of what was measured.
-type Told = Option<(bool, String)>;
+type Judged = Option<(bool, String)>;
 
 /// The objects of a study, in the rows' order.
 pub fn scenes<'a>(rows: &'a [Row], study: &str) -> Vec<&'a str> {
@@ -80,17 +80,17 @@ pub fn scenes<'a>(rows: &'a [Row], study: &str) -> Vec<&'a str> {
     all.filter(|s| seen.insert(*s)).collect()
 }
 
-/// Asks a law of each object.
-fn ask(rows: &[Row], study: &'static str, law: fn(&Swept) -> Told) -> (Verdict, String) {
+/// Applies a law to each object.
+fn apply(rows: &[Row], study: &'static str, law: fn(&Swept) -> Judged) -> (Verdict, String) {
     let of = |scene| law(&Swept { rows, study, scene }).map(|(holds, text)| (scene, holds, text));
-    let told: Vec<_> = scenes(rows, study).into_iter().filter_map(of).collect();
-    let verdict = match (told.iter().any(|t| t.1), told.iter().all(|t| t.1)) {
-        _ if told.is_empty() => Verdict::Unmeasured,
+    let judged: Vec<_> = scenes(rows, study).into_iter().filter_map(of).collect();
+    let verdict = match (judged.iter().any(|t| t.1), judged.iter().all(|t| t.1)) {
+        _ if judged.is_empty() => Verdict::Unmeasured,
         (_, true) => Verdict::Holds,
         (true, false) => Verdict::InPart,
         (false, false) => Verdict::Refuted,
     };
-    let phrases: Vec<_> = told
+    let phrases: Vec<_> = judged
         .iter()
         .map(|(scene, holds, text)| format!("{scene}: {text}{}", if *holds { "" } else { " (no)" }))
         .collect();
@@ -106,7 +106,7 @@ fn percent(fraction: f64) -> String {
 }
 
 /// The paper's figure, what it says there, and the study and the law that tell.
-type Claim = (&'static str, &'static str, &'static str, fn(&Swept) -> Told);
+type Claim = (&'static str, &'static str, &'static str, fn(&Swept) -> Judged);
 
 /// In the paper's order.
 const CLAIMS: [Claim; 10] = [
@@ -140,13 +140,13 @@ const CLAIMS: [Claim; 10] = [
 /// All findings.
 pub fn findings(rows: &[Row]) -> Vec<Finding> {
     let finding = |(figure, claim, study, law)| {
-        let (verdict, sentence) = ask(rows, study, law);
+        let (verdict, sentence) = apply(rows, study, law);
         Finding { figure, claim, verdict, sentence }
     };
     CLAIMS.map(finding).into()
 }
 
-fn flat(swept: &Swept) -> Told {
+fn flat(swept: &Swept) -> Judged {
     let points = swept.errors(TWO);
     let mean = |points: Vec<f64>| {
         (!points.is_empty()).then(|| points.iter().sum::<f64>() / points.len() as f64)
@@ -160,7 +160,7 @@ fn flat(swept: &Swept) -> Told {
     Some((beyond > near * (1.0 - FLAT) - ALIKE, text))
 }
 
-fn sides(swept: &Swept) -> Told {
+fn sides(swept: &Swept) -> Judged {
     let one = swept.errors(ONE);
     let two = swept.errors(TWO);
     let gains: Vec<f64> = one.iter().zip(&two).map(|(a, b)| a.1 - b.1).collect();
@@ -175,7 +175,7 @@ fn sides(swept: &Swept) -> Told {
     (!gains.is_empty()).then_some((better == gains.len(), text))
 }
 
-fn spikes(swept: &Swept) -> Told {
+fn spikes(swept: &Swept) -> Judged {
     let jagged = |scene: &str| {
         let errors = Swept { scene, ..*swept }.errors(TWO);
         jaggedness(&errors.iter().map(|p| p.1).collect::<Vec<_>>())
@@ -194,13 +194,13 @@ fn rise(points: &[(f64, f64)]) -> Option<(bool, f64, String)> {
     Some((order > 0.5, last - first, text))
 }
 
-fn grows(swept: &Swept) -> Told {
+fn grows(swept: &Swept) -> Judged {
     let mut points = swept.errors(TWO);
     points.retain(|p| p.0 > POINT_LIGHT);
     rise(&points).map(|(rises, _, text)| (rises, text))
 }
 
-fn under(swept: &Swept) -> Told {
+fn under(swept: &Swept) -> Judged {
     let points = swept.errors(TWO);
     let least = points.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
     let reach = points.iter().map(|p| p.0.abs()).fold(0.0, f64::max);
@@ -208,11 +208,11 @@ fn under(swept: &Swept) -> Told {
     Some((least.0.abs() <= 0.5 * reach, text))
 }
 
-fn towards(swept: &Swept) -> Told {
+fn towards(swept: &Swept) -> Judged {
     rise(&swept.errors(TWO)).map(|(rises, gain, text)| (rises && gain > 0.0, text))
 }
 
-fn polygons(swept: &Swept) -> Told {
+fn polygons(swept: &Swept) -> Judged {
     let points = swept.times(TWO);
     let line = line(&points)?;
     let text = format!(
@@ -224,7 +224,7 @@ fn polygons(swept: &Swept) -> Told {
     Some((line.r2 > 0.95 && line.slope > 0.0, text))
 }
 
-fn pixels(swept: &Swept) -> Told {
+fn pixels(swept: &Swept) -> Judged {
     let points = swept.times(TWO);
     let all = exponent(&points)?;
     let squares: Vec<_> = points.iter().map(|p| (p.0 * p.0, p.1)).collect();
@@ -233,14 +233,14 @@ fn pixels(swept: &Swept) -> Told {
     Some((line.r2 > 0.95, text))
 }
 
-fn time_and_light(swept: &Swept) -> Told {
+fn time_and_light(swept: &Swept) -> Judged {
     let points = swept.times(TWO);
     let (first, last) = (points.first()?, points.last()?);
     let text = format!("{:.1} ms at {} m to {:.1} ms at {} m", first.1, first.0, last.1, last.0);
     Some((rising(&points)? > 0.5, text))
 }
 
-fn small_maps(swept: &Swept) -> Told {
+fn small_maps(swept: &Swept) -> Judged {
     let small = swept.errors("N = 64");
     let large = swept.errors("N = 256");
     let ratio = |i: usize| Some(small.get(i)?.1 / large.get(i)?.1);
@@ -273,11 +273,8 @@ mod tests {
 
     #[test]
     fn nothing_measured_is_no_verdict() {
-        assert!(
-            findings(&[])
-                .iter()
-                .all(|f| f.verdict == Verdict::Unmeasured && f.sentence == "not measured")
-        );
+        let none = |f: &Finding| f.verdict == Verdict::Unmeasured && f.sentence == "not measured";
+        assert!(findings(&[]).iter().all(none));
     }
 
     #[test]
@@ -293,9 +290,9 @@ mod tests {
         assert_eq!(verdict(&rows, "Fig. 17", "200"), Verdict::Refuted);
         // The object that differs is named.
         let both = [swept(sweeps::SIDE, "card", TWO, &flat), rows].concat();
-        let told = &findings(&both)[0];
-        assert_eq!(told.verdict, Verdict::InPart);
-        assert!(told.sentence.contains("(no)"), "{}", told.sentence);
+        let finding = &findings(&both)[0];
+        assert_eq!(finding.verdict, Verdict::InPart);
+        assert!(finding.sentence.contains("(no)"), "{}", finding.sentence);
     }
 
     #[test]

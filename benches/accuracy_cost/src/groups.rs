@@ -1,7 +1,7 @@
 //! What is measured together: the same pixels, the same truth, in turns.
 
 use crate::Problem;
-use crate::scenes::{self, SceneSpec};
+use crate::scenes::{self, SceneSpec, Source};
 use antumbra::Technique;
 use antumbra::scene::{Camera, Instance, Role, Scene, generate};
 use antumbra_harness::{HeadlessDevice, Stage as Pixels, View};
@@ -58,6 +58,13 @@ pub struct Entry {
     pub shown: bool,
 }
 
+impl Entry {
+    /// A point of a curve under the light as it is, and not in the picture strip.
+    pub fn new(technique: &'static str, curve: &str, words: String, x: f64) -> Self {
+        Self { technique, curve: curve.into(), words, x, light_scale: 1.0, shown: false }
+    }
+}
+
 /// Rows that are measured together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Group {
@@ -97,12 +104,32 @@ impl Ready {
         settings: Technique,
     ) -> Result<Pixels, Problem> {
         let keep = |i: &Instance| self.keeps(i);
-        Pixels::new(device, &self.scene, &self.view, extent, settings, keep)
-            .map_err(|e| e.to_string())
+        Ok(Pixels::new(device, &self.scene, &self.view, extent, settings, keep)?)
     }
 }
 
 impl Group {
+    /// A group of a scene under one of its lights, by its camera; only the card's truth is exact in every view.
+    pub fn seen(
+        study: &'static str,
+        spec: &SceneSpec,
+        light: &'static str,
+        extent: [u32; 2],
+        entries: Vec<Entry>,
+    ) -> Self {
+        let exact = spec.source == Source::Made("card");
+        Self {
+            study,
+            scene: spec.name.clone(),
+            light: light.into(),
+            stage: Stage::Seen(spec.clone(), light),
+            extent,
+            against: if exact { Against::Card } else { Against::Traced },
+            at: None,
+            entries,
+        }
+    }
+
     /// The name under which it is stored: what it measures, and nothing that only orders it.
     pub fn key(&self) -> String {
         let at = self.at.map_or_else(String::new, |at| format!(", {at}"));
@@ -133,8 +160,7 @@ impl Group {
                 let mut object = Scene::default();
                 let mesh = generate::uv_sphere(0.5, rows + 1, *rows);
                 object.add("sphere", mesh, DMat4::IDENTITY, Role::Occluder);
-                let scene = generate::normalized(&object, scenes::square(0.4)?)
-                    .map_err(|e| e.to_string())?;
+                let scene = generate::normalized(&object, scenes::square(0.4)?)?;
                 Ok(Ready { scene, view: ground(2.2), window: None, occluders_seen: false })
             }
         }

@@ -29,6 +29,7 @@ pub mod options;
 pub mod pareto;
 pub mod picture;
 pub mod plot;
+pub mod problem;
 pub mod progress;
 pub mod report;
 pub mod run;
@@ -41,5 +42,4 @@ pub mod sweeps;
 pub mod techniques;
 pub mod truth;
 
-/// What went wrong, as a sentence for a person that names the file, scene or setting: every error of the bench.
-pub type Problem = String;
+pub use problem::Problem;

@@ -13,7 +13,7 @@ fn main() -> ExitCode {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
         Err(problem) => {
-            eprintln!("{}", problem.replace('\n', " "));
+            eprintln!("{}", problem.0.replace('\n', " "));
             ExitCode::from(2)
         }
     }

@@ -21,7 +21,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::time::Duration;
 
-/// Fewest frames that quartiles are told of.
+/// Fewest frames that quartiles are made of.
 const FEWEST_FRAMES: usize = 3;
 
 /// Groups of fewer rows than this take as many frames as if they had that many.
@@ -45,29 +45,29 @@ struct Candidate<'a> {
 
 impl Bench<'_> {
     /// Measures a group. Whatever fails, panics included, is a row that says so.
-    pub fn measure(&self, group: &Group, tell: &dyn Fn(&str)) -> Vec<Row> {
-        let work = || self.try_measure(group, tell);
+    pub fn measure(&self, group: &Group, say: &dyn Fn(&str)) -> Vec<Row> {
+        let work = || self.try_measure(group, say);
         let done = catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
             let text = panic.downcast_ref::<String>().map(String::as_str);
             let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
-            Err(format!("it panicked: {}", text.unwrap_or("without a word")))
+            Err(format!("it panicked: {}", text.unwrap_or("without a word")).into())
         });
         done.unwrap_or_else(|problem| vec![failed(group, problem)])
     }
 
-    fn try_measure(&self, group: &Group, tell: &dyn Fn(&str)) -> Result<Vec<Row>, Problem> {
+    fn try_measure(&self, group: &Group, say: &dyn Fn(&str)) -> Result<Vec<Row>, Problem> {
         // Where nothing of it is there yet, nothing is loaded either.
         let methods: Vec<_> = group.entries.iter().map(|e| method(e.technique, &e.words)).collect();
         if methods.iter().all(|m| matches!(m, Ok(None))) {
             let row = |e| blank(group, Some(e), 0, [0.0; 2], Outcome::NotThere);
             return Ok(group.entries.iter().map(row).collect());
         }
-        tell("scene");
+        say("scene");
         let ready = group.ready()?;
-        let light = ready.scene.light(None).map_err(|e| e.to_string())?.clone();
+        let light = ready.scene.light(None)?.clone();
         let pixels = ready.stage(self.device, group.extent, Technique::default())?;
         let receivers = truth::receivers(pixels.gbuffer())?;
-        let tracer = Tracer::new(&ready.scene).map_err(|e| e.to_string())?;
+        let tracer = Tracer::new(&ready.scene)?;
         let mut candidates: Vec<Candidate> = Vec::new();
         for (entry, method) in group.entries.iter().zip(methods) {
             let state =
@@ -76,34 +76,35 @@ impl Bench<'_> {
         }
         let lit = |c: &Candidate| scaled(&light.light, c.entry.light_scale);
         for candidate in &mut candidates {
-            tell(&format!("warming up {} {}", candidate.entry.technique, candidate.entry.words));
+            say(&format!("warming up {} {}", candidate.entry.technique, candidate.entry.words));
             let light = lit(candidate)?;
             candidate.warm_up(&tracer, &light, &receivers);
         }
-        self.take_turns(&mut candidates, tell, |c| {
+        self.take_turns(&mut candidates, say, |c| {
             let light = lit(c)?;
             c.run(&tracer, &light, &receivers)
         });
-        tell("truth");
+        say("truth");
         let truth =
             truth::truth(&ready.scene, &receivers, group.against, self.scale.rays, self.cache)?;
-        tell("errors");
+        say("errors");
         let seen = ready.occluders_seen.then(|| Seen::of(&pixels, &light)).transpose()?;
-        let half = light.light.half_extents().map(|h| 2.0 * h);
+        let sides = light.light.half_extents().map(|h| 2.0 * h);
         let triangles = ready.scene.triangles();
         if let Some(seen) = &seen
             && candidates.iter().any(|c| c.entry.shown)
         {
             self.paint(group, &candidates, &truth, seen, &mask(&receivers));
         }
-        let rows: Vec<_> = candidates.iter_mut().map(Candidate::told).collect();
-        let compared = rows.into_par_iter().map(|(entry, told)| {
-            let outcome = told.and_then(|told| {
-                let Some((times, image)) = told else { return Ok(Outcome::NotThere) };
+        let rows: Vec<_> = candidates.iter_mut().map(Candidate::result).collect();
+        let compared = rows.into_par_iter().map(|(entry, result)| {
+            let outcome = result.and_then(|result| {
+                let Some((times, image)) = result else { return Ok(Outcome::NotThere) };
                 let errors = errors(&truth, &image, &receivers, &seen, group)?;
                 Ok(Outcome::Measured { errors, times })
             });
-            blank(group, Some(entry), triangles, half, outcome.unwrap_or_else(Outcome::Failed))
+            let outcome = outcome.unwrap_or_else(|problem| Outcome::Failed(problem.0));
+            blank(group, Some(entry), triangles, sides, outcome)
         });
         Ok(compared.collect())
     }
@@ -113,14 +114,14 @@ impl Bench<'_> {
     fn take_turns(
         &self,
         candidates: &mut [Candidate],
-        tell: &dyn Fn(&str),
+        say: &dyn Fn(&str),
         mut run: impl FnMut(&mut Candidate) -> Result<(), Problem>,
     ) {
         let share = Duration::from_secs(if self.scale.quick { 1 } else { 12 });
         // Small groups, whose times are compared with those of others, take more frames.
         let rounds = self.scale.rounds * (SMALL_GROUP / candidates.len().max(1)).max(1);
         for round in 0..rounds {
-            tell(&format!("round {} of {rounds}", round + 1));
+            say(&format!("round {} of {rounds}", round + 1));
             for candidate in candidates.iter_mut() {
                 let spent: Duration = candidate.frames.iter().map(|f| f.frame).sum();
                 let enough = candidate.frames.len() >= FEWEST_FRAMES && spent > share;
@@ -179,7 +180,7 @@ impl Candidate<'_> {
 
     /// Times and image, or nothing where the technique is not there.
     #[allow(clippy::type_complexity, reason = "a name would only be used here")]
-    fn told(&mut self) -> (&Entry, Result<Option<(Times, Vec<f32>)>, Problem>) {
+    fn result(&mut self) -> (&Entry, Result<Option<(Times, Vec<f32>)>, Problem>) {
         let gpu_bytes = match &mut self.state {
             Err(problem) => return (self.entry, Err(problem.clone())),
             Ok(None) => return (self.entry, Ok(None)),
@@ -219,11 +220,10 @@ struct Seen {
 
 impl Seen {
     fn of(stage: &Stage, light: &AreaLight) -> Result<Self, Problem> {
-        let told = |e: antumbra::Error| e.to_string();
         Ok(Self {
             light: light.clone(),
-            positions: stage.gbuffer().positions().map_err(told)?,
-            normals: stage.gbuffer().normals().map_err(told)?,
+            positions: stage.gbuffer().positions()?,
+            normals: stage.gbuffer().normals()?,
         })
     }
 
@@ -241,30 +241,15 @@ fn errors(
     group: &Group,
 ) -> Result<Errors, Problem> {
     let mask = mask(receivers);
-    let s = ErrorSummary::between(&truth.visible, image, Some(&mask)).map_err(|e| e.to_string())?;
+    let summary = ErrorSummary::between(&truth.visible, image, Some(&mask))?;
     // E|noise| of a normal error, in the penumbra alone, over all that is counted.
-    let floor = (2.0 / std::f64::consts::PI).sqrt() * truth.noise * s.penumbra_pixels as f64
-        / s.pixels.max(1) as f64;
+    let noise_floor =
+        (2.0 / std::f64::consts::PI).sqrt() * truth.noise * summary.penumbra_pixels as f64
+            / summary.pixels.max(1) as f64;
     let flip = seen
         .as_ref()
         .map(|seen| picture::flip(group.extent, &seen.shade(&truth.visible), &seen.shade(image)));
-    Ok(Errors {
-        pixels: s.pixels,
-        mean_abs_error: s.mean_abs_error,
-        rmse: s.rmse,
-        p99: s.p99,
-        worst: s.worst,
-        bias: s.bias,
-        penumbra_pixels: s.penumbra_pixels,
-        penumbra_mean: s.penumbra_mean,
-        false_umbra: s.false_umbra,
-        false_light: s.false_light,
-        lit_pixels: s.lit_pixels,
-        lit_error: s.lit_error,
-        flip,
-        truth_noise: truth.noise,
-        noise_floor: floor,
-    })
+    Ok(Errors { summary, flip, truth_noise: truth.noise, noise_floor })
 }
 
 fn blank(
@@ -291,5 +276,5 @@ fn blank(
 
 /// The row of a group that could not be measured at all.
 fn failed(group: &Group, problem: Problem) -> Row {
-    blank(group, None, 0, [0.0; 2], Outcome::Failed(problem))
+    blank(group, None, 0, [0.0; 2], Outcome::Failed(problem.0))
 }

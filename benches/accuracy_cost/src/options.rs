@@ -19,7 +19,7 @@ pub struct Scale {
 }
 
 /// Rays are cheap beside frames on two cores, so that even the quick truth takes 256: with 64, its
-/// noise was half of what is told apart here.
+/// noise was half of the differences that count here.
 pub const QUICK: Scale = Scale { view: [256, 192], grid: 96, rays: 256, rounds: 3, quick: true };
 
 /// See [`QUICK`].
@@ -101,13 +101,8 @@ impl Options {
 
     /// The command that makes this run; where it goes changes no number, and is left out.
     pub fn command(&self) -> String {
-        let mut words = String::new();
-        if self.quick {
-            words.push_str(" --quick");
-        }
-        if self.choices {
-            words.push_str(" --choices");
-        }
+        let switches = [(self.quick, " --quick"), (self.choices, " --choices")];
+        let mut words: String = switches.iter().filter(|s| s.0).map(|s| s.1).collect();
         if let Some([width, height]) = self.size {
             words.push_str(&format!(" --size {width}x{height}"));
         }
@@ -134,7 +129,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_command_is_told_without_where_it_went() {
+    fn the_command_says_nothing_of_where_the_report_goes() {
         let parse =
             |words: &[&str]| Options::parse_from(["x"].iter().chain(words)).resolved().command();
         assert_eq!(parse(&["--bench"]), "cargo bench --bench accuracy_cost");

@@ -10,8 +10,8 @@ pub struct Point {
 
 /// The indices of the points that no other point beats in both, fastest first.
 ///
-/// Of several that are equal in both, the first stands for all. Points that are not numbers are
-/// beaten by every other and never appear.
+/// Where several are equal in both, the first stands for all. Points that are not numbers are beaten by
+/// every other and never appear.
 pub fn front(points: &[Point]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len())
         .filter(|&i| points[i].ms.is_finite() && points[i].error.is_finite())
@@ -52,7 +52,7 @@ mod tests {
     }
 
     #[test]
-    fn equals_are_told_once_and_nonsense_never() {
+    fn equals_appear_once_and_nonsense_never() {
         let all = points(&[(1.0, 0.5), (1.0, 0.5), (f64::NAN, 0.0), (0.5, f64::NAN)]);
         assert_eq!(front(&all), [0]);
         assert!(front(&[]).is_empty());

@@ -15,7 +15,7 @@ pub const ERROR_SCALE: f32 = 0.2;
 const NEUTRAL: [f32; 3] = [247.0, 247.0, 247.0];
 const NOTHING: [u8; 3] = [222, 222, 224];
 
-/// Too dark and too bright at [`ERROR_SCALE`]: the ends of ColorBrewer's PuOr, told apart by every
+/// Too dark and too bright at [`ERROR_SCALE`]: the ends of ColorBrewer's PuOr, distinct to every
 /// kind of color vision, and by their lightness both from neutral.
 const TOO_DARK: [f32; 3] = [179.0, 88.0, 6.0];
 const TOO_BRIGHT: [f32; 3] = [84.0, 39.0, 136.0];
@@ -57,7 +57,7 @@ pub fn png([width, height]: [u32; 2], rgb: &[u8]) -> Result<Vec<u8>, Problem> {
         image::codecs::png::FilterType::Adaptive,
     )
     .write_image(rgb, width, height, ExtendedColorType::Rgb8)
-    .map_err(|e| format!("PNG: {e}"))?;
+    .map_err(Problem::of("PNG"))?;
     Ok(bytes)
 }
 
@@ -99,7 +99,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn errors_are_white_at_none_and_told_apart_by_sign() {
+    fn errors_are_white_at_none_and_differ_by_sign() {
         assert_eq!(color(0.0), [247; 3]);
         assert_eq!(color(-1.0), [179, 88, 6]);
         assert_eq!(color(ERROR_SCALE), [84, 39, 136]);

@@ -1,8 +1,9 @@
 //! How long it will take: from what the groups measured so far took.
 
-use crate::groups::{Group, MATRIX};
+use crate::groups::{Against, Group, MATRIX};
 use crate::options::Scale;
 use crate::store::Row;
+use crate::techniques::{RAY_TRACER, method, value_of};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::collections::HashMap;
 use std::time::{Duration, Instant};
@@ -16,7 +17,7 @@ const UNKNOWN_MS: f64 = 60.0;
 /// What rows cost, learnt from those that were measured.
 #[derive(Default)]
 pub struct Estimate {
-    /// ms a frame and pixels, by technique and settings, the last one told.
+    /// ms a frame and pixels, by technique and settings, of the last row.
     known: HashMap<(String, String), (f64, f64)>,
     /// Seconds that known costs add up to and seconds taken, of the groups measured in this process:
     /// of the views, and of the sweeps, whose rows are many and cheap.
@@ -37,15 +38,15 @@ impl Estimate {
 
     /// Learns how wrong it is on a group whose rows it has learnt.
     pub fn correct(&mut self, group: &Group, scale: &Scale, taken: f64) {
-        let told = self.seconds(group, scale);
+        let estimated = self.seconds(group, scale);
         let sums = if group.study == MATRIX { &mut self.views } else { &mut self.sweeps };
-        *sums = [sums[0] + told, sums[1] + taken];
+        *sums = [sums[0] + estimated, sums[1] + taken];
     }
 
     /// A group's seconds, as wrong as such groups have been.
     fn corrected(&self, group: &Group, scale: &Scale) -> f64 {
-        let [told, taken] = if group.study == MATRIX { self.views } else { self.sweeps };
-        let factor = if told > 0.0 { (taken / told).clamp(0.2, 5.0) } else { 1.0 };
+        let [estimated, taken] = if group.study == MATRIX { self.views } else { self.sweeps };
+        let factor = if estimated > 0.0 { (taken / estimated).clamp(0.2, 5.0) } else { 1.0 };
         factor * self.seconds(group, scale)
     }
 
@@ -55,8 +56,7 @@ impl Estimate {
         let frames = (scale.rounds + 1) as f64;
         let mut ms = 0.0;
         for entry in &group.entries {
-            let there = crate::techniques::method(entry.technique, &entry.words);
-            if matches!(there, Ok(None)) {
+            if matches!(method(entry.technique, &entry.words), Ok(None)) {
                 continue;
             }
             let same = self.known.get(&(entry.technique.to_string(), entry.words.clone()));
@@ -65,16 +65,14 @@ impl Estimate {
                 known.or_else(|| self.typical(entry.technique, pixels)).unwrap_or(UNKNOWN_MS);
             ms += SETUP_S * 1e3 + frames * frame;
         }
-        if group.against == crate::groups::Against::Traced {
+        if group.against == Against::Traced {
             // A ray's time from the tracer's own rows, which send the same rays.
             let per_ray = self
                 .known
                 .iter()
-                .filter(|((technique, _), _)| technique == crate::techniques::RAY_TRACER)
-                .filter_map(|((_, words), (ms, of))| {
-                    Some(ms / of / crate::techniques::value_of(words, "rays")?)
-                })
-                .fold(None, |least: Option<f64>, ms| Some(least.map_or(ms, |l| l.min(ms))));
+                .filter(|((technique, _), _)| technique == RAY_TRACER)
+                .filter_map(|((_, words), (ms, of))| Some(ms / of / value_of(words, "rays")?))
+                .reduce(f64::min);
             ms += per_ray.unwrap_or(5e-4) * pixels * f64::from(scale.rays);
         }
         ms * 1e-3
@@ -116,7 +114,7 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// Of so many groups.
+    /// The progress of a run of so many groups.
     pub fn new(groups: usize) -> Self {
         let bar = ProgressBar::with_draw_target(Some(groups as u64), ProgressDrawTarget::stderr());
         let style = ProgressStyle::with_template("{bar:24} {pos}/{len}  {prefix}  {wide_msg}");
@@ -135,17 +133,9 @@ impl Progress {
         self.bar.inc(1);
         self.bar.set_prefix(format!("{} left", duration(left)));
         if self.plain {
-            eprintln!(
-                "{}/{}  {group}: {took:.1} s; {} left",
-                self.bar.position(),
-                self.length(),
-                duration(left)
-            );
+            let (done, all) = (self.bar.position(), self.bar.length().unwrap_or(0));
+            eprintln!("{done}/{all}  {group}: {took:.1} s; {} left", duration(left));
         }
-    }
-
-    fn length(&self) -> u64 {
-        self.bar.length().unwrap_or(0)
     }
 
     /// A line that stays.
@@ -175,9 +165,9 @@ mod tests {
     use crate::studies::all;
 
     #[test]
-    fn durations_are_told_as_a_person_would() {
-        let told = [3.2, 89.0, 100.0, 5000.0, 11_100.0].map(duration);
-        assert_eq!(told, ["3 s", "89 s", "2 min", "83 min", "3 h 05 min"]);
+    fn durations_are_as_a_person_would_say() {
+        let texts = [3.2, 89.0, 100.0, 5000.0, 11_100.0].map(duration);
+        assert_eq!(texts, ["3 s", "89 s", "2 min", "83 min", "3 h 05 min"]);
     }
 
     #[test]

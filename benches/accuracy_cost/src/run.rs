@@ -53,16 +53,9 @@ pub fn run(options: &Options) -> Result<bool, Problem> {
     if options.report {
         let (header, rows) = Store::read(&measured)?;
         let cache = kept(&options.out, &header)?;
-        return finish(
-            &Report {
-                header: &header,
-                rows: &rows,
-                left_out: &[],
-                cache: &cache,
-                hard_cases: &store::read(&options.out)?,
-            },
-            options,
-        );
+        let (rows, hard_cases) = (&rows, &store::read(&options.out)?);
+        let report = Report { header: &header, rows, left_out: &[], cache: &cache, hard_cases };
+        return finish(&report, options);
     }
     let scale = match (options.choices, options.quick) {
         (true, _) => options.choice(),
@@ -77,7 +70,7 @@ pub fn run(options: &Options) -> Result<bool, Problem> {
     if let Some(text) = &options.only {
         groups = only(groups, text)?;
     }
-    let device = HeadlessDevice::new(&HeadlessOptions::default()).map_err(|e| e.to_string())?;
+    let device = HeadlessDevice::new(&HeadlessOptions::default())?;
     let header = Header {
         command: options.command(),
         commit: commit(),
@@ -85,7 +78,7 @@ pub fn run(options: &Options) -> Result<bool, Problem> {
         quick: scale.quick,
         extent: scale.view,
         truth_rays: scale.rays,
-        scenes: own.iter().map(told).collect(),
+        scenes: own.iter().map(dated).collect(),
     };
     let cache = kept(&options.out, &header)?;
     let mut store = Store::open(&measured, &header)?;
@@ -118,13 +111,13 @@ fn only(groups: Vec<Group>, text: &str) -> Result<Vec<Group>, Problem> {
         names(|g| &g.light)
     );
     let kept: Vec<_> = groups.into_iter().filter(|g| g.key().contains(text)).collect();
-    if kept.is_empty() { Err(problem) } else { Ok(kept) }
+    if kept.is_empty() { Err(problem.into()) } else { Ok(kept) }
 }
 
 /// Measures the table of hard cases; whether nothing is broken.
 fn hard_cases(options: &Options) -> Result<bool, Problem> {
-    std::fs::create_dir_all(&options.out).map_err(|e| format!("{}: {e}", options.out.display()))?;
-    let device = HeadlessDevice::new(&HeadlessOptions::default()).map_err(|e| e.to_string())?;
+    std::fs::create_dir_all(&options.out).map_err(Problem::of(options.out.display()))?;
+    let device = HeadlessDevice::new(&HeadlessOptions::default())?;
     store::measure(&device, &options.out)
 }
 
@@ -195,7 +188,7 @@ fn kept(out: &Path, header: &Header) -> Result<PathBuf, Problem> {
     format!("{header:?}").bytes().for_each(|b| hash.write_u64(u64::from(b)));
     let all = out.join("cache");
     let own = all.join(format!("{:016x}", hash.finish()));
-    std::fs::create_dir_all(&own).map_err(|e| format!("--out {}: {e}", out.display()))?;
+    std::fs::create_dir_all(&own).map_err(Problem::of(format!("--out {}", out.display())))?;
     let others = std::fs::read_dir(&all).into_iter().flatten().flatten().map(|e| e.path());
     for other in others.filter(|path| *path != own && path.is_dir()) {
         // What cannot be removed only takes room.
@@ -204,8 +197,8 @@ fn kept(out: &Path, header: &Header) -> Result<PathBuf, Problem> {
     Ok(own)
 }
 
-/// A scene's file, so that a run with another one is another run.
-fn told(spec: &SceneSpec) -> String {
+/// A scene's file with its size and date, so that a run with another one is another run.
+fn dated(spec: &SceneSpec) -> String {
     let Source::File(path) = &spec.source else { return spec.name.clone() };
     let date = std::fs::metadata(path).and_then(|m| Ok((m.len(), m.modified()?)));
     format!("{} {:?}", path.display(), date.ok())
@@ -220,7 +213,7 @@ mod tests {
         let groups = studies::all(&QUICK, &[]);
         let bunnies = only(groups.clone(), "bunny").unwrap();
         assert!(!bunnies.is_empty() && bunnies.len() < groups.len());
-        let problem = only(groups, "rooom").unwrap_err();
+        let Problem(problem) = only(groups, "rooom").unwrap_err();
         assert!(problem.starts_with("--only rooom: no group's name holds it"), "{problem}");
         for name in ["light size", "matrix", "bunny", "medium"] {
             assert!(problem.contains(name), "{name}: {problem}");

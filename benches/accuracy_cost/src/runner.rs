@@ -40,11 +40,6 @@ pub enum Runner {
     },
 }
 
-/// A result with its error as a sentence.
-fn told<T>(result: Result<T, antumbra::Error>) -> Result<T, Problem> {
-    result.map_err(|e| e.to_string())
-}
-
 impl Runner {
     /// What a method takes to run; nothing where the crate does not have it.
     pub fn new(
@@ -74,24 +69,24 @@ impl Runner {
                     return Ok(None);
                 };
                 let mut stage = stage(*settings)?;
-                let plan = told(stage.plan(light, ready.window))?;
+                let plan = stage.plan(light, ready.window)?;
                 let scheme = ReadbackScheme::new(device, &ready.scene, side, side);
-                let scheme = Box::new(told(scheme)?);
-                told(stage.run(&plan))?;
+                let scheme = Box::new(scheme?);
+                stage.run(&plan)?;
                 Some(Self::Readback { scheme, window: ready.window, stage, plan: Box::new(plan) })
             }
             Some(Method::Node(settings)) => {
                 let mut stage = stage(*settings)?;
                 let light = scaled(light, entry.light_scale)?;
-                let plan = told(stage.plan(&light, ready.window))?;
+                let plan = stage.plan(&light, ready.window)?;
                 Some(Self::Node { stage, plan: Box::new(plan) })
             }
             Some(Method::Forward(settings)) => {
                 let mut stage = stage(*settings)?;
-                let plan = told(stage.plan(light, ready.window))?;
+                let plan = stage.plan(light, ready.window)?;
                 let keep = |i: &Instance| ready.keeps(i);
                 let forward = Forward::new(device, *stage, plan, &ready.scene, keep);
-                Some(Self::Forward { forward: Box::new(told(forward)?) })
+                Some(Self::Forward { forward: Box::new(forward?) })
             }
         })
     }
@@ -104,11 +99,11 @@ impl Runner {
         receivers: &[Receiver],
     ) -> Result<(FrameTimes, Option<Vec<f32>>), Problem> {
         match self {
-            Self::Node { stage, plan } => Ok((told(stage.run(plan))?, None)),
-            Self::Forward { forward } => Ok((told(forward.run())?, None)),
+            Self::Node { stage, plan } => Ok((stage.run(plan)?, None)),
+            Self::Forward { forward } => Ok((forward.run()?, None)),
             Self::Readback { scheme, window, stage, plan } => {
-                let times = told(scheme.run(light, *window))?;
-                let resolve = told(stage.run(plan))?.passes;
+                let times = scheme.run(light, *window)?;
+                let resolve = stage.run(plan)?.passes;
                 let (name, ms) = resolve.last().copied().ok_or("the device has no timestamps")?;
                 let pass = |name, time: Duration| (name, time.as_secs_f64() * 1e3);
                 let times = FrameTimes {
@@ -125,7 +120,7 @@ impl Runner {
             }
             Self::Rays { sampling } => {
                 let started = Instant::now();
-                let traced = told(tracer.visible_fractions(light, receivers, sampling))?;
+                let traced = tracer.visible_fractions(light, receivers, sampling)?;
                 let frame = started.elapsed();
                 let times = FrameTimes { frame, record: Duration::ZERO, passes: Vec::new() };
                 Ok((times, Some(traced.visible)))
@@ -135,26 +130,21 @@ impl Runner {
 
     /// The last frame's image, where the device has it.
     pub fn image(&mut self) -> Result<Option<Vec<f32>>, Problem> {
-        match self {
-            Self::Node { stage, .. } | Self::Readback { stage, .. } => {
-                told(stage.visibility()).map(Some)
-            }
-            Self::Forward { forward } => told(forward.visibility()).map(Some),
-            Self::Rays { .. } => Ok(None),
-        }
+        Ok(match self {
+            Self::Node { stage, .. } | Self::Readback { stage, .. } => Some(stage.visibility()?),
+            Self::Forward { forward } => Some(forward.visibility()?),
+            Self::Rays { .. } => None,
+        })
     }
 
     /// Bytes of the node's memory.
     pub fn bytes(&mut self) -> Result<u64, Problem> {
-        match self {
-            Self::Rays { .. } => Ok(0),
-            Self::Forward { forward } => {
-                Ok(told(forward.memory())?.iter().map(|(_, bytes)| bytes).sum())
-            }
+        Ok(match self {
+            Self::Rays { .. } => 0,
+            Self::Forward { forward } => forward.memory()?.iter().map(|(_, bytes)| bytes).sum(),
             Self::Node { stage, .. } | Self::Readback { stage, .. } => {
-                let node = told(stage.node())?;
-                Ok(node.memory().iter().map(|r| r.bytes).sum())
+                stage.node()?.memory().iter().map(|r| r.bytes).sum()
             }
-        }
+        })
     }
 }

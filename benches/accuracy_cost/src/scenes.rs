@@ -8,6 +8,7 @@ use antumbra::scene::generate::{self, GROUND_SIDE, cuboid};
 use antumbra::scene::{Camera, Role, Scene, from_gltf};
 use antumbra_harness::ply::ply;
 use glam::{DMat4, DVec3};
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 /// The three lights of the made scenes: names and sides in metres, over objects 1 m across whose top
@@ -61,21 +62,15 @@ pub fn standard() -> Vec<SceneSpec> {
 
 /// The glTF files of a folder, sorted by name.
 pub fn own(folder: &Path) -> Result<Vec<SceneSpec>, Problem> {
-    let told = |e: std::io::Error| format!("--scenes {}: {e}", folder.display());
-    let mut files = Vec::new();
-    for entry in std::fs::read_dir(folder).map_err(told)? {
-        let path = entry.map_err(told)?.path();
-        let extension = path.extension().map(|e| e.to_ascii_lowercase());
-        if extension.is_some_and(|e| e == "glb" || e == "gltf") {
-            files.push(path);
-        }
-    }
+    let problem = Problem::of::<std::io::Error>(format!("--scenes {}", folder.display()));
+    let paths = std::fs::read_dir(folder).map_err(&problem)?.map(|e| e.map(|e| e.path()));
+    let mut files: Vec<PathBuf> = paths.collect::<Result<_, _>>().map_err(&problem)?;
+    let is_gltf = |e: &OsStr| ["glb", "gltf"].iter().any(|known| e.eq_ignore_ascii_case(known));
+    files.retain(|path| path.extension().is_some_and(is_gltf));
     files.sort();
     if files.is_empty() {
-        return Err(format!(
-            "--scenes {}: there is no .glb or .gltf in it; give a folder of glTF files",
-            folder.display()
-        ));
+        let sentence = "there is no .glb or .gltf in it; give a folder of glTF files";
+        return Err(Problem::of(format!("--scenes {}", folder.display()))(sentence));
     }
     let spec = |path: PathBuf| {
         let name = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
@@ -111,18 +106,17 @@ impl SceneSpec {
                 Ok(scene)
             }
             Source::File(path) => {
-                let scene = from_gltf(path).map_err(|e| e.to_string())?;
-                let name = path.display();
-                let light = scene.light(None).map_err(|e| format!("{name}: {e}"))?;
+                let scene = from_gltf(path)?;
+                let problem = Problem::of(path.display());
+                let light = scene.light(None).map_err(Problem::of(path.display()))?;
                 if light.outline().is_some() {
-                    return Err(format!(
-                        "{name}: its light is a polygon, which most of what is compared does not take; \
-                         give it a rectangle"
+                    return Err(problem(
+                        "its light is a polygon, which most of what is compared does not take; give it a rectangle",
                     ));
                 }
                 if scene.triangles() == 0 {
-                    return Err(format!(
-                        "{name}: the scene has no triangles; at least one mesh node must be drawn"
+                    return Err(problem(
+                        "the scene has no triangles; at least one mesh node must be drawn",
                     ));
                 }
                 Ok(scene)
@@ -143,23 +137,23 @@ fn turn(scene: &mut Scene) {
 
 /// A square light over the middle of the ground.
 pub fn square(side: f64) -> Result<RectangleLight, Problem> {
-    generate::square_light(side).map_err(|e| e.to_string())
+    Ok(generate::square_light(side)?)
 }
 
-/// The same light, its sides times `by`.
+/// A light with its sides times `by`.
 pub fn scaled(light: &RectangleLight, by: f64) -> Result<RectangleLight, Problem> {
     let frame = light.world_from_light();
     let [a, b] = light.half_extents().map(|half| half * by);
     // Emission is −(u × v), and light space's axes are right-handed about it: v is −y.
     let u = frame.x_axis.truncate() * a;
     let v = -frame.y_axis.truncate() * b;
-    RectangleLight::new(light.center(), u, v).map_err(|e| e.to_string())
+    Ok(RectangleLight::new(light.center(), u, v)?)
 }
 
 /// One of the project's own files.
 pub fn committed(name: &str) -> Result<Scene, Problem> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
-    from_gltf(&root.join(format!("{name}.glb"))).map_err(|e| e.to_string())
+    Ok(from_gltf(&root.join(format!("{name}.glb")))?)
 }
 
 /// A scene made in code, by name.
@@ -175,19 +169,17 @@ pub fn made(name: &str, light: RectangleLight) -> Result<Scene, Problem> {
         "contact" => generate::contact(light),
         "spheres on themselves" => generate::spheres(light).with_occluders_as(Role::Both),
         "suzanne on herself" => generate::normalized(&committed("suzanne")?, light)
-            .map_err(|e| format!("suzanne: {e}"))?
+            .map_err(Problem::of("suzanne"))?
             .with_occluders_as(Role::Both),
         CUBE => elongated_cube(light),
         DRAGON => dragon(light)?,
-        model => {
-            generate::normalized(&committed(model)?, light).map_err(|e| format!("{model}: {e}"))?
-        }
+        model => generate::normalized(&committed(model)?, light).map_err(Problem::of(model))?,
     })
 }
 
 /// The bunny over hills, its shadow on what is no plane.
 fn over_hills(light: RectangleLight) -> Result<Scene, Problem> {
-    let mut scene = generate::normalized(&committed("bunny")?, light).map_err(|e| e.to_string())?;
+    let mut scene = generate::normalized(&committed("bunny")?, light)?;
     for instance in scene.instances.iter().filter(|i| i.role == Role::Receiver) {
         scene.meshes[instance.mesh] = hills(GROUND_SIDE, 96);
     }
@@ -233,7 +225,7 @@ pub fn dragon(light: RectangleLight) -> Result<Scene, Problem> {
     })?;
     let mut object = Scene::default();
     object.add(DRAGON, mesh, DMat4::IDENTITY, Role::Both);
-    let scene = generate::normalized(&object, light).map_err(|e| e.to_string())?;
+    let scene = generate::normalized(&object, light)?;
     let low = scene.bounds(|i| i.role.blocks()).map_or(0.0, |b| b.min.y);
     let mut scene = scene.with_occluders_as(Role::Both);
     for instance in scene.instances.iter_mut().filter(|i| i.role.blocks()) {
@@ -295,8 +287,8 @@ mod tests {
         let folder = std::env::temp_dir();
         let empty = folder.join(format!("antumbra-no-scenes-{}", std::process::id()));
         std::fs::create_dir_all(&empty).unwrap();
-        assert!(own(&empty).unwrap_err().contains("glTF"));
+        assert!(own(&empty).unwrap_err().0.contains("glTF"));
         std::fs::remove_dir(&empty).unwrap();
-        assert!(own(&empty).unwrap_err().contains("antumbra-no-scenes"));
+        assert!(own(&empty).unwrap_err().0.contains("antumbra-no-scenes"));
     }
 }

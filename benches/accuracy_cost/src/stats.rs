@@ -65,13 +65,7 @@ pub fn rising(points: &[(f64, f64)]) -> Option<f64> {
         for b in &points[..i] {
             pairs += 1.0;
             let order = (a.0 - b.0) * (a.1 - b.1);
-            sum += if order > 0.0 {
-                1.0
-            } else if order < 0.0 {
-                -1.0
-            } else {
-                0.0
-            };
+            sum += if order == 0.0 { 0.0 } else { order.signum() };
         }
     }
     (pairs > 0.0).then_some(sum / pairs)

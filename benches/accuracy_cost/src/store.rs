@@ -6,6 +6,7 @@
 //! measured again. A file of another run is set aside, never written over.
 
 use crate::Problem;
+use antumbra::truth::ErrorSummary;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
@@ -29,27 +30,16 @@ pub struct Header {
     pub scenes: Vec<String>,
 }
 
-/// The errors of an image, in visible fractions: `antumbra::truth::ErrorSummary` and FLIP.
+/// The errors of an image, in visible fractions.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[allow(missing_docs, reason = "named and told in antumbra::truth::ErrorSummary")]
 pub struct Errors {
-    pub pixels: usize,
-    pub mean_abs_error: f64,
-    pub rmse: f64,
-    pub p99: f64,
-    pub worst: f64,
-    pub bias: f64,
-    pub penumbra_pixels: usize,
-    pub penumbra_mean: f64,
-    pub false_umbra: f64,
-    pub false_light: f64,
-    pub lit_pixels: usize,
-    pub lit_error: f64,
+    #[serde(flatten)]
+    pub summary: ErrorSummary,
     /// Mean FLIP of the shaded images, 0..1; none where the pixels are no picture.
     pub flip: Option<f64>,
     /// The standard error of one penumbra pixel of the truth; 0 where it is exact.
     pub truth_noise: f64,
-    /// What the truth's noise alone would add up to in `mean_abs_error`.
+    /// What the truth's noise alone would add up to in the summary's `mean_abs_error`.
     pub noise_floor: f64,
 }
 
@@ -117,7 +107,7 @@ impl Row {
 
     /// Mean |error|, where it was measured.
     pub fn mean(&self) -> Option<f64> {
-        Some(self.measured()?.0.mean_abs_error)
+        Some(self.measured()?.0.summary.mean_abs_error)
     }
 
     /// Median ms of a frame, where it was measured.
@@ -142,16 +132,16 @@ enum Line {
     },
 }
 
-/// What the lines of a file tell.
+/// The contents of a file.
 #[derive(Default)]
-struct Told {
+struct Contents {
     header: Option<Header>,
     rows: BTreeMap<String, Vec<Row>>,
     /// The groups that are whole, in the order they were measured.
     whole: Vec<String>,
 }
 
-impl Told {
+impl Contents {
     fn take(&mut self, line: Line) {
         match line {
             Line::Run(header) => self.header = Some(header),
@@ -167,16 +157,16 @@ impl Told {
         }
     }
 
-    /// What the whole lines of a file tell, without groups that are not whole, and how many bytes they take.
+    /// The contents of a file's whole lines, without groups that are not whole, and how many bytes they take.
     fn read(text: &[u8]) -> (Self, usize) {
-        let (mut told, mut good) = (Self::default(), 0);
+        let (mut contents, mut good) = (Self::default(), 0);
         for line in text.split_inclusive(|b| *b == b'\n').filter(|line| line.ends_with(b"\n")) {
             good += line.len();
             // A line that is whole and still not understood costs its group, which is measured again.
-            serde_json::from_slice(line).into_iter().for_each(|line| told.take(line));
+            serde_json::from_slice(line).into_iter().for_each(|line| contents.take(line));
         }
-        told.rows.retain(|group, _| told.whole.contains(group));
-        (told, good)
+        contents.rows.retain(|group, _| contents.whole.contains(group));
+        (contents, good)
     }
 }
 
@@ -184,26 +174,26 @@ impl Told {
 pub struct Store {
     file: File,
     path: PathBuf,
-    told: Told,
+    contents: Contents,
 }
 
 impl Store {
     /// Opens the file of a run, or begins it.
     pub fn open(path: &Path, header: &Header) -> Result<Self, Problem> {
-        let problem = |e: std::io::Error| format!("{}: {e}", path.display());
-        let text = if path.exists() { std::fs::read(path).map_err(problem)? } else { Vec::new() };
-        let (mut told, mut good) = Told::read(&text);
-        let same = told.header.as_ref() == Some(header);
+        let problem = Problem::of::<std::io::Error>(path.display());
+        let text = if path.exists() { std::fs::read(path).map_err(&problem)? } else { Vec::new() };
+        let (mut contents, mut good) = Contents::read(&text);
+        let same = contents.header.as_ref() == Some(header);
         if !same && good > 0 {
-            std::fs::rename(path, path.with_extension("earlier.jsonl")).map_err(problem)?;
+            std::fs::rename(path, path.with_extension("earlier.jsonl")).map_err(&problem)?;
         }
         if !same {
-            (told, good) = (Told::default(), 0);
+            (contents, good) = (Contents::default(), 0);
         }
         let open = OpenOptions::new().create(true).truncate(false).write(true).open(path);
-        let mut file = open.map_err(problem)?;
-        file.set_len(good as u64).and_then(|()| file.seek(SeekFrom::End(0))).map_err(problem)?;
-        let mut store = Self { file, path: path.into(), told };
+        let mut file = open.map_err(&problem)?;
+        file.set_len(good as u64).and_then(|()| file.seek(SeekFrom::End(0))).map_err(&problem)?;
+        let mut store = Self { file, path: path.into(), contents };
         if !same {
             store.write(&Line::Run(header.clone()))?;
         }
@@ -212,23 +202,27 @@ impl Store {
 
     /// The run that a file is of, and its whole groups' rows in the order they were measured.
     pub fn read(path: &Path) -> Result<(Header, Vec<Row>), Problem> {
-        let text = std::fs::read(path).map_err(|e| format!("{}: {e}", path.display()))?;
-        let mut told = Told::read(&text).0;
-        let header = told.header.ok_or_else(|| format!("{}: no run is in it", path.display()))?;
-        Ok((header, told.whole.iter().filter_map(|g| told.rows.remove(g)).flatten().collect()))
+        let text = std::fs::read(path).map_err(Problem::of(path.display()))?;
+        let mut contents = Contents::read(&text).0;
+        let header =
+            contents.header.ok_or_else(|| format!("{}: no run is in it", path.display()))?;
+        Ok((
+            header,
+            contents.whole.iter().filter_map(|g| contents.rows.remove(g)).flatten().collect(),
+        ))
     }
 
     fn write(&mut self, line: &Line) -> Result<(), Problem> {
-        let problem = |e: std::io::Error| format!("{}: {e}", self.path.display());
+        let problem = Problem::of::<std::io::Error>(self.path.display());
         let text = serde_json::to_string(line).map_err(|e| problem(e.into()))? + "\n";
-        self.file.write_all(text.as_bytes()).map_err(problem)?;
+        self.file.write_all(text.as_bytes()).map_err(&problem)?;
         // A killed program loses nothing that was written; a machine that stops may.
-        self.file.sync_data().map_err(problem)
+        self.file.sync_data().map_err(&problem)
     }
 
     /// Whether the group is there, whole.
     pub fn has(&self, group: &str) -> bool {
-        self.told.whole.iter().any(|whole| whole == group)
+        self.contents.whole.iter().any(|whole| whole == group)
     }
 
     /// Adds a whole group's rows.
@@ -237,14 +231,14 @@ impl Store {
         let line = |row| Line::Row { group: group.into(), row: Box::new(row) };
         rows.into_iter().map(line).chain([whole]).try_for_each(|line| {
             self.write(&line)?;
-            self.told.take(line);
+            self.contents.take(line);
             Ok(())
         })
     }
 
     /// The rows of these groups, in their order.
     pub fn rows<'a>(&'a self, groups: impl Iterator<Item = &'a str>) -> Vec<Row> {
-        groups.filter_map(|g| self.told.rows.get(g)).flatten().cloned().collect()
+        groups.filter_map(|g| self.contents.rows.get(g)).flatten().cloned().collect()
     }
 }
 
@@ -254,7 +248,9 @@ pub(crate) mod tests {
 
     /// A measured row.
     pub(crate) fn row(curve: &str, x: f64, ms: f64, error: f64) -> Row {
-        let errors = Errors { mean_abs_error: error, pixels: 100, ..Errors::default() };
+        let summary =
+            ErrorSummary { mean_abs_error: error, pixels: 100, ..ErrorSummary::default() };
+        let errors = Errors { summary, ..Errors::default() };
         let times = Times { frame_ms: [ms * 0.9, ms, ms * 1.2], frames: 3, ..Times::default() };
         Row {
             study: "matrix".into(),
@@ -306,7 +302,7 @@ pub(crate) mod tests {
         drop(store);
         let (of, rows) = Store::read(&path).unwrap();
         assert_eq!((of, rows.len()), (header, 3));
-        assert!(Store::read(Path::new("/nowhere")).unwrap_err().contains("/nowhere"));
+        assert!(Store::read(Path::new("/nowhere")).unwrap_err().0.contains("/nowhere"));
     }
 
     #[test]
@@ -318,7 +314,7 @@ pub(crate) mod tests {
         let store = Store::open(&path, &second).unwrap();
         assert!(!store.has("a"));
         let earlier = std::fs::read(path.with_extension("earlier.jsonl")).unwrap();
-        assert_eq!(Told::read(&earlier).0.whole, ["a"]);
+        assert_eq!(Contents::read(&earlier).0.whole, ["a"]);
     }
 
     #[test]

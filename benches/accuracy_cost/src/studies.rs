@@ -1,11 +1,11 @@
 //! The groups of a run, in the order in which they are measured.
 
 use crate::curtis;
-use crate::groups::{Against, Entry, Group, MATRIX, Stage};
+use crate::groups::{Entry, Group, MATRIX};
 use crate::options::Scale;
 use crate::scenes::{self, SceneSpec, Source};
 use crate::sweeps;
-use crate::techniques::{CURVES, value_of};
+use crate::techniques::{CURVES, Curve, Step};
 use antumbra::auto::{CANDIDATES, Candidate};
 
 /// The study of what `auto` chooses among.
@@ -13,23 +13,15 @@ pub const CHOICES: &str = "choices";
 
 /// The entries of error against time; the picture strip is of one light of each scene.
 fn matrix_entries(scale: &Scale, in_strip: bool) -> Vec<Entry> {
-    let mut entries = Vec::new();
-    for curve in CURVES {
-        for (i, (words, in_quick)) in curve.steps.iter().enumerate() {
-            if scale.quick && !in_quick {
-                continue;
-            }
-            entries.push(Entry {
-                technique: curve.technique,
-                curve: curve.label.into(),
-                words: (*words).into(),
-                x: value_of(words, curve.sweeps).unwrap_or(i as f64),
-                light_scale: 1.0,
-                shown: in_strip && curve.shown == Some(i),
-            });
-        }
-    }
-    entries
+    let step = |curve: &'static Curve, step: Step| Entry {
+        shown: in_strip && step.shown,
+        ..Entry::new(curve.technique, curve.label, step.words, step.x)
+    };
+    let measured = |s: &Step| s.in_quick || !scale.quick;
+    let of = |curve: &'static Curve| {
+        curve.steps().filter(measured).map(move |s| step(curve, s)).collect::<Vec<_>>()
+    };
+    CURVES.iter().flat_map(of).collect()
 }
 
 /// Every group of a run: first whether the measuring can be trusted, then what a reader looks at
@@ -38,7 +30,7 @@ pub fn all(scale: &Scale, own: &[SceneSpec]) -> Vec<Group> {
     let mut groups = vec![sweeps::wrong(scale)];
     let matrix = |spec: &SceneSpec, light: &'static str| {
         let entries = matrix_entries(scale, light != "small" && light != "large");
-        seen(MATRIX, scale, spec, light, entries)
+        Group::seen(MATRIX, spec, light, scale.view, entries)
     };
     let standard = scenes::standard();
     groups.extend(standard.iter().map(|spec| matrix(spec, "medium")));
@@ -62,43 +54,14 @@ const MORE_SCENES: [&str; 4] =
 
 /// Everything that `auto` chooses among, in every view.
 pub fn choices(scale: &Scale) -> Vec<Group> {
-    let entry = |c: &Candidate| Entry {
-        technique: c.technique,
-        curve: c.technique.into(),
-        words: c.words.into(),
-        x: 0.0,
-        light_scale: 1.0,
-        shown: false,
-    };
+    let entry = |c: &Candidate| Entry::new(c.technique, c.technique, c.words.into(), 0.0);
     let more = MORE_SCENES.map(|name| SceneSpec { name: name.into(), source: Source::Made(name) });
     let scenes: Vec<_> = scenes::standard().into_iter().chain(more).collect();
     let lights = scenes::LIGHTS.iter().map(|l| l.0);
     let entries: Vec<_> = CANDIDATES.iter().map(entry).collect();
     let of = |light| scenes.iter().map(move |spec| (spec, light));
-    let group = |(spec, light)| seen(CHOICES, scale, spec, light, entries.clone());
+    let group = |(spec, light)| Group::seen(CHOICES, spec, light, scale.view, entries.clone());
     lights.flat_map(of).map(group).collect()
-}
-
-/// A group of a scene under one of its lights, by its camera.
-fn seen(
-    study: &'static str,
-    scale: &Scale,
-    spec: &SceneSpec,
-    light: &'static str,
-    entries: Vec<Entry>,
-) -> Group {
-    // The card's truth is exact in every view.
-    let exact = spec.source == Source::Made("card");
-    Group {
-        study,
-        scene: spec.name.clone(),
-        light: light.into(),
-        stage: Stage::Seen(spec.clone(), light),
-        extent: scale.view,
-        against: if exact { Against::Card } else { Against::Traced },
-        at: None,
-        entries,
-    }
 }
 
 #[cfg(test)]

@@ -35,8 +35,7 @@ pub const SIDES: [(&str, &str); 2] = [("one side", "sides=one"), ("two sides", "
 const OBJECT_HEIGHT: f64 = 2.0;
 
 fn entry(curve: &str, words: String, x: f64) -> Entry {
-    let technique = "soft-shadow-map";
-    Entry { technique, curve: curve.into(), words, x, light_scale: 1.0, shown: false }
+    Entry::new("soft-shadow-map", curve, words, x)
 }
 
 /// The objects of the sweeps: what they are called here and in `scenes::made`.
@@ -60,7 +59,7 @@ fn group(scale: &Scale, study: &'static str, model: &'static str, light: f64) ->
 
 /// From `from` to `to` in so many steps.
 fn steps(from: f64, to: f64, count: u32) -> impl Iterator<Item = f64> {
-    // Rounded, so that a value is told in few digits.
+    // Rounded, so that a value has few digits.
     let at = move |i| from + (to - from) * f64::from(i) / f64::from(count);
     (0..=count).map(move |i| (at(i) * 1000.0).round() / 1000.0)
 }
@@ -187,30 +186,13 @@ fn levels(scale: &Scale) -> Vec<Group> {
 
 /// Three prefilters at three map sizes, of one texture of four slices.
 pub fn eisemann() -> Group {
-    let mut entries = Vec::new();
-    for prefilter in ["mip", "sat", "n-buffer"] {
-        for map in [256, 512, 1024] {
-            entries.push(Entry {
-                technique: "occlusion-textures",
-                ..entry(
-                    prefilter,
-                    format!(
-                        "slices=4 combine=product placement=uniform prefilter={prefilter} map={map}"
-                    ),
-                    f64::from(map),
-                )
-            });
-        }
-    }
+    let prefilters = ["mip", "sat", "n-buffer"].into_iter();
+    let entry = |(prefilter, map): (&str, u32)| {
+        let words = "slices=4 combine=product placement=uniform";
+        let words = format!("{words} prefilter={prefilter} map={map}");
+        Entry::new("occlusion-textures", prefilter, words, f64::from(map))
+    };
+    let entries = prefilters.flat_map(|p| [256, 512, 1024].map(|map| (p, map))).map(entry);
     let spec = SceneSpec { name: "foliage".into(), source: Source::Made("foliage") };
-    Group {
-        study: EISEMANN,
-        scene: "foliage".into(),
-        light: "medium".into(),
-        stage: Stage::Seen(spec, "medium"),
-        extent: [512, 384],
-        against: Against::Traced,
-        at: None,
-        entries,
-    }
+    Group::seen(EISEMANN, &spec, "medium", [512, 384], entries.collect())
 }

@@ -16,187 +16,81 @@ pub const READBACK: &str = "cpu-quads";
 /// The name of ray marching at fragments as they are drawn, by the node's maps.
 pub const FORWARD: &str = "ray-march-forward";
 
-/// The settings, and whether the quick run measures them.
-type Step = (&'static str, bool);
-
-/// A curve: one technique whose quality sweeps.
+/// A curve: one technique whose quality sweeps with one setting.
 pub struct Curve {
     /// The technique's name, as on a command line.
     pub technique: &'static str,
     /// What a reader sees.
     pub label: &'static str,
-    /// The key of the setting that sweeps.
-    pub sweeps: &'static str,
-    /// The settings of each point, from the coarsest, as words of a command line.
-    pub steps: &'static [Step],
-    /// Which point stands for the technique in the picture strip; none leaves it out there.
-    pub shown: Option<usize>,
+    /// The settings as words of a command line, `{}` in place of the value that sweeps.
+    words: &'static str,
+    /// The values, from the coarsest.
+    values: &'static str,
+    /// The values that the quick run measures.
+    quick: &'static str,
+    /// The value that stands for the technique in the picture strip; without one the curve is not in it.
+    shown: &'static str,
 }
 
-/// The curves of error against time.
+/// One point of a curve.
+pub struct Step {
+    /// The settings as words of a command line.
+    pub words: String,
+    /// The value that sweeps.
+    pub x: f64,
+    pub in_quick: bool,
+    /// Whether it stands for the technique in the picture strip.
+    pub shown: bool,
+}
+
+impl Curve {
+    /// The points, from the coarsest.
+    pub fn steps(&self) -> impl Iterator<Item = Step> {
+        self.values.split(' ').map(|value| Step {
+            words: self.words.replace("{}", value),
+            x: value.parse().unwrap_or(f64::NAN),
+            in_quick: self.quick.split(' ').any(|quick| quick == value),
+            shown: self.shown == value,
+        })
+    }
+}
+
+const fn curve(
+    [technique, label]: [&'static str; 2],
+    words: &'static str,
+    values: &'static str,
+    quick: &'static str,
+    shown: &'static str,
+) -> Curve {
+    Curve { technique, label, words, values, quick, shown }
+}
+
+const SSM: &str = "soft-shadow-map";
+const SIDES: &str = "64 128 256 512";
+const PROJECTED: &str = "receivers=map map={} receiver_map={}";
+const BLENDED: &str = "receivers=map accumulate=blend map={} receiver_map={}";
+const AS_PUBLISHED: &str = "layers=2 sampling=jittered hash=md5 rays={}";
+
+/// The curves of error against time: their settings, values, quick values and the one in the picture strip.
 pub const CURVES: &[Curve] = &[
-    Curve {
-        technique: "soft-shadow-map",
-        label: "soft shadow map",
-        sweeps: "map",
-        steps: &[("map=64", true), ("map=128", true), ("map=256", true), ("map=512", false)],
-        shown: Some(2),
-    },
-    Curve {
-        technique: "soft-shadow-map",
-        label: "soft shadow map, larger of two sides",
-        sweeps: "map",
-        steps: &[
-            ("sides=two map=64", false),
-            ("sides=two map=128", true),
-            ("sides=two map=256", false),
-            ("sides=two map=512", false),
-        ],
-        shown: None,
-    },
-    Curve {
-        technique: "soft-shadow-map",
-        label: "soft shadow map, one side",
-        sweeps: "map",
-        steps: &[
-            ("sides=one map=64", false),
-            ("sides=one map=128", true),
-            ("sides=one map=256", false),
-            ("sides=one map=512", false),
-        ],
-        shown: None,
-    },
-    Curve {
-        technique: "soft-shadow-map",
-        label: "soft shadow map, projected",
-        sweeps: "map",
-        steps: &[
-            ("receivers=map map=64 receiver_map=64", false),
-            ("receivers=map map=128 receiver_map=128", true),
-            ("receivers=map map=256 receiver_map=256", false),
-            ("receivers=map map=512 receiver_map=512", false),
-        ],
-        shown: None,
-    },
-    Curve {
-        technique: "soft-shadow-map",
-        label: "soft shadow map, blended",
-        sweeps: "map",
-        steps: &[
-            ("receivers=map accumulate=blend map=64 receiver_map=64", false),
-            ("receivers=map accumulate=blend map=128 receiver_map=128", false),
-            ("receivers=map accumulate=blend map=256 receiver_map=256", false),
-        ],
-        shown: None,
-    },
-    Curve {
-        technique: READBACK,
-        label: "the paper's scheme, through the CPU",
-        sweeps: "map",
-        steps: &[("map=64", false), ("map=128", true), ("map=256", false)],
-        shown: None,
-    },
-    Curve {
-        technique: "soft-shadow-map",
-        label: "soft shadow map 256, looser",
-        sweeps: "tolerance",
-        steps: &[
-            ("tolerance=0.01 map=256", false),
-            ("tolerance=0.001 map=256", false),
-            ("tolerance=0 map=256", false),
-        ],
-        shown: None,
-    },
-    Curve {
-        technique: RAY_TRACER,
-        label: "ray tracer on the CPU",
-        sweeps: "rays",
-        steps: &[("rays=1", true), ("rays=4", true), ("rays=16", true), ("rays=64", false)],
-        shown: Some(1),
-    },
-    Curve {
-        technique: "hard",
-        label: "hard shadow map, 3×3",
-        sweeps: "map",
-        steps: &[("map=256", false), ("map=512", true), ("map=1024", false)],
-        shown: Some(1),
-    },
-    Curve {
-        technique: "pcss",
-        label: "PCSS",
-        sweeps: "taps",
-        steps: &[("taps=8", true), ("taps=16", true), ("taps=32", true)],
-        shown: Some(1),
-    },
-    Curve {
-        technique: "many-lights",
-        label: "many hard lights",
-        sweeps: "samples",
-        steps: &[
-            ("samples=1", false),
-            ("samples=4", true),
-            ("samples=16", true),
-            ("samples=64", false),
-        ],
-        shown: Some(2),
-    },
-    Curve {
-        technique: "back-projection",
-        label: "back-projection",
-        sweeps: "map",
-        steps: &[("map=64", false), ("map=128", true), ("map=256", true), ("map=512", false)],
-        shown: Some(2),
-    },
-    Curve {
-        technique: "ray-march",
-        label: "ray march",
-        sweeps: "rays",
-        steps: &[("rays=1", false), ("rays=4", true), ("rays=16", true), ("rays=64", false)],
-        shown: Some(2),
-    },
-    Curve {
-        technique: "ray-march",
-        label: "ray march, unfiltered",
-        sweeps: "rays",
-        steps: &[
-            ("filter=off rays=16", false),
-            ("filter=off rays=64", false),
-            ("filter=off rays=256", false),
-        ],
-        shown: None,
-    },
-    Curve {
-        technique: "ray-march",
-        label: "ray march as published, two layers",
-        sweeps: "rays",
-        steps: &[
-            ("layers=2 sampling=jittered hash=md5 rays=4", true),
-            ("layers=2 sampling=jittered hash=md5 rays=9", false),
-            ("layers=2 sampling=jittered hash=md5 rays=16", false),
-        ],
-        shown: None,
-    },
-    Curve {
-        technique: "ray-march",
-        label: "ray march, 16 rays",
-        sweeps: "map",
-        steps: &[("rays=16 map=64", false), ("rays=16 map=128", false), ("rays=16 map=512", false)],
-        shown: None,
-    },
-    Curve {
-        technique: "occlusion-textures",
-        label: "occlusion textures",
-        sweeps: "slices",
-        steps: &[("slices=4", true), ("slices=8", true), ("slices=16", true)],
-        shown: Some(1),
-    },
-    Curve {
-        technique: "linear-light",
-        label: "linear light",
-        sweeps: "error",
-        steps: &[("error=0.05", true), ("error=0.02", true), ("error=0.01", false)],
-        shown: Some(1),
-    },
+    curve([SSM, "soft shadow map"], "map={}", SIDES, "64 128 256", "256"),
+    curve([SSM, "soft shadow map, larger of two sides"], "sides=two map={}", SIDES, "128", ""),
+    curve([SSM, "soft shadow map, one side"], "sides=one map={}", SIDES, "128", ""),
+    curve([SSM, "soft shadow map, projected"], PROJECTED, SIDES, "128", ""),
+    curve([SSM, "soft shadow map, blended"], BLENDED, "64 128 256", "", ""),
+    curve([READBACK, "the paper's scheme, through the CPU"], "map={}", "64 128 256", "128", ""),
+    curve([SSM, "soft shadow map 256, looser"], "tolerance={} map=256", "0.01 0.001 0", "", ""),
+    curve([RAY_TRACER, "ray tracer on the CPU"], "rays={}", "1 4 16 64", "1 4 16", "4"),
+    curve(["hard", "hard shadow map, 3×3"], "map={}", "256 512 1024", "512", "512"),
+    curve(["pcss", "PCSS"], "taps={}", "8 16 32", "8 16 32", "16"),
+    curve(["many-lights", "many hard lights"], "samples={}", "1 4 16 64", "4 16", "16"),
+    curve(["back-projection", "back-projection"], "map={}", SIDES, "128 256", "256"),
+    curve(["ray-march", "ray march"], "rays={}", "1 4 16 64", "4 16", "16"),
+    curve(["ray-march", "ray march, unfiltered"], "filter=off rays={}", "16 64 256", "", ""),
+    curve(["ray-march", "ray march as published, two layers"], AS_PUBLISHED, "4 9 16", "4", ""),
+    curve(["ray-march", "ray march, 16 rays"], "rays=16 map={}", "64 128 512", "", ""),
+    curve(["occlusion-textures", "occlusion textures"], "slices={}", "4 8 16", "4 8 16", "8"),
+    curve(["linear-light", "linear light"], "error={}", "0.05 0.02 0.01", "0.05 0.02", "0.02"),
 ];
 
 /// How a visible fraction is to be computed.
@@ -220,29 +114,26 @@ pub enum Method {
 pub fn method(technique: &str, words: &str) -> Result<Option<Method>, Problem> {
     if technique == RAY_TRACER {
         let rays = words.strip_prefix("rays=").and_then(|rays| rays.parse().ok());
-        return rays.map(|rays| Some(Method::Rays(rays))).ok_or(format!("{words}: no rays"));
+        return rays.map(|rays| Some(Method::Rays(rays))).ok_or(format!("{words}: no rays").into());
     }
     if technique == READBACK {
         let side = words.strip_prefix("map=").and_then(|side| side.parse().ok());
-        return side.map(|side| Some(Method::Readback(side))).ok_or(format!("{words}: no map"));
+        return side
+            .map(|side| Some(Method::Readback(side)))
+            .ok_or(format!("{words}: no map").into());
     }
     let is_forward = technique == FORWARD;
     let technique = if is_forward { "ray-march" } else { technique };
     if !Technique::NAMES.contains(&technique) {
         return Ok(None);
     }
-    let settings: Technique = format!("{technique} {words}").parse().map_err(told)?;
-    settings.check().map_err(told)?;
+    let settings: Technique = format!("{technique} {words}").parse()?;
+    settings.check()?;
     let settings = Box::new(settings);
     Ok(Some(if is_forward { Method::Forward(settings) } else { Method::Node(settings) }))
 }
 
-#[allow(clippy::needless_pass_by_value, reason = "it is what map_err gives")]
-fn told(error: antumbra::Error) -> Problem {
-    error.to_string()
-}
-
-/// The value of a setting among the words, as a number; its place among the steps where it is none.
+/// The value of a setting among the words, as a number.
 pub fn value_of(words: &str, key: &str) -> Option<f64> {
     words
         .split_whitespace()
@@ -256,20 +147,22 @@ mod tests {
     #[test]
     fn what_is_there_is_understood_and_what_is_not_is_not_there() {
         for curve in CURVES {
-            for (words, _) in curve.steps {
-                let found = method(curve.technique, words);
+            for Step { words, x, .. } in curve.steps() {
+                let found = method(curve.technique, &words);
                 let known = [RAY_TRACER, READBACK].contains(&curve.technique)
                     || curve.technique.parse::<Technique>().is_ok();
                 match found {
                     Ok(found) => assert_eq!(found.is_some(), known, "{} {words}", curve.technique),
                     Err(e) => panic!("{} {words}: {e}", curve.technique),
                 }
-                assert!(value_of(words, curve.sweeps).is_some(), "{words}");
+                assert!(x.is_finite() && words.contains(&format!("={x}")), "{words}");
             }
-            assert!(curve.shown.is_none_or(|shown| shown < curve.steps.len()));
+            let count = |keep: fn(&Step) -> bool| curve.steps().filter(keep).count();
+            assert_eq!(count(|s| s.shown), usize::from(!curve.shown.is_empty()), "{}", curve.label);
+            assert_eq!(count(|s| s.in_quick), curve.quick.split_whitespace().count());
         }
         assert_eq!(method("time-machine", "map=1").unwrap(), None);
-        assert!(method("soft-shadow-map", "map=0").unwrap_err().contains("1 to 4096"));
+        assert!(method("soft-shadow-map", "map=0").unwrap_err().0.contains("1 to 4096"));
     }
 
     #[test]

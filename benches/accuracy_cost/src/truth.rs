@@ -19,7 +19,7 @@ const SEED: u64 = 1;
 /// Visible fractions to compare with.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Truth {
-    /// Of each pixel, row by row.
+    /// The visible fraction of each pixel, row by row.
     pub visible: Vec<f32>,
     /// The standard error of a penumbra pixel; 0 where the truth is exact.
     pub noise: f64,
@@ -27,10 +27,9 @@ pub struct Truth {
 
 /// What each pixel of a G-buffer shows: position and normal, without a normal where nothing receives.
 pub fn receivers(gbuffer: &GBuffer) -> Result<Vec<Receiver>, Problem> {
-    let told = |e: antumbra::Error| e.to_string();
-    let positions = gbuffer.positions().map_err(told)?;
-    let normals = gbuffer.normals().map_err(told)?;
-    let roles = gbuffer.roles().map_err(told)?;
+    let positions = gbuffer.positions()?;
+    let normals = gbuffer.normals()?;
+    let roles = gbuffer.roles()?;
     let wide = |a: &[f32; 4]| DVec3::new(a[0].into(), a[1].into(), a[2].into());
     let pixels = positions.iter().zip(&normals).zip(&roles);
     let receiver = |((p, n), role): ((&[f32; 4], &[f32; 4]), &u8)| Receiver {
@@ -48,7 +47,7 @@ pub fn sampling(
 ) -> Result<Sampling, Problem> {
     let largest = receivers.iter().map(|r| r.position.abs().max_element()).fold(0.0, f64::max);
     let precise = |s: Sampling| s.with_position_error(largest / f64::from(1 << 24));
-    rays.and_then(precise).map_err(|e| e.to_string())
+    Ok(rays.and_then(precise)?)
 }
 
 /// The card's corners in the world, around its rim.
@@ -68,7 +67,7 @@ pub fn truth(
     rays: u32,
     cache: &Path,
 ) -> Result<Truth, Problem> {
-    let light = scene.light(None).map_err(|e| e.to_string())?.light;
+    let light = scene.light(None)?.light;
     match against {
         Against::Card => {
             let card = card_corners(scene)?;
@@ -85,10 +84,8 @@ pub fn truth(
                 return Ok(kept);
             }
             let sampling = sampling(Sampling::new(rays, SEED), receivers)?;
-            let tracer = Tracer::new(scene).map_err(|e| e.to_string())?;
-            let traced = tracer
-                .visible_fractions(&light, receivers, &sampling)
-                .map_err(|e| e.to_string())?;
+            let tracer = Tracer::new(scene)?;
+            let traced = tracer.visible_fractions(&light, receivers, &sampling)?;
             let truth = Truth { visible: traced.visible, noise: traced.noise };
             keep(&path, &truth);
             Ok(truth)
@@ -152,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn the_cards_two_truths_agree_within_the_noise_that_is_told() {
+    fn the_cards_two_truths_agree_within_the_noise_that_is_reported() {
         let folder = std::env::temp_dir().join(format!("antumbra-truth-{}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
         let scene = scenes::made("card", scenes::square(0.4).unwrap()).unwrap();

@@ -143,9 +143,9 @@ enum Status {
     Failed(String),
 }
 
-impl From<Problem> for Status {
-    fn from(problem: Problem) -> Self {
-        Self::Failed(problem)
+impl<E: Into<Problem>> From<E> for Status {
+    fn from(problem: E) -> Self {
+        Self::Failed(problem.into().0)
     }
 }
 
@@ -154,9 +154,9 @@ impl From<Problem> for Status {
 /// # Errors
 /// A sentence for what stops the run: no device, a folder that cannot be written.
 pub fn run(options: &Options) -> Result<bool, Problem> {
-    let device = HeadlessDevice::new(&HeadlessOptions::default()).map_err(|e| e.to_string())?;
+    let device = HeadlessDevice::new(&HeadlessOptions::default())?;
     std::fs::create_dir_all(&options.out)
-        .map_err(|e| format!("--out {}: {e}", options.out.display()))?;
+        .map_err(Problem::of(format!("--out {}", options.out.display())))?;
     let started = Instant::now();
     let mut rows = Vec::new();
     for scene in SCENES {
@@ -250,29 +250,27 @@ impl Bench<'_> {
         if is_kept(place) {
             self.kept[index] = Some(stage);
         }
-        let summary = ErrorSummary::between(truth, &image, Some(mask));
-        summary.map_err(|e| Status::Failed(e.to_string()))
+        Ok(ErrorSummary::between(truth, &image, Some(mask))?)
     }
 
     /// The technique's stage, showing this place.
     fn stage(&mut self, index: usize, place: &Place, ready: &Ready) -> Result<Stage, Status> {
-        let told = |e: antumbra::Error| e.to_string();
         if is_kept(place)
             && let Some(mut stage) = self.kept[index].take()
         {
-            stage.show(&ready.scene, &ready.view, seen).map_err(told)?;
+            stage.show(&ready.scene, &ready.view, seen)?;
             return Ok(stage);
         }
         let name = TECHNIQUES[index];
-        let found = method(name, &format!("map={}", place.map)).map_err(Status::Refused)?;
+        let found = method(name, &format!("map={}", place.map))
+            .map_err(|problem| Status::Refused(problem.0))?;
         let Some(Method::Node(settings)) = found else {
             return Err(Status::Failed(format!("{name} is none of the node's techniques")));
         };
         let extent = [place.pixels; 2];
         let Ready { scene, view, .. } = ready;
-        let mut stage =
-            Stage::new(self.device, scene, view, extent, *settings.clone(), seen).map_err(told)?;
-        stage.configure_with(*settings, |d| d.omit = Omit::Nothing).map_err(told)?;
+        let mut stage = Stage::new(self.device, scene, view, extent, *settings.clone(), seen)?;
+        stage.configure_with(*settings, |d| d.omit = Omit::Nothing)?;
         Ok(stage)
     }
 }
@@ -289,11 +287,10 @@ fn seen(instance: &Instance) -> bool {
 
 /// The visible fraction of every pixel, by the node.
 fn image(stage: &mut Stage, ready: &Ready) -> Result<Vec<f32>, Problem> {
-    let told = |e: antumbra::Error| e.to_string();
-    let light = ready.scene.light(None).map_err(told)?.light;
-    let plan = stage.plan(&light, None).map_err(told)?;
-    stage.run(&plan).map_err(told)?;
-    stage.visibility().map_err(told)
+    let light = ready.scene.light(None)?.light;
+    let plan = stage.plan(&light, None)?;
+    stage.run(&plan)?;
+    Ok(stage.visibility()?)
 }
 
 #[cfg(test)]

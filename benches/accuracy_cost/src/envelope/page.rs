@@ -114,7 +114,7 @@ impl Made {
         let whole = json!({
             "commit": self.commit, "driver": self.driver, "rows": self.rows, "envelopes": envelopes,
         });
-        serde_json::to_string_pretty(&whole).map_err(|e| format!("envelope.json: {e}"))
+        serde_json::to_string_pretty(&whole).map_err(Problem::of("envelope.json"))
     }
 }
 

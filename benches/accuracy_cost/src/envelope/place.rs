@@ -67,10 +67,9 @@ impl Place {
     /// # Errors
     /// A sentence for a scene that is not known or cannot be.
     pub fn ready(&self, scene: &str) -> Result<Ready, Problem> {
-        let told = |e: antumbra::Error| e.to_string();
         let side = 0.5 * self.light;
         let up = DVec3::Y * self.gap;
-        let light = RectangleLight::new(up, DVec3::X * side, DVec3::NEG_Z * side).map_err(told)?;
+        let light = RectangleLight::new(up, DVec3::X * side, DVec3::NEG_Z * side)?;
         let mut scene = match scene {
             SOLID => {
                 let mut spheres = generate::spheres(light);
@@ -78,7 +77,7 @@ impl Place {
                     let [segments, rings] = FACES;
                     spheres.meshes[instance.mesh] = generate::uv_sphere(0.2, segments, rings);
                 }
-                generate::normalized(&spheres, light).map_err(told)?
+                generate::normalized(&spheres, light)?
             }
             name => scenes::made(name, light)?,
         };
@@ -90,7 +89,7 @@ impl Place {
             instance.world_from_mesh =
                 DMat4::from_translation(moved) * turn * instance.world_from_mesh;
         }
-        let exact = Exact::new(&scene).map_err(told)?;
+        let exact = Exact::new(&scene)?;
         let polygon = PolygonLight::from(&light);
         let widest = widest(&scene, self);
         let half = closer(&exact, &polygon, widest)?;
@@ -115,7 +114,7 @@ impl Ready {
 /// As [`Exact::visible_fractions`], and 1 without a receiver.
 fn seen(exact: &Exact, light: &PolygonLight, all: &[Receiver]) -> Result<Vec<f32>, Problem> {
     let there: Vec<Receiver> = all.iter().copied().filter(|r| r.normal != DVec3::ZERO).collect();
-    let found = exact.visible_fractions(light, &there).map_err(|e| e.to_string())?;
+    let found = exact.visible_fractions(light, &there)?;
     let mut found = found.into_iter();
     let of = |r: &Receiver| match r.normal == DVec3::ZERO {
         true => 1.0,

@@ -32,8 +32,8 @@ pub struct Envelope {
 }
 
 impl Envelope {
-    /// Of a sweep's steps in rising order, around the one of this index. None where that is no step, or has no
-    /// error that is a number.
+    /// The envelope of a sweep's steps in rising order, around the one of this index. None where that is no step, or
+    /// has no error that is a number.
     pub fn around(centre: usize, steps: &[Step]) -> Option<Self> {
         let error = Some(steps.get(centre)?.error).filter(|e| e.is_finite())?;
         let bound = FACTOR * error.max(FLOOR);
@@ -80,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn a_centre_without_error_is_taken_for_the_least_that_can_be_told() {
+    fn a_centre_without_error_is_taken_for_the_least_that_counts() {
         let found = Envelope::around(1, &steps(&[1.4e-3, 0.0, 1.6e-3])).unwrap();
         assert!((found.bound - FACTOR * FLOOR).abs() < 1e-12);
         assert_eq!(found.range, [1.0, 2.0]);

@@ -12,7 +12,7 @@
 //! exact ones of the same scene with all outlines moved out, and moved in, by as much; what sampling the light and
 //! adding up may make of it comes on top. That is derived for each technique ([`techniques`]), not fitted to what was
 //! measured, and it is what a pixel is held to, not a mean alone. Where a technique's model is at its end the case says
-//! so, and the row must then be beyond its bound: a fault that was mended is told, too.
+//! so, and the row must then be beyond its bound: a fault that was mended shows, too.
 
 pub mod cases;
 pub mod judge;

@@ -87,7 +87,7 @@ pub struct Maps {
 impl Maps {
     /// Those of a case, through the window that a host gives or fitted.
     pub fn of(case: &HardCase, windowed: bool) -> Result<Self, Problem> {
-        let scene = case.set.scene(Place::HERE).map_err(|e| e.to_string())?;
+        let scene = case.set.scene(Place::HERE)?;
         let boxes = |keep: fn(antumbra::Role) -> bool| -> Vec<(MeshBounds, DMat4)> {
             let placed = scene.instances.iter().filter(|i| keep(i.role));
             let placed = placed.filter(|i| !scene.meshes[i.mesh].indices.is_empty());
@@ -164,7 +164,6 @@ pub fn ranges(
     pixels: &[Option<Seen>],
     reach: Reach,
 ) -> Result<Vec<Range>, Problem> {
-    let told = |e: antumbra::Error| e.to_string();
     let texel = reach.texels * Maps::texel(maps.occluders.as_ref())
         + reach.receiver_texels * Maps::texel(maps.receivers.as_ref());
     let light_from_world = set.light.light_from_world();
@@ -172,7 +171,7 @@ pub fn ranges(
     let polygon = PolygonLight::from(light);
     let truth = |by: f64, raised: f64| {
         let scene = set.blockers(|block| by * texel * furthest(block));
-        let exact = Exact::new(&scene).map_err(told)?;
+        let exact = Exact::new(&scene)?;
         Ok::<_, Problem>(Truth { exact, light: &polygon, raised, light_from_world })
     };
     // What a texel holds counts for a surface that blocks only where its middle is above what the surface itself
@@ -188,5 +187,5 @@ pub fn ranges(
         }
         Ok(Range { truth, least: grown.min(truth), most: shrunk.max(truth) })
     };
-    pixels.par_iter().map(range).collect::<Result<_, _>>().map_err(told)
+    pixels.par_iter().map(range).collect()
 }

@@ -22,7 +22,7 @@ const GUESSED: f64 = 1.5;
 pub fn run(device: &HeadlessDevice, cases: &[HardCase]) -> Result<Vec<Row>, Problem> {
     let mut prepared: Vec<Prepared> = cases
         .iter()
-        .map(|case| Prepared::new(case).map_err(|e| of(case, e)))
+        .map(|case| Prepared::new(case).map_err(Problem::of(case.title())))
         .collect::<Result<_, _>>()?;
     // Cases and techniques by the settings that they share.
     let mut by_settings: BTreeMap<(u32, String), Vec<(usize, usize)>> = BTreeMap::new();
@@ -39,37 +39,28 @@ pub fn run(device: &HeadlessDevice, cases: &[HardCase]) -> Result<Vec<Row>, Prob
         for &(at, technique) in places {
             let (case, held) = (&cases[at], &techniques::ALL[technique]);
             let prepared = &mut prepared[at];
-            let shown = prepared.show(device, stage.take()).map_err(|e| of(case, e))?;
+            let shown = prepared.show(device, stage.take()).map_err(Problem::of(case.title()))?;
             let shown = stage.insert(shown);
             if std::mem::take(&mut fresh) {
-                shown.configure(settings(words, *map)?).map_err(|e| of(case, e.to_string()))?;
+                shown.configure(settings(words, *map)?).map_err(Problem::of(case.title()))?;
             }
-            let row = prepared.row(shown, case, held).map_err(|e| of(case, e))?;
+            let row = prepared.row(shown, case, held).map_err(Problem::of(case.title()))?;
             rows.insert((at, technique), row);
         }
     }
     Ok(rows.into_values().collect())
 }
 
-fn of(case: &HardCase, problem: impl std::fmt::Display) -> Problem {
-    format!("{}: {problem}", case.title())
-}
-
-#[expect(clippy::needless_pass_by_value, reason = "as map_err gives it")]
-fn told(error: antumbra::Error) -> Problem {
-    error.to_string()
-}
-
 /// Settings from the words of a command line.
 pub fn settings(words: &str, map: u32) -> Result<Technique, Problem> {
-    let mut settings = technique_of(words).map_err(told)?;
-    settings.set("map", &map.to_string()).map_err(told)?;
+    let mut settings = technique_of(words)?;
+    settings.set("map", &map.to_string())?;
     Ok(settings)
 }
 
-/// What ranges are asked for.
+/// What ranges depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Asked {
+struct Expectation {
     expected: Expected,
     windowed: bool,
     reach: Reach,
@@ -83,8 +74,8 @@ struct Prepared<'a> {
     pixels: Vec<Option<pixels::Seen>>,
     /// Through the window that a host gives, and fitted.
     maps: [Maps; 2],
-    /// What is known already, by what it was asked for.
-    ranges: Vec<(Asked, Vec<Range>)>,
+    /// The ranges that are known already.
+    ranges: Vec<(Expectation, Vec<Range>)>,
 }
 
 impl<'a> Prepared<'a> {
@@ -92,7 +83,7 @@ impl<'a> Prepared<'a> {
         let extent = [SIDE; 2];
         Ok(Self {
             case,
-            scene: case.set.scene(case.place).map_err(told)?,
+            scene: case.set.scene(case.place)?,
             view: case.set.view(case.place, extent),
             pixels: pixels::seen(&case.set, extent),
             maps: [Maps::of(case, true)?, Maps::of(case, false)?],
@@ -105,10 +96,9 @@ impl<'a> Prepared<'a> {
         let keep = |i: &Instance| i.role != Role::Occluder;
         let Some(mut stage) = stage else {
             let settings = Technique::default();
-            return Stage::new(device, &self.scene, &self.view, [SIDE; 2], settings, keep)
-                .map_err(told);
+            return Ok(Stage::new(device, &self.scene, &self.view, [SIDE; 2], settings, keep)?);
         };
-        stage.show(&self.scene, &self.view, keep).map_err(told)?;
+        stage.show(&self.scene, &self.view, keep)?;
         Ok(stage)
     }
 
@@ -118,10 +108,10 @@ impl<'a> Prepared<'a> {
         case: &HardCase,
         held: &'static Held,
     ) -> Result<Row, Problem> {
-        let light = self.scene.light(None).map_err(told)?.light;
-        let plan = stage.plan(&light, case.window).map_err(told)?;
-        stage.run(&plan).map_err(told)?;
-        let image = stage.visibility().map_err(told)?;
+        let light = self.scene.light(None)?.light;
+        let plan = stage.plan(&light, case.window)?;
+        stage.run(&plan)?;
+        let image = stage.visibility()?;
         // Where penumbrae are narrower than a pixel, a hard shadow is all that the node makes.
         let by = if runs(&plan, "hard.visibility") { &techniques::HARD } else { held };
         let noise = case.noise_of(held);
@@ -130,11 +120,11 @@ impl<'a> Prepared<'a> {
 
     fn ranges_of(&mut self, held: &Held) -> Result<&[Range], Problem> {
         let reach = Reach { texels: held.texels, receiver_texels: held.receiver_texels };
-        let asked = Asked { expected: held.expected, windowed: held.windowed, reach };
-        let at = match self.ranges.iter().position(|(known, _)| *known == asked) {
+        let wanted = Expectation { expected: held.expected, windowed: held.windowed, reach };
+        let at = match self.ranges.iter().position(|(known, _)| *known == wanted) {
             Some(at) => at,
             None => {
-                self.ranges.push((asked, self.make_ranges(asked)?));
+                self.ranges.push((wanted, self.make_ranges(wanted)?));
                 self.ranges.len() - 1
             }
         };
@@ -143,7 +133,7 @@ impl<'a> Prepared<'a> {
 
     fn make_ranges(
         &self,
-        Asked { expected, windowed, reach }: Asked,
+        Expectation { expected, windowed, reach }: Expectation,
     ) -> Result<Vec<Range>, Problem> {
         let maps = &self.maps[usize::from(!windowed)];
         let set = if windowed { self.case.truth_set() } else { self.case.set.clone() };

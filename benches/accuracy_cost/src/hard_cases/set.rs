@@ -85,7 +85,7 @@ pub struct Floor {
     pub size: [f64; 2],
     /// Receiver, or both.
     pub role: Role,
-    /// Of how many squares a side it is drawn: rasters are coarse where triangles are huge.
+    /// How many rectangles it is drawn as along a side: rasters are coarse where triangles are huge.
     pub tiles: u32,
 }
 
@@ -149,7 +149,7 @@ impl Place {
     /// Where it was.
     pub const HERE: Self = Self { scale: 1.0, offset: DVec3::ZERO, baked: false };
 
-    /// The same without the way.
+    /// This place without the way.
     pub fn unmoved(self) -> Self {
         Self { offset: DVec3::ZERO, ..self }
     }

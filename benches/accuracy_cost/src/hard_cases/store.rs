@@ -4,6 +4,7 @@ use super::judge::{Row, Tables};
 use super::table;
 use super::{cases, run};
 use crate::Problem;
+use crate::report::write_files;
 use antumbra_harness::HeadlessDevice;
 use std::path::Path;
 
@@ -15,9 +16,9 @@ pub fn read(out: &Path) -> Result<Tables, Problem> {
     let text = match std::fs::read_to_string(&path) {
         Ok(text) => text,
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(Tables::new()),
-        Err(e) => return Err(format!("{}: {e}", path.display())),
+        Err(e) => return Err(Problem::of(path.display())(e)),
     };
-    serde_json::from_str(&text).map_err(|e| format!("{}: {e}; remove it", path.display()))
+    serde_json::from_str(&text).map_err(|e| format!("{}: {e}; remove it", path.display()).into())
 }
 
 /// Runs the table on a device, and keeps it with those of others; whether nothing is broken.
@@ -27,10 +28,7 @@ pub fn measure(device: &HeadlessDevice, out: &Path) -> Result<bool, Problem> {
     let good = rows.iter().all(Row::is_good);
     let mut tables = read(out)?;
     tables.insert(device.name().into(), rows);
-    let json = serde_json::to_string_pretty(&tables).map_err(|e| e.to_string())?;
-    for (name, text) in [(FILE, json), ("hard_cases.md", table::markdown(&tables))] {
-        let path = out.join(name);
-        std::fs::write(&path, text).map_err(|e| format!("{}: {e}", path.display()))?;
-    }
+    let json = serde_json::to_string_pretty(&tables).map_err(Problem::of(FILE))?;
+    write_files(out, [(FILE, json), ("hard_cases.md", table::markdown(&tables))])?;
     Ok(good)
 }

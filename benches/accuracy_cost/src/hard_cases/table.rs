@@ -11,7 +11,7 @@ fn cases(rows: &[Row]) -> impl Iterator<Item = &[Row]> {
 }
 
 /// A visible fraction or an error, in as few digits as tell it.
-fn told(x: f64) -> String {
+fn digits(x: f64) -> String {
     match x.abs() {
         0.0 => "0".into(),
         1.0 => format!("{x:.0}"),
@@ -23,7 +23,7 @@ fn told(x: f64) -> String {
 
 /// The worst pixel's error and what it may be.
 fn cell(row: &Row) -> String {
-    let (worst, bound) = (told(row.worst), told(row.worst_bound));
+    let (worst, bound) = (digits(row.worst), digits(row.worst_bound));
     match row.verdict {
         Verdict::Held => format!("{worst} ≤ {bound}"),
         Verdict::Known(_) => format!("{worst} †"),
@@ -89,7 +89,7 @@ fn of_driver(rows: &[Row], driver: &str) -> String {
     out += &"---|".repeat(techniques::ALL.len());
     out.push('\n');
     for case in cases(rows) {
-        let [least, most] = case[0].expected.map(told);
+        let [least, most] = case[0].expected.map(digits);
         let expected = if least == most { least } else { format!("{least} to {most}") };
         let _ = write!(out, "| {}: {} | {expected} |", case[0].limit, case[0].case);
         for row in case {
@@ -120,8 +120,8 @@ pub fn html(rows: &[Row], driver: &str) -> Markup {
                 };
                 tr {
                     td { (row.limit) ": " (row.case) } td { (row.technique) }
-                    td { (told(row.expected[0])) " to " (told(row.expected[1])) }
-                    @for error in [row.mean, row.mean_bound, row.worst, row.worst_bound] { td { (told(error)) } }
+                    td { (digits(row.expected[0])) " to " (digits(row.expected[1])) }
+                    @for error in [row.mean, row.mean_bound, row.worst, row.worst_bound] { td { (digits(error)) } }
                     td { span class=(class) { (verdict) } } td { (why) }
                 }
             }

@@ -1,4 +1,4 @@
-//! Axes: where a value lies, and which values are told.
+//! Axes: where a value lies, and which values are labelled.
 
 /// One axis.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,29 +42,28 @@ impl Axis {
         (at.is_finite() && (-1e-9..=1.0 + 1e-9).contains(&at)).then_some(at)
     }
 
-    /// The values that lines are drawn at, and the label of each that has one.
-    pub fn ticks(&self) -> Vec<(f64, Option<String>)> {
+    /// The values that lines are drawn at, each with its label.
+    pub fn ticks(&self) -> Vec<(f64, String)> {
         if self.log { self.log_ticks() } else { self.linear_ticks() }
     }
 
-    fn log_ticks(&self) -> Vec<(f64, Option<String>)> {
+    fn log_ticks(&self) -> Vec<(f64, String)> {
         let decades = (self.to / self.from).log10();
         // Labels stay apart: 1, 2, 5 where there is room, else 1 and 3 or whole decades.
-        let told: &[u32] = match decades {
+        let digits: &[u32] = match decades {
             d if d < 2.2 => &[1, 2, 5],
             d if d < 3.5 => &[1, 3],
             _ => &[1],
         };
         let first = self.from.log10().floor() as i32;
         let last = self.to.log10().ceil() as i32;
-        let all = (first..=last).flat_map(|e| told.iter().map(move |&m| (e, m)));
+        let all = (first..=last).flat_map(|e| digits.iter().map(move |&m| (e, m)));
         all.map(|(e, m)| (f64::from(m) * 10f64.powi(e), plain(f64::from(m), e)))
             .filter(|(value, _)| self.place(*value).is_some())
-            .map(|(value, label)| (value, Some(label)))
             .collect()
     }
 
-    fn linear_ticks(&self) -> Vec<(f64, Option<String>)> {
+    fn linear_ticks(&self) -> Vec<(f64, String)> {
         let span = self.to - self.from;
         // The step of 1, 2 or 5 times a power of ten that gives at most seven lines.
         let power = (span / 7.0).log10().floor() as i32;
@@ -75,7 +74,7 @@ impl Axis {
         let last = (self.to / step).floor() as i64;
         (first..=last)
             .map(|i| i as f64 * step)
-            .map(|v| (v, Some(if step >= 1000.0 { thousands(v) } else { format!("{v:.digits$}") })))
+            .map(|v| (v, if step >= 1000.0 { thousands(v) } else { format!("{v:.digits$}") }))
             .collect()
     }
 }
@@ -96,11 +95,11 @@ mod tests {
     use super::*;
 
     fn labels(axis: &Axis) -> Vec<String> {
-        axis.ticks().into_iter().filter_map(|t| t.1).collect()
+        axis.ticks().into_iter().map(|t| t.1).collect()
     }
 
     #[test]
-    fn a_log_axis_has_its_values_inside_and_tells_round_numbers() {
+    fn a_log_axis_has_its_values_inside_and_labels_round_numbers() {
         let axis = Axis::log("ms", [3.0, 90.0, 0.0, f64::NAN]);
         assert!(axis.from < 3.0 && axis.to > 90.0);
         assert_eq!(labels(&axis), ["5", "10", "20", "50", "100"]);
@@ -113,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn a_linear_axis_begins_at_0_and_tells_round_numbers() {
+    fn a_linear_axis_begins_at_0_and_labels_round_numbers() {
         assert_eq!(labels(&Axis::linear("m", [0.3, 1.96])), ["0.0", "0.5", "1.0", "1.5", "2.0"]);
         assert_eq!(labels(&Axis::linear("m", [-1.2, 1.2])), ["-1.0", "-0.5", "0.0", "0.5", "1.0"]);
         assert_eq!(labels(&Axis::linear("n", [0.0, 98_000.0]))[1], "20k");

@@ -25,7 +25,9 @@ pub struct Style {
 /// One point of a curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
+    /// Where on the axis of time, or of what is swept.
     pub x: f64,
+    /// Where on the axis of the error, or of time.
     pub y: f64,
     /// First and third quartile of x, where x is measured.
     pub x_spread: Option<[f64; 2]>,
@@ -56,7 +58,7 @@ pub struct Chart {
     pub series: Vec<Series>,
     /// A level under which the truth's noise drowns what is measured.
     pub floor: Option<f64>,
-    /// Whether it tells its own legend.
+    /// Whether it has a legend of its own.
     pub legend: bool,
 }
 
@@ -140,12 +142,12 @@ impl Chart {
             @for (u, label) in places(&self.x) {
                 @let x = tenth(LEFT + u * (right - LEFT));
                 path d=(format!("M{x} {TOP}V{bottom}")) class="g" {}
-                @if let Some(label) = label { text x=(x) y=(bottom + 15.0) class="m" { (label) } }
+                text x=(x) y=(bottom + 15.0) class="m" { (label) }
             }
             @for (v, label) in places(&self.y) {
                 @let y = bottom - v * (bottom - TOP);
                 path d=(format!("M{LEFT} {y:.1}H{right}")) class="g" {}
-                @if let Some(label) = label { text x=(LEFT - 6.0) y=(tenth(y + 4.0)) class="e" { (label) } }
+                text x=(LEFT - 6.0) y=(tenth(y + 4.0)) class="e" { (label) }
             }
             path d=(format!("M{LEFT} {TOP}V{bottom}H{right}")) class="a" {}
             text x=(0.5 * (LEFT + right)) y=(bottom + 34.0) class="m" { (self.x.label) }

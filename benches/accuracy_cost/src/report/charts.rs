@@ -50,7 +50,7 @@ fn tip(row: &Row) -> String {
         "{} {}: {:.2} % in {} ms (quartiles {} to {})",
         row.technique,
         row.settings,
-        100.0 * e.mean_abs_error,
+        100.0 * e.summary.mean_abs_error,
         ms(t.frame_ms[1]),
         ms(t.frame_ms[0]),
         ms(t.frame_ms[2])
@@ -93,20 +93,9 @@ pub fn matrix(report: &Report) -> Vec<(String, Vec<Markup>)> {
         let rows: Vec<&Row> =
             measured.iter().copied().filter(|r| r.scene == scene && r.light == light).collect();
         let mut series = series(&rows, |r| Some((r.ms()?, error(r)?)), true);
-        let all: Vec<(usize, usize)> = series
-            .iter()
-            .enumerate()
-            .flat_map(|(s, series)| (0..series.points.len()).map(move |p| (s, p)))
-            .collect();
-        let costs: Vec<pareto::Point> = all
-            .iter()
-            .map(|&(s, p)| &series[s].points[p])
-            .map(|p| pareto::Point { ms: p.x, error: p.y })
-            .collect();
-        for i in front(&costs) {
-            let (s, p) = all[i];
-            series[s].points[p].front = true;
-        }
+        let mut points: Vec<&mut Point> = series.iter_mut().flat_map(|s| &mut s.points).collect();
+        let costs: Vec<_> = points.iter().map(|p| pareto::Point { ms: p.x, error: p.y }).collect();
+        front(&costs).into_iter().for_each(|i| points[i].front = true);
         let [width, height] = rows.first().map_or([0.0; 2], |r| r.light_m);
         let floor =
             rows.iter().filter_map(|r| Some(r.measured()?.0.noise_floor)).fold(0.0, f64::max);
@@ -147,46 +136,38 @@ pub fn legend(report: &Report) -> Markup {
 struct Figure {
     name: &'static str,
     study: &'static str,
-    /// What lies on x, and whether in logarithms.
-    x: (&'static str, bool),
+    /// What lies on x.
+    x: &'static str,
     curves: &'static [&'static str],
     time: bool,
     /// x squared: texels instead of a side.
     squared: bool,
 }
 
-const N: (&str, bool) = ("side of the occluder map N, texels", false);
+const N: &str = "side of the occluder map N, texels";
 const SIDES: &[&str] = &[sweeps::SIDES[0].0, sweeps::SIDES[1].0];
 const SIZES: &[&str] = &["N = 64", sweeps::SIDES[1].0, "N = 256"];
 
-const fn figure(name: &'static str, study: &'static str, x: (&'static str, bool)) -> Figure {
+const fn figure(name: &'static str, study: &'static str, x: &'static str) -> Figure {
     Figure { name, study, x, curves: SIDES, time: false, squared: false }
 }
 
-const LIGHT: (&str, bool) = ("side of the light, m (the object is 1 m)", false);
+const LIGHT: &str = "side of the light, m (the object is 1 m)";
 
 const FIGURES: &[Figure] = &[
     figure("Fig. 17", sweeps::SIDE, N),
     figure("Fig. 18", sweeps::LIGHT, LIGHT),
-    figure(
-        "Fig. 19",
-        sweeps::LATERAL,
-        ("object's distance from under the light's centre, m", false),
-    ),
-    figure(
-        "Fig. 20",
-        sweeps::VERTICAL,
-        ("height of the object's centre, m (the light is at 4)", false),
-    ),
+    figure("Fig. 19", sweeps::LATERAL, "object's distance from under the light's centre, m"),
+    figure("Fig. 20", sweeps::VERTICAL, "height of the object's centre, m (the light is at 4)"),
     Figure {
         time: true,
         curves: &[sweeps::SIDES[1].0],
-        ..figure("Fig. 21", sweeps::POLYGONS, ("triangles", false))
+        ..figure("Fig. 21", sweeps::POLYGONS, "triangles")
     },
     Figure {
         time: true,
         squared: true,
-        ..figure("Fig. 22", sweeps::SIDE, ("texels of the occluder map, N²", false))
+        ..figure("Fig. 22", sweeps::SIDE, "texels of the occluder map, N²")
     },
     Figure { time: true, curves: SIZES, ..figure("Fig. 24a", sweeps::LIGHT, LIGHT) },
     Figure { curves: SIZES, ..figure("Fig. 24b", sweeps::LIGHT, LIGHT) },
@@ -216,16 +197,8 @@ impl Figure {
             }
             Chart {
                 title: format!("{}: {scene}", self.name),
-                x: if self.x.1 {
-                    Axis::log(self.x.0, places)
-                } else {
-                    Axis::linear(self.x.0, places)
-                },
-                y: if self.time {
-                    Axis::linear(MS, heights())
-                } else {
-                    Axis::linear(ERROR, heights())
-                },
+                x: Axis::linear(self.x, places),
+                y: Axis::linear(if self.time { MS } else { ERROR }, heights()),
                 series,
                 floor: None,
                 legend: self.curves.len() > 1,

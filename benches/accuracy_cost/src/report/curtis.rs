@@ -121,7 +121,7 @@ fn cell(row: Option<&Row>, then: Option<u32>) -> Markup {
         @match row.map(|r| (r, r.measured())) {
             None => i { "not measured" },
             Some((_, Some((errors, times)))) => {
-                b { (ms(times.frame_ms[1])) } " ms, " (format!("{:.2}", 100.0 * errors.mean_abs_error)) " %"
+                b { (ms(times.frame_ms[1])) } " ms, " (format!("{:.2}", 100.0 * errors.summary.mean_abs_error)) " %"
             }
             Some((row, None)) => (unmeasured(row)),
         }
@@ -189,7 +189,7 @@ pub fn levels(report: &Report) -> Markup {
         let levels = Levels { map: row.x as u32, kind: *kind };
         let (mb, sum) = (bytes(levels) as f64 / 1e6, build + classify + trace);
         let first = [row.scene.clone(), levels.map.to_string(), name.into(), format!("{mb:.1}")];
-        let last = [tight[nth], 100.0 * errors.mean_abs_error].map(|v| format!("{v:.2}"));
+        let last = [tight[nth], 100.0 * errors.summary.mean_abs_error].map(|v| format!("{v:.2}"));
         Some(first.into_iter().chain([build, classify, trace, sum].map(ms)).chain(last))
     };
     html! {

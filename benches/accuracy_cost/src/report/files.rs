@@ -5,55 +5,38 @@ use crate::Problem;
 use crate::store::{Outcome, Row};
 use serde_json::{Map, Value, json};
 
-/// One row's columns, in order. What was not measured has no value.
-fn columns(report: &Report, row: &Row) -> Vec<(&'static str, Value)> {
+/// The columns of accuracy_cost.csv but for the last, the passes' times.
+const COLUMNS: &str = "study scene light light_width_m light_height_m technique curve settings x status reason \
+                       mean_abs_error rmse p99 worst bias pixels penumbra_pixels penumbra_mean false_umbra false_light \
+                       lit_pixels lit_error flip truth_noise noise_floor frame_ms frame_ms_q1 frame_ms_q3 frames \
+                       record_us gpu_bytes triangles width height driver commit";
+
+/// One row's values by their columns, null where nothing was measured.
+fn values(report: &Report, row: &Row) -> Map<String, Value> {
     let (status, reason) = match &row.outcome {
         Outcome::Measured { .. } => ("measured", ""),
         Outcome::NotThere => ("not there yet", ""),
         Outcome::Failed(why) => ("failed", why.as_str()),
     };
-    let measured = row.measured();
-    let e = |of: &dyn Fn(&crate::store::Errors) -> Value| measured.map_or(Value::Null, |m| of(m.0));
-    let t = |of: &dyn Fn(&crate::store::Times) -> Value| measured.map_or(Value::Null, |m| of(m.1));
-    vec![
-        ("study", json!(row.study)),
-        ("scene", json!(row.scene)),
-        ("light", json!(row.light)),
-        ("light_width_m", json!(row.light_m[0])),
-        ("light_height_m", json!(row.light_m[1])),
-        ("technique", json!(row.technique)),
-        ("curve", json!(row.curve)),
-        ("settings", json!(row.settings)),
-        ("x", json!(row.x)),
-        ("status", json!(status)),
-        ("reason", json!(reason)),
-        ("mean_abs_error", e(&|e| json!(e.mean_abs_error))),
-        ("rmse", e(&|e| json!(e.rmse))),
-        ("p99", e(&|e| json!(e.p99))),
-        ("worst", e(&|e| json!(e.worst))),
-        ("bias", e(&|e| json!(e.bias))),
-        ("pixels", e(&|e| json!(e.pixels))),
-        ("penumbra_pixels", e(&|e| json!(e.penumbra_pixels))),
-        ("penumbra_mean", e(&|e| json!(e.penumbra_mean))),
-        ("false_umbra", e(&|e| json!(e.false_umbra))),
-        ("false_light", e(&|e| json!(e.false_light))),
-        ("lit_pixels", e(&|e| json!(e.lit_pixels))),
-        ("lit_error", e(&|e| json!(e.lit_error))),
-        ("flip", e(&|e| json!(e.flip))),
-        ("truth_noise", e(&|e| json!(e.truth_noise))),
-        ("noise_floor", e(&|e| json!(e.noise_floor))),
-        ("frame_ms", t(&|t| json!(t.frame_ms[1]))),
-        ("frame_ms_q1", t(&|t| json!(t.frame_ms[0]))),
-        ("frame_ms_q3", t(&|t| json!(t.frame_ms[2]))),
-        ("frames", t(&|t| json!(t.frames))),
-        ("record_us", t(&|t| json!(t.record_us))),
-        ("gpu_bytes", t(&|t| json!(t.gpu_bytes))),
-        ("triangles", json!(row.triangles)),
-        ("width", json!(row.extent[0])),
-        ("height", json!(row.extent[1])),
-        ("driver", json!(report.header.driver)),
-        ("commit", json!(report.header.commit)),
-    ]
+    let whole = json!({
+        "row": row,
+        "own": {
+            "light_width_m": row.light_m[0], "light_height_m": row.light_m[1],
+            "width": row.extent[0], "height": row.extent[1],
+            "status": status, "reason": reason,
+            "driver": report.header.driver, "commit": report.header.commit,
+        },
+        "errors": row.measured().map(|m| m.0),
+        "times": row.measured().map(|m| m.1),
+        "quartiles": row.measured().map(|m| m.1.frame_ms).map(|[q1, median, q3]| {
+            json!({ "frame_ms": median, "frame_ms_q1": q1, "frame_ms_q3": q3 })
+        }),
+    });
+    let value = |column: &str| {
+        let parts = ["own", "row", "quartiles", "errors", "times"];
+        parts.iter().find_map(|part| whole[part].get(column)).cloned().unwrap_or_default()
+    };
+    COLUMNS.split_whitespace().map(|column| (column.into(), value(column))).collect()
 }
 
 /// The passes' times.
@@ -65,8 +48,7 @@ fn passes(row: &Row) -> Map<String, Value> {
 /// Rows measured and failed, and apart from them what the crate does not have yet.
 pub fn json(report: &Report) -> Result<String, Problem> {
     let object = |row: &Row| {
-        let mut map: Map<String, Value> =
-            columns(report, row).into_iter().map(|(k, v)| (k.to_string(), v)).collect();
+        let mut map = values(report, row);
         map.insert("passes_ms".into(), Value::Object(passes(row)));
         Value::Object(map)
     };
@@ -74,7 +56,10 @@ pub fn json(report: &Report) -> Result<String, Problem> {
         report.rows.iter().partition(|r| r.outcome == Outcome::NotThere);
     let missing: Vec<Value> = missing
         .into_iter()
-        .map(|r| json!({ "study": r.study, "technique": r.technique, "settings": r.settings, "scene": r.scene, "light": r.light }))
+        .map(|r| {
+            let Row { study, technique, settings, scene, light, .. } = r;
+            json!({ "study": study, "technique": technique, "settings": settings, "scene": scene, "light": light })
+        })
         .collect();
     let whole = json!({
         "run": report.header,
@@ -82,7 +67,7 @@ pub fn json(report: &Report) -> Result<String, Problem> {
         "not_there": missing,
         "left_out": report.left_out,
     });
-    serde_json::to_string_pretty(&whole).map_err(|e| format!("accuracy_cost.json: {e}"))
+    serde_json::to_string_pretty(&whole).map_err(Problem::of("accuracy_cost.json"))
 }
 
 /// The rows measured and failed. Without any, the head alone.
@@ -95,20 +80,21 @@ pub fn csv(report: &Report) -> Result<String, Problem> {
     let line = |row: &Row| -> Vec<String> {
         let passes = passes(row).into_iter().map(|(k, v)| format!("{k}={v:.4}"));
         let passes = passes.collect::<Vec<_>>().join(" ");
-        columns(report, row).into_iter().map(|c| text(c.1)).chain([passes]).collect()
+        let mut values = values(report, row);
+        let cell = |column| text(values.remove(column).unwrap_or_default());
+        COLUMNS.split_whitespace().map(cell).chain([passes]).collect()
     };
-    let names = columns(report, &Row::default()).into_iter().map(|c| c.0.to_string());
+    let names = COLUMNS.split_whitespace().map(String::from);
     let rows = report.rows.iter().filter(|r| r.outcome != Outcome::NotThere);
     csv_of(std::iter::once(names.chain(["passes_ms".into()]).collect()).chain(rows.map(line)))
 }
 
 /// Lines of cells as CSV.
 pub fn csv_of(lines: impl IntoIterator<Item = Vec<String>>) -> Result<String, Problem> {
-    let told = |e: &dyn std::fmt::Display| format!("CSV: {e}");
     let mut csv = csv::WriterBuilder::new().flexible(true).from_writer(Vec::new());
-    lines.into_iter().try_for_each(|line| csv.write_record(line)).map_err(|e| told(&e))?;
-    let bytes = csv.into_inner().map_err(|e| told(&e))?;
-    String::from_utf8(bytes).map_err(|e| told(&e))
+    lines.into_iter().try_for_each(|line| csv.write_record(line)).map_err(Problem::of("CSV"))?;
+    let bytes = csv.into_inner().map_err(Problem::of("CSV"))?;
+    String::from_utf8(bytes).map_err(Problem::of("CSV"))
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use crate::groups::MATRIX;
 use crate::pareto::{Point, time_for};
 use crate::store::Row;
 
-/// The mean errors that times are told for.
+/// The mean errors that times are given for.
 pub const GOALS: [f64; 3] = [0.05, 0.03, 0.02];
 
 /// One line: scene, light, and for each technique its times for [`GOALS`].

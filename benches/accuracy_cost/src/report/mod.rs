@@ -74,7 +74,7 @@ pub fn write_files<const N: usize>(out: &Path, files: [(&str, String); N]) -> Re
         written.map_err(|e| {
             // The room it took is better free.
             let _ = std::fs::remove_file(&part);
-            format!("{}: {e}", path.display())
+            Problem::of(path.display())(e)
         })?;
     }
     Ok(())
@@ -146,6 +146,6 @@ pub(crate) mod tests {
         assert_eq!(json["not_there"][0]["technique"], "ray-march");
         assert_eq!(json["rows"][2]["status"], "failed");
         let problem = with(&rows(), |report| write(report, Path::new("/nowhere"))).unwrap_err();
-        assert!(problem.contains("/nowhere"));
+        assert!(problem.0.contains("/nowhere"));
     }
 }

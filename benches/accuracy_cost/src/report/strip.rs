@@ -10,10 +10,10 @@ use maud::{Markup, html};
 /// The rows that stand for their technique, of one scene, in the order of the curves.
 fn shown<'a>(report: &'a Report, scene: &str) -> Vec<&'a Row> {
     let of = |curve: &crate::techniques::Curve| {
-        let (words, _) = curve.steps.get(curve.shown?)?;
+        let words = curve.steps().find(|step| step.shown)?.words;
         report.study(MATRIX).find(|r| {
             let light = r.light != "small" && r.light != "large";
-            let same = r.curve == curve.label && r.settings == *words;
+            let same = r.curve == curve.label && r.settings == words;
             light && same && r.scene == scene && r.mean().is_some()
         })
     };

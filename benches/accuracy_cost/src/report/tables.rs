@@ -134,7 +134,7 @@ fn filtering(row: &Row) -> Markup {
     let filter: f64 = times.passes.iter().filter(|(name, _)| filters(name)).map(|p| p.1).sum();
     html! {
         (ms(filter)) " ms of a frame of " (ms(times.frame_ms[1])) " ms; mean error "
-        (percent(errors.mean_abs_error)) " %"
+        (percent(errors.summary.mean_abs_error)) " %"
     }
 }
 
@@ -190,9 +190,9 @@ pub fn all(report: &Report) -> Markup {
                     @if let Some((e, t)) = row.measured() {
                         tr {
                             @for name in [&row.scene, &row.light, &row.technique, &row.settings] { td { (name) } }
+                            @let s = &e.summary;
                             @for error in [
-                                e.mean_abs_error, e.rmse, e.p99, e.worst, e.bias, e.false_umbra, e.false_light,
-                                e.lit_error,
+                                s.mean_abs_error, s.rmse, s.p99, s.worst, s.bias, s.false_umbra, s.false_light, s.lit_error,
                             ] { td { (percent(error)) } }
                             td { @if let Some(flip) = e.flip { (format!("{flip:.4}")) } }
                             td { (percent(e.truth_noise)) }

@@ -27,7 +27,7 @@ pub enum Limit {
     Occluder,
     /// Where it is looked at.
     Receiver,
-    /// The numbers that it is told in.
+    /// The size of its numbers, and the sides of its maps.
     Numbers,
 }
 
@@ -45,12 +45,15 @@ impl fmt::Display for Limit {
 /// A technique that samples less than elsewhere, for a scene that is slow to draw.
 #[derive(Clone, Copy, Debug)]
 pub struct Noise {
+    /// The name of the technique in [`super::techniques::ALL`].
     pub technique: &'static str,
+    /// Its settings, as on a command line.
     pub words: &'static str,
     /// What sampling may add to a pixel.
     pub worst: f64,
     /// And in the mean.
     pub mean: f64,
+    /// The reason for both bounds.
     pub why: &'static str,
 }
 
@@ -60,7 +63,7 @@ pub struct HardCase {
     pub limit: Limit,
     pub name: String,
     pub set: Set,
-    /// What of the occluders can be known, where that is less.
+    /// The occluders that can be known, where those are fewer.
     pub seen: Option<Vec<Block>>,
     /// Where all of it goes.
     pub place: Place,
@@ -90,7 +93,7 @@ impl HardCase {
         }
     }
 
-    /// The same, known to be wrong with some techniques.
+    /// This case, known to be wrong with some techniques.
     fn known_for(mut self, techniques: &[&'static str], why: &'static str) -> Self {
         self.known.extend(techniques.iter().map(|name| (*name, why)));
         self
@@ -137,11 +140,11 @@ const TWO_LINES: Noise = Noise {
 const ASIDE: &str =
     "a map looks no further aside than 84°, and what is this near to the light ends beyond";
 
-/// Why what crosses the light's plane is told coarsely.
+/// Why shadows of what crosses the light's plane are coarse.
 const FLATTENED: &str =
     "what a map's centre sees edge-on, or a slice flattens, hides more or less than it does";
 
-/// Why a soft shadow map cannot tell.
+/// Why a soft shadow map is wrong at a second receiver.
 const ONE_RECEIVER: &str = "receivers=map knows one receiver a texel, as the light's centre sees it, and no shadow of its own";
 
 /// Why linear lights are off where receivers lie at distances of all kinds.

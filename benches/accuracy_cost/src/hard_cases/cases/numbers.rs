@@ -1,4 +1,4 @@
-//! Hard by the numbers that they are told in.
+//! Hard by the size of their numbers, and by the sides of their maps.
 
 use super::{CARD, HardCase, LIGHT, Limit, TWO_LINES, base, card, light, sheet};
 use crate::hard_cases::set::{Place, Set};

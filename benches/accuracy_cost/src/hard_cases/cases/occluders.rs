@@ -84,7 +84,7 @@ fn triangles() -> Vec<HardCase> {
     ]
 }
 
-/// The same mesh with its triangles the other way round.
+/// A mesh with its triangles turned the other way round.
 fn turned(mut mesh: Mesh) -> Mesh {
     mesh.indices.chunks_exact_mut(3).for_each(|triangle| triangle.swap(1, 2));
     mesh
