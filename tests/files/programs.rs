@@ -21,7 +21,9 @@ fn stem(path: &Path) -> String {
 fn left_out(text: &str, files: &[PathBuf]) -> Vec<String> {
     let modules = files.iter().filter(|file| file.extension().is_some_and(|e| e == "rs"));
     let names = modules.map(|file| stem(file)).filter(|name| name != "main");
-    names.filter(|name| !text.lines().any(|line| line == format!("mod {name};"))).collect()
+    let declared =
+        |line: &str, name: &str| line.trim_start_matches("pub ") == format!("mod {name};");
+    names.filter(|name| !text.lines().any(|line| declared(line, name))).collect()
 }
 
 /// Checks that a module declares every file of its folder, and so do its own modules: theirs stand in a folder of their

@@ -100,7 +100,7 @@ fn run(options: &Options, world: &World) -> Outcome<()> {
         // ---- Graph --------------------------------------------------------------------------
         let clip_from_world = world.clip_from_world(targets.extent);
         let shot = Shot {
-            slot: Slot(Frames::slot_of(number)),
+            slot: antumbra::Slot(Frames::slot_of(number)),
             clip_from_world,
             world_from_ndc: clip_from_world.inverse(),
             light: &world.light,

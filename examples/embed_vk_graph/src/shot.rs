@@ -2,13 +2,14 @@
 
 use crate::geometry::Model;
 use crate::targets::Targets;
+use antumbra::Slot;
 use antumbra::scene::AreaLight;
 use glam::DMat4;
 
 /// One frame: its camera, its light, its models and its images.
 pub struct Shot<'a> {
     /// Which of the frames in flight it is, counted from 0.
-    pub slot: u32,
+    pub slot: Slot,
     /// World space to clip space.
     pub clip_from_world: DMat4,
     /// The inverse.
