@@ -3,6 +3,7 @@
 mod closed_form;
 mod exact;
 mod metrics;
+mod polygon_light;
 mod random;
 mod segment;
 mod trace;

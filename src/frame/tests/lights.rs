@@ -58,7 +58,7 @@ fn an_outline_is_refused_by_what_knows_rectangles_alone() {
     let light = Light::with_outline(generate::square_light(0.5).unwrap(), &corners).unwrap();
     for name in Technique::NAMES {
         let d = of_technique(name);
-        let planned = plan(&d, Limits::default(), &Frame { light: light.into(), ..frame(&meshes) });
+        let planned = plan(&d, Limits::default(), &Frame { light, ..frame(&meshes) });
         if ["many-lights", "linear-light"].contains(name) {
             assert!(ran(&planned.unwrap()).len() > 1, "{name}");
         } else {
