@@ -100,7 +100,7 @@ fn a_wrong_layout_a_missing_usage_and_another_size() {
     let wrong = refused(HostImage { before: Scope::COLOR_DRAWN, ..depth });
     says(&wrong, &["gbuffer.depth", "COLOR_ATTACHMENT_OPTIMAL"]);
     let wrong = refused(HostImage { before: Scope::UNUSED, ..depth });
-    says(&wrong, &["gbuffer.depth", "UNDEFINED", "say which layout"]);
+    says(&wrong, &["gbuffer.depth", "UNDEFINED", "which layout"]);
     let drawn_only = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
     says(&refused(HostImage { usage: drawn_only, ..depth }), &["created without SAMPLED"]);
     says(&refused(HostImage { extent: [32, 32], ..depth }), &["32×32", "64×48"]);

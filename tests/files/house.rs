@@ -329,7 +329,9 @@ fn a_pass_is_followed_in_few_files() {
         let which = if shared { String::new() } else { module.name.clone() };
         let glsl = module.compile().included.into_iter().chain([module.file.clone()]);
         let mut files: BTreeSet<PathBuf> = glsl.map(|name| Path::new("glsl").join(name)).collect();
-        files.extend(of_its_room(Path::new(&entry.declared_in), &imports));
+        let declared_in = Path::new(&entry.declared_in);
+        assert!(imports.contains_key(declared_in), "glsl/{} names {declared_in:?}", module.file);
+        files.extend(of_its_room(declared_in, &imports));
         for pass in entry.passes {
             passes.entry((pass, which.clone())).or_default().extend(files.clone());
         }

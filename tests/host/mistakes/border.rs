@@ -96,7 +96,7 @@ fn the_first_frame_has_no_use_before() {
             "whatever it held is forgotten"
         );
     }
-    documented(&["In the first frame, and the first behind a resize, there was no use before"]);
+    documented(&["In the first frame, and the first after a resize, there was no use before"]);
 }
 
 #[test]
@@ -107,7 +107,7 @@ fn conventions_are_documented() {
         "inverse(projection * view) * scale(1, -1, 1)",
         "counter-clockwise",
         "metres",
-        "jitter included",
+        "including its jitter",
         "`[least, largest]`",
         "`half_v × half_u`",
     ]);

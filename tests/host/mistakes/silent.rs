@@ -122,7 +122,7 @@ fn mistake_22_bounds_that_are_too_small() {
     assert_eq!(host.plan().doubts(), []);
     documented(&[
         "**Bounds that are too small.**",
-        "what reaches beyond them may cast no shadow, and show none",
+        "What reaches beyond a box may cast no shadow, and show none",
     ]);
 }
 
