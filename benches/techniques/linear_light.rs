@@ -79,25 +79,25 @@ fn samples(device: &HeadlessDevice, _: &Scale) -> Table {
     table
 }
 
-/// Error and samples by the error asked for.
+/// Error and samples by the setting `error`.
 fn added(device: &HeadlessDevice, scale: &Scale) -> Table {
     let mut table = Table::new("added", "scene|asked %|samples|error %|ms|even 2 %|even 16 %");
     for name in SCENES {
         let scene = scene_under(name, metre());
-        let asked = [0.05, 0.02, 0.01, 0.005, 0.002];
-        let mut all: Vec<Ready> = asked
+        let goals = [0.05, 0.02, 0.01, 0.005, 0.002];
+        let mut all: Vec<Ready> = goals
             .iter()
             .map(|e| lines(device, &scene, &format!("samples=16 error={e}")))
             .chain([2, 16].map(|n| lines(device, &scene, &format!("samples={n} error=0"))))
             .collect();
         let times = in_turns(&mut all, scale.rounds);
         let truth = all[0].truth(&scene);
-        let even: Vec<_> = all[asked.len()..].iter_mut().map(|r| r.error(&truth)).collect();
+        let even: Vec<_> = all[goals.len()..].iter_mut().map(|r| r.error(&truth)).collect();
         let even = format!("{:.2}|{:.2}", even[0], even[1]);
-        for ((asked, one), times) in asked.iter().zip(&mut all).zip(&times) {
-            let (asked, ms) = (100.0 * asked, ms(times));
+        for ((goal, one), times) in goals.iter().zip(&mut all).zip(&times) {
+            let (goal, ms) = (100.0 * goal, ms(times));
             let (count, error) = (counts(one)[0], one.error(&truth));
-            table.row(format!("{name}|{asked:.1}|{count}|{error:.2}|{ms:.1}|{even}"));
+            table.row(format!("{name}|{goal:.1}|{count}|{error:.2}|{ms:.1}|{even}"));
         }
     }
     table

@@ -41,7 +41,7 @@ fn ms(times: &[FrameTimes], names: &[&str]) -> f64 {
 
 const BUILD: [&str; 4] = ["sum_rows", "sum_columns", "first_level", "next_level"];
 
-/// Fig. 2: what it takes to filter one texture of four slices, and what one that is asked for is worth.
+/// Fig. 2: what it takes to filter one texture of four slices, and the error that is left.
 fn prefilters(device: &HeadlessDevice, scale: &Scale) -> Table {
     let mut table = Table::new("prefilters", "N|prefilter|build ms|pixels ms|sum ms|error %");
     let scene = scene("suzanne", 1.0);

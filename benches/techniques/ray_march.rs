@@ -34,7 +34,7 @@ pub fn ms(times: &FrameTimes, names: &[&str]) -> f64 {
 }
 
 /// The kinds of windows: memory, how long they take to make, what the search makes of them, and how many
-/// texels they hold for each that is asked for. N-buffers have shaders of their own, without the branches
+/// texels they hold for each of the window that a search wants. N-buffers have shaders of their own, without the branches
 /// of the others.
 fn kinds(device: &HeadlessDevice, scale: &Scale) -> Table {
     let mut table = Table::new("levels", "scene|N|levels|MB|build ms|classify|trace|sum|held");

@@ -213,15 +213,15 @@ impl Bench<'_> {
         for (index, technique) in TECHNIQUES.into_iter().enumerate() {
             let done = self.compare(index, place, &ready, &mut truth);
             let visible = truth.iter().flat_map(|(visible, _)| visible);
-            let found = done.as_ref().ok();
+            let summary = done.as_ref().copied().unwrap_or_default();
             rows.push(Row {
                 scene: self.scene,
                 axis,
                 at,
                 technique,
-                mean_abs_error: found.map(|s| s.mean_abs_error),
-                pixels: found.map_or(0, |s| s.pixels),
-                penumbra_pixels: found.map_or(0, |s| s.penumbra_pixels),
+                mean_abs_error: done.is_ok().then_some(summary.mean_abs_error),
+                pixels: summary.pixels,
+                penumbra_pixels: summary.penumbra_pixels,
                 darkest: visible.map(|v| 1.0 - f64::from(*v)).fold(0.0, f64::max),
                 pixel_m: 2.0 * ready.half / f64::from(place.pixels),
                 status: done.err().unwrap_or(Status::Measured),
@@ -230,7 +230,7 @@ impl Bench<'_> {
         Ok(rows)
     }
 
-    /// One technique's error; the first one's pixels say where the truth is asked for.
+    /// One technique's error; the truth is computed once, at the first one's pixels.
     fn compare(
         &mut self,
         index: usize,
