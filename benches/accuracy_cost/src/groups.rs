@@ -149,10 +149,7 @@ impl Group {
             }
             Stage::Moved { model, light, by, half, reach } => {
                 let mut scene = scenes::made(model, scenes::square(*light)?)?;
-                for instance in scene.instances.iter_mut().filter(|i| i.role.blocks()) {
-                    let moved = DMat4::from_translation(*by) * instance.world_from_mesh;
-                    instance.world_from_mesh = moved;
-                }
+                scenes::move_blocks(&mut scene, DMat4::from_translation(*by));
                 let window = Some(window(&scene, *reach));
                 Ok(Ready { scene, view: ground(*half), window, occluders_seen: false })
             }

@@ -280,13 +280,11 @@ pub(crate) mod tests {
         let path = scratch("resumes.jsonl");
         let header = Header { commit: "abc".into(), ..Header::default() };
         let mut store = Store::open(&path, &header).unwrap();
-        store
-            .add("a", vec![row("one", 64.0, 1.0, 0.1), row("one", 128.0, 2.0, 0.05)], 3.0)
-            .unwrap();
+        let whole = vec![row("one", 64.0, 1.0, 0.1), row("one", 128.0, 2.0, 0.05)];
+        store.add("a", whole, 3.0).unwrap();
         // Killed in the middle of a group, and of a line.
-        store
-            .write(&Line::Row { group: "b".into(), row: Box::new(row("one", 1.0, 1.0, 0.5)) })
-            .unwrap();
+        let torn = Box::new(row("one", 1.0, 1.0, 0.5));
+        store.write(&Line::Row { group: "b".into(), row: torn }).unwrap();
         store.file.write_all(b"{\"row\":{\"group\":\"b\",\"row\":{\"stu").unwrap();
         drop(store);
         let mut store = Store::open(&path, &header).unwrap();

@@ -85,10 +85,7 @@ impl Place {
         let way = self.gap - bounds.size().y;
         let turn = DMat4::from_rotation_y(TURNS[0].to_radians());
         let moved = DVec3::Y * (self.height * way - bounds.min.y);
-        for instance in scene.instances.iter_mut().filter(|i| i.role.blocks()) {
-            instance.world_from_mesh =
-                DMat4::from_translation(moved) * turn * instance.world_from_mesh;
-        }
+        scenes::move_blocks(&mut scene, DMat4::from_translation(moved) * turn);
         let exact = Exact::new(&scene)?;
         let polygon = PolygonLight::from(&light);
         let widest = widest(&scene, self);

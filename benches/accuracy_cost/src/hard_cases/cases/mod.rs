@@ -33,12 +33,7 @@ pub enum Limit {
 
 impl fmt::Display for Limit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Light => "light",
-            Self::Occluder => "occluder",
-            Self::Receiver => "receiver",
-            Self::Numbers => "numbers",
-        })
+        f.write_str(&format!("{self:?}").to_lowercase())
     }
 }
 
