@@ -68,6 +68,7 @@ impl Entry {
 /// Rows that are measured together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Group {
+    /// The study that the rows belong to.
     pub study: &'static str,
     pub scene: String,
     pub light: String,
@@ -84,9 +85,11 @@ pub struct Group {
 pub struct Ready {
     /// The scene; its first light is used.
     pub scene: Scene,
+    /// The pixels' view of the scene.
     pub view: View,
     /// The occluder map's tangents, where they are not fitted.
     pub window: Option<[[f64; 2]; 2]>,
+    /// Whether pixels see what only occludes.
     pub occluders_seen: bool,
 }
 

@@ -61,6 +61,9 @@ pub fn standard() -> Vec<SceneSpec> {
 }
 
 /// The glTF files of a folder, sorted by name.
+///
+/// # Errors
+/// A folder that cannot be read or holds none.
 pub fn own(folder: &Path) -> Result<Vec<SceneSpec>, Problem> {
     let problem = Problem::of::<std::io::Error>(format!("--scenes {}", folder.display()));
     let paths = std::fs::read_dir(folder).map_err(&problem)?.map(|e| e.map(|e| e.path()));

@@ -54,6 +54,7 @@ pub struct Times {
     pub passes: Vec<(String, f64)>,
     /// Median µs of recording.
     pub record_us: f64,
+    /// The memory of the node, 0 for what runs on the processor.
     pub gpu_bytes: u64,
 }
 

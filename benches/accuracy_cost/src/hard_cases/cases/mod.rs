@@ -57,6 +57,7 @@ pub struct Noise {
 pub struct HardCase {
     pub limit: Limit,
     pub name: String,
+    /// Its light, occluders, receivers and pixels.
     pub set: Set,
     /// The occluders that can be known, where those are fewer.
     pub seen: Option<Vec<Block>>,
