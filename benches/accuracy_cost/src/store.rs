@@ -205,12 +205,10 @@ impl Store {
     pub fn read(path: &Path) -> Result<(Header, Vec<Row>), Problem> {
         let text = std::fs::read(path).map_err(Problem::of(path.display()))?;
         let mut contents = Contents::read(&text).0;
-        let header =
-            contents.header.ok_or_else(|| format!("{}: no run is in it", path.display()))?;
-        Ok((
-            header,
-            contents.whole.iter().filter_map(|g| contents.rows.remove(g)).flatten().collect(),
-        ))
+        let none = || format!("{}: no run is in it", path.display());
+        let header = contents.header.ok_or_else(none)?;
+        let rows = contents.whole.iter().filter_map(|g| contents.rows.remove(g)).flatten();
+        Ok((header, rows.collect()))
     }
 
     fn write(&mut self, line: &Line) -> Result<(), Problem> {
