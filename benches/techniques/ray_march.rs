@@ -33,9 +33,9 @@ pub fn ms(times: &FrameTimes, names: &[&str]) -> f64 {
     levels::ms(times.passes.iter().copied(), names)
 }
 
-/// The kinds of windows: memory, how long they take to make, what the search makes of them, and how many
-/// texels they hold for each of the window that a search wants. N-buffers have shaders of their own, without the branches
-/// of the others.
+/// The kinds of windows: memory, how long they take to make, what the search makes of them, and how many texels they
+/// hold for each of the window that a search wants. N-buffers have shaders of their own, without the branches of the
+/// others.
 fn kinds(device: &HeadlessDevice, scale: &Scale, table: &mut Table) {
     table.head("scene|N|levels|MB|build ms|classify|trace|sum|held");
     for name in ["bunny", "foliage"] {

@@ -16,10 +16,8 @@ const TRACER_SEED: u64 = 2;
 
 /// What computes one row's image.
 pub enum Runner<'a> {
-    Node {
-        stage: Box<Stage>,
-        plan: Box<FramePlan>,
-    },
+    /// The node, its stage and its frame.
+    Node { stage: Box<Stage>, plan: Box<FramePlan> },
     /// Rays by the processor.
     Rays {
         tracer: &'a Tracer,
@@ -27,11 +25,8 @@ pub enum Runner<'a> {
         light: RectangleLight,
         sampling: Sampling,
     },
-    /// Rays of the fragments as they are drawn, by the node's maps.
-    Forward {
-        /// What draws, and the stage whose maps they are.
-        forward: Box<Forward>,
-    },
+    /// Rays of the fragments as they are drawn, by the maps of the stage within.
+    Forward(Box<Forward>),
     /// The paper's scheme ends with its map. Its image is that of blending, whose sums are the same
     /// (a test of the crate's holds that), and its frame takes that one's last pass on top.
     Readback {
@@ -65,18 +60,11 @@ impl<'a> Runner<'a> {
                 Some(Self::Rays { tracer, receivers, light: lit?, sampling })
             }
             Some(Method::Readback(side)) => {
-                let words = format!(
-                    "receivers=map accumulate=blend sides=one map={side} receiver_map={side}"
-                );
-                let Some(Method::Node(settings)) =
-                    crate::techniques::method("soft-shadow-map", &words)?
-                else {
-                    return Ok(None);
-                };
-                let mut stage = stage(*settings)?;
+                let words = "soft-shadow-map receivers=map accumulate=blend sides=one";
+                let words = format!("{words} map={side} receiver_map={side}");
+                let mut stage = stage(words.parse()?)?;
                 let plan = stage.plan(light, ready.window)?;
-                let scheme = ReadbackScheme::new(device, &ready.scene, side, side);
-                let scheme = Box::new(scheme?);
+                let scheme = Box::new(ReadbackScheme::new(device, &ready.scene, side, side)?);
                 stage.run(&plan)?;
                 let (light, window, plan) = (lit?, ready.window, Box::new(plan));
                 Some(Self::Readback { scheme, light, window, stage, plan })
@@ -90,8 +78,8 @@ impl<'a> Runner<'a> {
                 let mut stage = stage(*settings)?;
                 let plan = stage.plan(light, ready.window)?;
                 let keep = |i: &Instance| ready.keeps(i);
-                let forward = Forward::new(device, *stage, plan, &ready.scene, keep);
-                Some(Self::Forward { forward: Box::new(forward?) })
+                let forward = Forward::new(device, *stage, plan, &ready.scene, keep)?;
+                Some(Self::Forward(Box::new(forward)))
             }
         })
     }
@@ -100,7 +88,7 @@ impl<'a> Runner<'a> {
     pub fn run(&mut self) -> Result<(FrameTimes, Option<Vec<f32>>), Problem> {
         match self {
             Self::Node { stage, plan } => Ok((stage.run(plan)?, None)),
-            Self::Forward { forward } => Ok((forward.run()?, None)),
+            Self::Forward(forward) => Ok((forward.run()?, None)),
             Self::Readback { scheme, light, window, stage, plan } => {
                 let times = scheme.run(light, *window)?;
                 let resolve = stage.run(plan)?.passes;
@@ -132,7 +120,7 @@ impl<'a> Runner<'a> {
     pub fn image(&mut self) -> Result<Option<Vec<f32>>, Problem> {
         Ok(match self {
             Self::Node { stage, .. } | Self::Readback { stage, .. } => Some(stage.visibility()?),
-            Self::Forward { forward } => Some(forward.visibility()?),
+            Self::Forward(forward) => Some(forward.visibility()?),
             Self::Rays { .. } => None,
         })
     }
@@ -141,7 +129,7 @@ impl<'a> Runner<'a> {
     pub fn bytes(&mut self) -> Result<u64, Problem> {
         Ok(match self {
             Self::Rays { .. } => 0,
-            Self::Forward { forward } => forward.memory()?.iter().map(|(_, bytes)| bytes).sum(),
+            Self::Forward(forward) => forward.memory()?.iter().map(|(_, bytes)| bytes).sum(),
             Self::Node { stage, .. } | Self::Readback { stage, .. } => {
                 stage.node()?.memory().iter().map(|r| r.bytes).sum()
             }

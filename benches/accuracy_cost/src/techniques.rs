@@ -96,13 +96,13 @@ pub const CURVES: &[Curve] = &[
 /// How a visible fraction is to be computed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Method {
-    /// By the node.
+    /// The node's passes over a G-buffer.
     Node(Box<Technique>),
-    /// By the node's maps, at fragments as they are drawn.
+    /// Rays by the node's maps, at fragments as they are drawn.
     Forward(Box<Technique>),
-    /// By so many rays a pixel on the processor.
+    /// So many rays a pixel on the processor.
     Rays(u32),
-    /// By the paper's own scheme, with maps of this side.
+    /// The paper's own scheme, with maps of this side.
     Readback(u32),
 }
 

@@ -224,7 +224,7 @@ mod tests {
         times.passes = vec![pass("level", 3.0), pass("trace", 4.0)];
         let page = with(&[one], levels).into_string();
         assert!(page.contains("<td>3.00</td><td>0.00</td><td>4.00</td><td>7.00</td>"), "{page}");
-        // A mip's windows hold more than was asked for; 1.00 are the others'.
+        // A mip's windows hold more than a search wants; 1.00 are the others'.
         assert!(tightness(Kind::NBuffer) == 1.0 && tightness(Kind::Thirds) == 1.0);
         assert!((2.0..9.0).contains(&tightness(Kind::Mip)), "{}", tightness(Kind::Mip));
     }
