@@ -138,5 +138,8 @@ fn frame(light: RectangleLight, meshes: &[MeshInstance]) -> Frame<'_> {
         before: Scope::FRAGMENT_SAMPLED,
         after: Scope::FRAGMENT_SAMPLED,
     };
-    Frame::new(Slot(0), light, DMat4::from_scale(DVec3::new(50.0, 50.0, 4.0)), meshes, depth)
+    let world_from_ndc = DMat4::from_scale(DVec3::new(50.0, 50.0, 4.0));
+    let frame = Frame::new(Slot(0), light, world_from_ndc, meshes, depth);
+    // An orthographic view does not say which end of depth is far.
+    Frame { background: Some(0.0), ..frame }
 }
