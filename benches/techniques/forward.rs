@@ -24,9 +24,8 @@ fn scenes() -> [(&'static str, Scene); 3] {
 /// these); the levels are either's. What forward pays for: fragments that are drawn over, and those outside of
 /// a triangle that its edge pixels' 2×2 quads are filled up with, which cost as much; small triangles have
 /// three of those for each that is seen. What deferred pays for: a plane from a dozen depths, and the list.
-pub fn forward(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let mut table =
-        Table::new("forward", "scene|rays|levels ms|gbuffer|pixels|forward|ratio|differ %|mean");
+pub fn forward(device: &HeadlessDevice, scale: &Scale, table: &mut Table) {
+    table.head("scene|rays|levels ms|gbuffer|pixels|forward|ratio|differ %|mean");
     for (name, scene) in scenes() {
         let light = scene.light(None).unwrap().light;
         let aspect = f64::from(EXTENT[0]) / f64::from(EXTENT[1]);
@@ -66,5 +65,4 @@ pub fn forward(device: &HeadlessDevice, scale: &Scale) -> Table {
             table.row(format!("{name}|{rays}|{times}|{ratio:.2}|{differ:.1}|{mean:.4}"));
         }
     }
-    table
 }

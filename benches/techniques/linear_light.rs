@@ -49,9 +49,8 @@ fn counts(ready: &mut Ready) -> Vec<u32> {
 
 /// Error against evenly spaced samples, beside many lights with as many maps and with 200 (Fig. 9), and how many of
 /// those are as good as eight.
-fn samples(device: &HeadlessDevice, _: &Scale) -> Table {
-    let mut table =
-        Table::new("samples", "scene|n|linear %|rational %|hard %|hard 200 %|as good as 8");
+fn samples(device: &HeadlessDevice, _: &Scale, table: &mut Table) {
+    table.head("scene|n|linear %|rational %|hard %|hard 200 %|as good as 8");
     for name in SCENES {
         let scene = scene_under(name, metre());
         let truth = lines(device, &scene, "samples=2").truth(&scene);
@@ -76,37 +75,35 @@ fn samples(device: &HeadlessDevice, _: &Scale) -> Table {
             table.row(format!("{name}|{n}|{linear:.2}|{rational:.2}|{hard}|{as_good}"));
         }
     }
-    table
 }
 
-/// Error and samples by the error asked for.
-fn added(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let mut table = Table::new("added", "scene|asked %|samples|error %|ms|even 2 %|even 16 %");
+/// Error and samples by the setting `error`.
+fn added(device: &HeadlessDevice, scale: &Scale, table: &mut Table) {
+    table.head("scene|asked %|samples|error %|ms|even 2 %|even 16 %");
     for name in SCENES {
         let scene = scene_under(name, metre());
-        let asked = [0.05, 0.02, 0.01, 0.005, 0.002];
-        let mut all: Vec<Ready> = asked
+        let goals = [0.05, 0.02, 0.01, 0.005, 0.002];
+        let mut all: Vec<Ready> = goals
             .iter()
             .map(|e| lines(device, &scene, &format!("samples=16 error={e}")))
             .chain([2, 16].map(|n| lines(device, &scene, &format!("samples={n} error=0"))))
             .collect();
         let times = in_turns(&mut all, scale.rounds);
         let truth = all[0].truth(&scene);
-        let even: Vec<_> = all[asked.len()..].iter_mut().map(|r| r.error(&truth)).collect();
+        let even: Vec<_> = all[goals.len()..].iter_mut().map(|r| r.error(&truth)).collect();
         let even = format!("{:.2}|{:.2}", even[0], even[1]);
-        for ((asked, one), times) in asked.iter().zip(&mut all).zip(&times) {
-            let (asked, ms) = (100.0 * asked, ms(times));
+        for ((goal, one), times) in goals.iter().zip(&mut all).zip(&times) {
+            let (goal, ms) = (100.0 * goal, ms(times));
             let (count, error) = (counts(one)[0], one.error(&truth));
-            table.row(format!("{name}|{asked:.1}|{count}|{error:.2}|{ms:.1}|{even}"));
+            table.row(format!("{name}|{goal:.1}|{count}|{error:.2}|{ms:.1}|{even}"));
         }
     }
-    table
 }
 
 /// A frame with kept maps against hard shadows with as many points, whose maps are drawn too.
-fn kept(device: &HeadlessDevice, scale: &Scale) -> Table {
+fn kept(device: &HeadlessDevice, scale: &Scale, table: &mut Table) {
     let columns = "scene|n|kept ms|hard ms|ratio|hard's pixels ms|ratio|all made ms|hard all ms";
-    let mut table = Table::new("kept", columns);
+    table.head(columns);
     for name in ["bunny", "foliage"] {
         let scene = scene_under(name, metre());
         for n in [2, 4, 8, 16] {
@@ -126,12 +123,11 @@ fn kept(device: &HeadlessDevice, scale: &Scale) -> Table {
             table.row(format!("{name}|{n}|{whole}|{pixels}|{made:.1}|{hard:.1}"));
         }
     }
-    table
 }
 
 /// Where a frame's time goes.
-fn passes(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let mut table = Table::new("passes", "map|words|pass|ms");
+fn passes(device: &HeadlessDevice, scale: &Scale, table: &mut Table) {
+    table.head("map|words|pass|ms");
     let scene = scene_under("bunny", metre());
     for side in scale.sides {
         for words in ["samples=4 error=0", "samples=8"] {
@@ -144,12 +140,11 @@ fn passes(device: &HeadlessDevice, scale: &Scale) -> Table {
             table.row(format!("{side}|{words}|frame|{:.1}", ms(times)));
         }
     }
-    table
 }
 
 /// A square of 0.4 m as lines, beside the other techniques.
-fn rectangles(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let mut table = Table::new("rectangles", "scene|technique|words|error %|ms");
+fn rectangles(device: &HeadlessDevice, scale: &Scale, table: &mut Table) {
+    table.head("scene|technique|words|error %|ms");
     let kinds = [
         ("linear-light", "lines=1 samples=4 error=0"),
         ("linear-light", "lines=4 samples=2 error=0"),
@@ -174,5 +169,4 @@ fn rectangles(device: &HeadlessDevice, scale: &Scale) -> Table {
             table.row(format!("{name}|{technique}|{words}|{error:.2}|{ms:.1}"));
         }
     }
-    table
 }

@@ -33,7 +33,7 @@ pub struct Scale {
 }
 
 /// A table by its name on the command line.
-type Study = (&'static str, fn(&HeadlessDevice, &Scale) -> Table);
+type Study = (&'static str, fn(&HeadlessDevice, &Scale, &mut Table));
 
 /// The tables of one subcommand.
 pub struct Bench {
@@ -74,7 +74,9 @@ impl Bench {
         let scale = if quick { &self.quick } else { &self.full };
         for (name, make) in self.studies {
             if named.as_ref().is_none_or(|named| named.iter().any(|n| n == name)) {
-                let path = make(device, scale).write(&out.join(self.name), device.name());
+                let mut table = Table::new(name);
+                make(device, scale, &mut table);
+                let path = table.write(&out.join(self.name), device.name());
                 println!("{}", path.display());
             }
         }

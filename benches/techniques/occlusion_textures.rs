@@ -41,9 +41,9 @@ fn ms(times: &[FrameTimes], names: &[&str]) -> f64 {
 
 const BUILD: [&str; 4] = ["sum_rows", "sum_columns", "first_level", "next_level"];
 
-/// Fig. 2: what it takes to filter one texture of four slices, and what one that is asked for is worth.
-fn prefilters(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let mut table = Table::new("prefilters", "N|prefilter|build ms|pixels ms|sum ms|error %");
+/// Fig. 2: what it takes to filter one texture of four slices, and the error that is left.
+fn prefilters(device: &HeadlessDevice, scale: &Scale, table: &mut Table) {
+    table.head("N|prefilter|build ms|pixels ms|sum ms|error %");
     let scene = scene("suzanne", 1.0);
     let mut truth = None;
     for &n in scale.sides {
@@ -59,13 +59,12 @@ fn prefilters(device: &HeadlessDevice, scale: &Scale) -> Table {
             table.row(format!("{n}|{name}|{build:.1}|{pixels:.1}|{sum:.1}|{error:.2}"));
         }
     }
-    table
 }
 
 /// Cost against the light's size, in sizes of the object: of pixels that are all behind it, and of a view that
 /// a larger light shadows more of, as pixels whose kernels meet nothing cost next to nothing.
-fn light_sizes(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let mut table = Table::new("light", "L|published|correlated|n-buffer|whole view|correlated");
+fn light_sizes(device: &HeadlessDevice, scale: &Scale, table: &mut Table) {
+    table.head("L|published|correlated|n-buffer|whole view|correlated");
     let sides = [0.05, 0.1, 0.2, 0.4, 0.7, 1.0, 1.4, 2.0];
     let n_buffer = format!("{PUBLISHED} prefilter=n-buffer");
     let kinds =
@@ -83,13 +82,11 @@ fn light_sizes(device: &HeadlessDevice, scale: &Scale) -> Table {
         let cells: String = all.iter().map(|times| format!("|{:.1}", ms(times, &[]))).collect();
         table.row(format!("{side}{cells}"));
     }
-    table
 }
 
 /// The published product against what slices have in common: error and time.
-fn combination(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let mut table =
-        Table::new("combination", "scene|slices|error %|filled|ours|of it|ms|ours ms|ratio");
+fn combination(device: &HeadlessDevice, scale: &Scale, table: &mut Table) {
+    table.head("scene|slices|error %|filled|ours|of it|ms|ours ms|ratio");
     let bunnies = [("bunny", 0.4), ("bunny", 1.0)];
     let others = [("tall box", 1.0), ("suzanne", 1.0), ("foliage", 0.4), ("stacked cards", 1.0)];
     for (name, side) in bunnies.into_iter().chain(others) {
@@ -107,12 +104,11 @@ fn combination(device: &HeadlessDevice, scale: &Scale) -> Table {
             table.row(format!("{name} {side}|{slices}|{errors}|{times}"));
         }
     }
-    table
 }
 
 /// Cost against slices and against the map's side, as exponents.
-fn exponents(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let mut table = Table::new("exponents", "against|words|ms|exponent|R2");
+fn exponents(device: &HeadlessDevice, scale: &Scale, table: &mut Table) {
+    table.head("against|words|ms|exponent|R2");
     let scene = scene("bunny", 0.4);
     let slices = [4.0, 8.0, 16.0, 32.0];
     let maps = [128.0, 256.0, 512.0, 1024.0];
@@ -129,5 +125,4 @@ fn exponents(device: &HeadlessDevice, scale: &Scale) -> Table {
             table.row(format!("{what}|{kind}|{times}|{:.2}|{:.2}", fit.slope, fit.r2));
         }
     }
-    table
 }

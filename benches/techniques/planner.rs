@@ -27,11 +27,11 @@ pub const BENCH: Bench = Bench {
 const SIDE: u32 = 256;
 
 /// Each scene of `tests/planner`, with everything that its technique has and with what it calls for.
-fn pruned(_: &HeadlessDevice, scale: &Scale) -> Table {
+fn pruned(_: &HeadlessDevice, scale: &Scale, table: &mut Table) {
     let wish = HeadlessOptions { statistics: true, ..Default::default() };
     let device = HeadlessDevice::new(&wish).unwrap();
     let columns = "passes|of|ms|of |vertices|of  |fragments|of   |threads|of    ";
-    let mut table = Table::new("pruned", columns);
+    table.head(columns);
     for case in cases::cases() {
         let scene = &case.scene;
         let light = scene.light(None).unwrap().light;
@@ -64,13 +64,11 @@ fn pruned(_: &HeadlessDevice, scale: &Scale) -> Table {
         println!("{}", case.name);
         table.row(format!("{passes}|{of}|{ms:.2}|{of_ms:.2}|{counts}"));
     }
-    table
 }
 
 /// Frames of many meshes under many lights, of which each reaches some; no device.
-fn planning(_: &HeadlessDevice, scale: &Scale) -> Table {
-    let mut table =
-        Table::new("planning", "meshes|lights|reach m|scene|draws|us a frame|us a light");
+fn planning(_: &HeadlessDevice, scale: &Scale, table: &mut Table) {
+    table.head("meshes|lights|reach m|scene|draws|us a frame|us a light");
     for (meshes, lights) in [(10, 1), (100, 4), (1000, 1), (1000, 4), (1000, 16)] {
         for (reach, stays) in [(None, false), (Some(8.0), false), (None, true), (Some(8.0), true)] {
             let all = instances(meshes);
@@ -98,7 +96,6 @@ fn planning(_: &HeadlessDevice, scale: &Scale) -> Table {
             table.row(format!("{meshes}|{lights}|{reach}|{moves}|{draws}|{us:.1}|{each:.1}"));
         }
     }
-    table
 }
 
 /// Boxes on a ground, in rows.
@@ -141,5 +138,8 @@ fn frame(light: RectangleLight, meshes: &[MeshInstance]) -> Frame<'_> {
         before: Scope::FRAGMENT_SAMPLED,
         after: Scope::FRAGMENT_SAMPLED,
     };
-    Frame::new(Slot(0), light, DMat4::from_scale(DVec3::new(50.0, 50.0, 4.0)), meshes, depth)
+    let world_from_ndc = DMat4::from_scale(DVec3::new(50.0, 50.0, 4.0));
+    let frame = Frame::new(Slot(0), light, world_from_ndc, meshes, depth);
+    // An orthographic view does not say which end of depth is far.
+    Frame { background: Some(0.0), ..frame }
 }

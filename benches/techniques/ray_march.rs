@@ -33,11 +33,11 @@ pub fn ms(times: &FrameTimes, names: &[&str]) -> f64 {
     levels::ms(times.passes.iter().copied(), names)
 }
 
-/// The kinds of windows: memory, how long they take to make, what the search makes of them, and how many
-/// texels they hold for each that is asked for. N-buffers have shaders of their own, without the branches
-/// of the others.
-fn kinds(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let mut table = Table::new("levels", "scene|N|levels|MB|build ms|classify|trace|sum|held");
+/// The kinds of windows: memory, how long they take to make, what the search makes of them, and how many texels they
+/// hold for each of the window that a search wants. N-buffers have shaders of their own, without the branches of the
+/// others.
+fn kinds(device: &HeadlessDevice, scale: &Scale, table: &mut Table) {
+    table.head("scene|N|levels|MB|build ms|classify|trace|sum|held");
     for name in ["bunny", "foliage"] {
         let scene = scene(name, 0.4);
         for &n in scale.sides {
@@ -56,12 +56,11 @@ fn kinds(device: &HeadlessDevice, scale: &Scale) -> Table {
             }
         }
     }
-    table
 }
 
 /// Hierarchical against linear search: the same rays, so the same error but for what each misses.
-fn search(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let mut table = Table::new("search", "scene|N|rays|hier. ms|linear ms|ratio|error %|error %");
+fn search(device: &HeadlessDevice, scale: &Scale, table: &mut Table) {
+    table.head("scene|N|rays|hier. ms|linear ms|ratio|error %|error %");
     for (name, side) in [("bunny", 0.4), ("suzanne", 1.0), ("slats", 0.4), ("foliage", 0.4)] {
         let scene = scene(name, side);
         let mut truth = None;
@@ -80,12 +79,11 @@ fn search(device: &HeadlessDevice, scale: &Scale) -> Table {
             }
         }
     }
-    table
 }
 
 /// With and without classification and early outs.
-fn classification(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let mut table = Table::new("classification", "scene|L|rays|on ms|off ms|ratio|differ by");
+fn classification(device: &HeadlessDevice, scale: &Scale, table: &mut Table) {
+    table.head("scene|L|rays|on ms|off ms|ratio|differ by");
     for (name, side) in [("bunny", 0.1), ("bunny", 0.4), ("bunny", 1.0), ("foliage", 0.4)] {
         let scene = scene(name, side);
         for rays in [4, 16, 64] {
@@ -99,12 +97,11 @@ fn classification(device: &HeadlessDevice, scale: &Scale) -> Table {
             table.row(format!("{name}|{side}|{rays}|{on:.1}|{off:.1}|{ratio:.2}|{worst:.1e}"));
         }
     }
-    table
 }
 
 /// Making the levels beside copying as many bytes, by the processor's two cores as the driver has them.
-fn bandwidth(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let mut table = Table::new("bandwidth", "N|MB|build ms|copy ms|ratio");
+fn bandwidth(device: &HeadlessDevice, scale: &Scale, table: &mut Table) {
+    table.head("N|MB|build ms|copy ms|ratio");
     let scene = scene("bunny", 0.4);
     for &n in scale.sides {
         let mut ready = ready(device, &scene, &format!("map={n}"));
@@ -127,5 +124,4 @@ fn bandwidth(device: &HeadlessDevice, scale: &Scale) -> Table {
         let (mb, build, copy) = (bytes as f64 / 1e6, median(&builds), median(&copies));
         table.row(format!("{n}|{mb:.1}|{build:.1}|{copy:.2}|{:.1}", build / copy));
     }
-    table
 }

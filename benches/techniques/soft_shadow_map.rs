@@ -41,8 +41,8 @@ fn accumulations(times: &[FrameTimes]) -> Vec<f64> {
 }
 
 /// The gather beside the blend: accumulation passes alone, one side, N = M, in turns.
-fn gather_and_blend(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let mut table = Table::new("gather_and_blend", "L|N|gather ms|q1|q3|blend ms|q1|q3|ratio");
+fn gather_and_blend(device: &HeadlessDevice, scale: &Scale, table: &mut Table) {
+    table.head("L|N|gather ms|q1|q3|blend ms|q1|q3|ratio");
     let lights = [0.1, 0.4, 1.0];
     let mut all = [Vec::new(), Vec::new()];
     for light in lights {
@@ -70,16 +70,12 @@ fn gather_and_blend(device: &HeadlessDevice, scale: &Scale) -> Table {
         let e = grows(all.iter().filter(|p| p.1 == largest).map(|p| (p.0, p.2)).collect());
         println!("{name}, N = {largest}: time grows as L^{e:.2}");
     }
-    table
 }
 
 /// The gather beside the paper's own scheme (Atty 2006 section 4.1), whole frames: one side, N = M, in
 /// turns. The node's frame ends in 32×32 pixels, which weigh nothing; the paper's ends with its map.
-fn gather_and_readback(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let mut table = Table::new(
-        "gather_and_readback",
-        "L|N|gather ms|readback ms|depth|rectangles|blend|MB moved|ratio",
-    );
+fn gather_and_readback(device: &HeadlessDevice, scale: &Scale, table: &mut Table) {
+    table.head("L|N|gather ms|readback ms|depth|rectangles|blend|MB moved|ratio");
     for light in [0.1, 0.4, 1.0] {
         let scene = scene("spheres", light);
         let lamp = scene.light(None).unwrap().light;
@@ -106,12 +102,11 @@ fn gather_and_readback(device: &HeadlessDevice, scale: &Scale) -> Table {
             table.row(format!("{light}|{n}|{ms:.1}|{parts}|{mb:.1}|{ratio:.2}"));
         }
     }
-    table
 }
 
 /// One side, the larger of two and their mean, at the pixels and on a map, of the bunny.
-fn sides(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let mut table = Table::new("sides", "receivers|one ms|two ms|mean ms|two / one|mean / two");
+fn sides(device: &HeadlessDevice, scale: &Scale, table: &mut Table) {
+    table.head("receivers|one ms|two ms|mean ms|two / one|mean / two");
     let scene = scene("bunny", 0.4);
     for receivers in ["pixels", "map"] {
         let mut stages = ["one", "two", "mean"].map(|sides| {
@@ -122,12 +117,11 @@ fn sides(device: &HeadlessDevice, scale: &Scale) -> Table {
         let ratios = format!("{:.2}|{:.2}", two / one, mean / two);
         table.row(format!("{receivers}|{one:.1}|{two:.1}|{mean:.1}|{ratios}"));
     }
-    table
 }
 
 /// Visibility at the pixels beside a map projected onto them, on scenes with a split.
-fn pixels_and_map(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let mut table = Table::new("pixels_and_map", "scene|pixels %|map %|noise %|pixels ms|map ms");
+fn pixels_and_map(device: &HeadlessDevice, scale: &Scale, table: &mut Table) {
+    table.head("scene|pixels %|map %|noise %|pixels ms|map ms");
     for name in ["card", "spheres", "tall box", "bunny", "suzanne"] {
         let scene = scene(name, 0.4);
         let mut stages =
@@ -139,12 +133,11 @@ fn pixels_and_map(device: &HeadlessDevice, scale: &Scale) -> Table {
         let noise = 100.0 * noise;
         table.row(format!("{name}|{error:.2}|{of_map:.2}|{noise:.2}|{pixels:.1}|{map:.1}"));
     }
-    table
 }
 
 /// What the tolerance gives and takes, against a tolerance of 0 on the same maps.
-fn tolerance(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let mut table = Table::new("tolerance", "scene|tolerance|worst|ms");
+fn tolerance(device: &HeadlessDevice, scale: &Scale, table: &mut Table) {
+    table.head("scene|tolerance|worst|ms");
     let tolerances = [0.0, 1e-5, 1e-4, 1e-3, 1e-2];
     for name in ["spheres", "foliage"] {
         let scene = scene(name, 0.4);
@@ -159,12 +152,11 @@ fn tolerance(device: &HeadlessDevice, scale: &Scale) -> Table {
             table.row(format!("{name}|{tolerance}|{worst:.1e}|{ms:.1}"));
         }
     }
-    table
 }
 
 /// The frame's time against triangles: a sphere from 1k to 871k, and the dragon where it was fetched.
-fn triangles(device: &HeadlessDevice, scale: &Scale) -> Table {
-    let mut table = Table::new("triangles", "model|triangles|frame ms|layers ms|plan us|record us");
+fn triangles(device: &HeadlessDevice, scale: &Scale, table: &mut Table) {
+    table.head("model|triangles|frame ms|layers ms|plan us|record us");
     let folder = antumbra_bench::options::Options::root().join("target/dragon");
     let spheres = [22, 45, 90, 180, 360, 660]
         .map(|rows| ("sphere", Some(generate::uv_sphere(0.5, rows + 1, rows))));
@@ -200,5 +192,4 @@ fn triangles(device: &HeadlessDevice, scale: &Scale) -> Table {
             );
         }
     }
-    table
 }

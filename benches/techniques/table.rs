@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// A named table.
+#[derive(Default)]
 pub struct Table {
     name: &'static str,
     columns: Vec<&'static str>,
@@ -10,12 +11,16 @@ pub struct Table {
 }
 
 impl Table {
-    /// An empty table, whose columns' names are parted by bars; prints its head.
-    pub fn new(name: &'static str, columns: &'static str) -> Self {
-        let columns: Vec<_> = columns.split('|').collect();
-        println!("\n== {name}");
-        println!("{}", columns.iter().map(|c| format!(" {c:>13}")).collect::<String>());
-        Self { name, columns, rows: Vec::new() }
+    /// An empty table.
+    pub fn new(name: &'static str) -> Self {
+        Self { name, ..Self::default() }
+    }
+
+    /// Sets and prints the columns' names, which are parted by bars.
+    pub fn head(&mut self, columns: &'static str) {
+        self.columns = columns.split('|').collect();
+        println!("\n== {}", self.name);
+        println!("{}", self.columns.iter().map(|c| format!(" {c:>13}")).collect::<String>());
     }
 
     /// Adds and prints a row, whose cells are parted by bars.

@@ -13,25 +13,25 @@ pub const BENCH: Bench = Bench {
     name: "tiles",
     about: "Tiles of pixels that no occluder can affect: with and without finding them",
     studies: &[
-        ("soft_shadow_map", |device, scale| {
-            let pass = "gather_pixels";
-            compared("soft_shadow_map", "soft-shadow-map", pass, device, scale)
+        ("soft_shadow_map", |device, scale, table| {
+            compared("soft-shadow-map", "gather_pixels", device, scale, table);
         }),
-        ("pcss", |device, scale| compared("pcss", "pcss", "pcss.visibility", device, scale)),
-        ("occlusion_textures", |device, scale| {
-            let pass = "occlusion_textures.visibility";
-            compared("occlusion_textures", "occlusion-textures", pass, device, scale)
+        ("pcss", |device, scale, table| compared("pcss", "pcss.visibility", device, scale, table)),
+        ("occlusion_textures", |device, scale, table| {
+            compared("occlusion-textures", TEXTURES, device, scale, table);
         }),
         // With means from levels.
-        ("occlusion_levels", |device, scale| {
-            let (words, pass) =
-                ("occlusion-textures prefilter=mip slices=8", "occlusion_textures.visibility");
-            compared("occlusion_levels", words, pass, device, scale)
+        ("occlusion_levels", |device, scale, table| {
+            let words = "occlusion-textures prefilter=mip slices=8";
+            compared(words, TEXTURES, device, scale, table);
         }),
     ],
     full: Scale { rounds: 11, sides: &[256, 512], quick: false },
     quick: Scale { rounds: 5, sides: &[256], quick: true },
 };
+
+/// The pass of occlusion textures over the pixels.
+const TEXTURES: &str = "occlusion_textures.visibility";
 
 const EXTENT: [u32; 2] = [640, 480];
 
@@ -73,14 +73,8 @@ fn views(side: f64) -> [(&'static str, Scene, View); 6] {
     ]
 }
 
-fn compared(
-    name: &'static str,
-    words: &str,
-    pass: &str,
-    device: &HeadlessDevice,
-    scale: &Scale,
-) -> Table {
-    let mut table = Table::new(name, "scene|L|N|lit %|without ms|tiles ms|listed ms|with/without");
+fn compared(words: &str, pass: &str, device: &HeadlessDevice, scale: &Scale, table: &mut Table) {
+    table.head("scene|L|N|lit %|without ms|tiles ms|listed ms|with/without");
     for side in [0.1, 1.0] {
         for (scene_name, scene, view) in &views(side) {
             for n in scale.sides {
@@ -101,5 +95,4 @@ fn compared(
             }
         }
     }
-    table
 }

@@ -282,10 +282,8 @@ mod tests {
         let n = |i: u32| f64::from(40 + i * 20);
         let flat: Vec<_> = (0..19).map(|i| (n(i), if i < 6 { 0.05 } else { 0.03 })).collect();
         let falling: Vec<_> = (0..19).map(|i| (n(i), 4.0 / n(i))).collect();
-        assert_eq!(
-            verdict(&swept(sweeps::SIDE, "bunny", TWO, &flat), "Fig. 17", "200"),
-            Verdict::Holds
-        );
+        let rows = swept(sweeps::SIDE, "bunny", TWO, &flat);
+        assert_eq!(verdict(&rows, "Fig. 17", "200"), Verdict::Holds);
         let rows = swept(sweeps::SIDE, "bunny", TWO, &falling);
         assert_eq!(verdict(&rows, "Fig. 17", "200"), Verdict::Refuted);
         // The object that differs is named.
@@ -311,10 +309,8 @@ mod tests {
     #[test]
     fn growth_least_and_lines_are_seen() {
         let light = [(0.01, 0.09), (0.1, 0.01), (0.4, 0.02), (1.0, 0.03)];
-        assert_eq!(
-            verdict(&swept(sweeps::LIGHT, "bunny", TWO, &light), "Fig. 18", ""),
-            Verdict::Holds
-        );
+        let rows = swept(sweeps::LIGHT, "bunny", TWO, &light);
+        assert_eq!(verdict(&rows, "Fig. 18", ""), Verdict::Holds);
         let lateral = [(-1.0, 0.03), (0.0, 0.01), (1.0, 0.02)];
         let rows = swept(sweeps::LATERAL, "bunny", TWO, &lateral);
         assert_eq!(verdict(&rows, "Fig. 19", ""), Verdict::Holds);

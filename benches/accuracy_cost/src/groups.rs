@@ -68,6 +68,7 @@ impl Entry {
 /// Rows that are measured together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Group {
+    /// The study that the rows belong to.
     pub study: &'static str,
     pub scene: String,
     pub light: String,
@@ -84,9 +85,11 @@ pub struct Group {
 pub struct Ready {
     /// The scene; its first light is used.
     pub scene: Scene,
+    /// The pixels' view of the scene.
     pub view: View,
     /// The occluder map's tangents, where they are not fitted.
     pub window: Option<[[f64; 2]; 2]>,
+    /// Whether pixels see what only occludes.
     pub occluders_seen: bool,
 }
 
@@ -149,10 +152,7 @@ impl Group {
             }
             Stage::Moved { model, light, by, half, reach } => {
                 let mut scene = scenes::made(model, scenes::square(*light)?)?;
-                for instance in scene.instances.iter_mut().filter(|i| i.role.blocks()) {
-                    let moved = DMat4::from_translation(*by) * instance.world_from_mesh;
-                    instance.world_from_mesh = moved;
-                }
+                scenes::move_blocks(&mut scene, DMat4::from_translation(*by));
                 let window = Some(window(&scene, *reach));
                 Ok(Ready { scene, view: ground(*half), window, occluders_seen: false })
             }

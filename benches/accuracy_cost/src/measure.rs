@@ -5,14 +5,13 @@ use crate::groups::{Entry, Group};
 use crate::options::Scale;
 use crate::picture::{self, Pictures};
 use crate::runner::Runner;
-use crate::scenes::scaled;
 use crate::stats::{median, quartiles};
 use crate::store::{Errors, Outcome, Row, Times};
 use crate::techniques::method;
 use crate::truth::{self, Truth, mask};
+use antumbra::Technique;
 use antumbra::scene::AreaLight;
 use antumbra::truth::{ErrorSummary, Receiver, Tracer};
-use antumbra::{RectangleLight, Technique};
 use antumbra_harness::shade;
 use antumbra_harness::{FrameTimes, HeadlessDevice, Stage};
 use rayon::prelude::*;
@@ -38,7 +37,7 @@ pub struct Bench<'a> {
 /// One row in the making.
 struct Candidate<'a> {
     entry: &'a Entry,
-    state: Result<Option<Runner>, Problem>,
+    state: Result<Option<Runner<'a>>, Problem>,
     frames: Vec<FrameTimes>,
     image: Vec<f32>,
 }
@@ -68,22 +67,19 @@ impl Bench<'_> {
         let pixels = ready.stage(self.device, group.extent, Technique::default())?;
         let receivers = truth::receivers(pixels.gbuffer())?;
         let tracer = Tracer::new(&ready.scene)?;
-        let mut candidates: Vec<Candidate> = Vec::new();
-        for (entry, method) in group.entries.iter().zip(methods) {
-            let state =
-                Runner::new(self.device, &ready, group, entry, method, &light.light, &receivers);
-            candidates.push(Candidate { entry, state, frames: Vec::new(), image: Vec::new() });
-        }
-        let lit = |c: &Candidate| scaled(&light.light, c.entry.light_scale);
+        let views = (&tracer, receivers.as_slice());
+        let candidate = |(entry, method)| Candidate {
+            entry,
+            state: Runner::new(self.device, &ready, group, entry, method, &light.light, views),
+            frames: Vec::new(),
+            image: Vec::new(),
+        };
+        let mut candidates: Vec<_> = group.entries.iter().zip(methods).map(candidate).collect();
         for candidate in &mut candidates {
             say(&format!("warming up {} {}", candidate.entry.technique, candidate.entry.words));
-            let light = lit(candidate)?;
-            candidate.warm_up(&tracer, &light, &receivers);
+            candidate.warm_up();
         }
-        self.take_turns(&mut candidates, say, |c| {
-            let light = lit(c)?;
-            c.run(&tracer, &light, &receivers)
-        });
+        self.take_turns(&mut candidates, say);
         say("truth");
         let truth =
             truth::truth(&ready.scene, &receivers, group.against, self.scale.rays, self.cache)?;
@@ -111,12 +107,7 @@ impl Bench<'_> {
 
     /// Every candidate once a round. Those that have cost more than their share stop once they have
     /// as many frames as quartiles need.
-    fn take_turns(
-        &self,
-        candidates: &mut [Candidate],
-        say: &dyn Fn(&str),
-        mut run: impl FnMut(&mut Candidate) -> Result<(), Problem>,
-    ) {
+    fn take_turns(&self, candidates: &mut [Candidate], say: &dyn Fn(&str)) {
         let share = Duration::from_secs(if self.scale.quick { 1 } else { 12 });
         // Small groups, whose times are compared with those of others, take more frames.
         let rounds = self.scale.rounds * (SMALL_GROUP / candidates.len().max(1)).max(1);
@@ -125,9 +116,8 @@ impl Bench<'_> {
             for candidate in candidates.iter_mut() {
                 let spent: Duration = candidate.frames.iter().map(|f| f.frame).sum();
                 let enough = candidate.frames.len() >= FEWEST_FRAMES && spent > share;
-                if matches!(candidate.state, Ok(Some(_))) && !enough {
-                    let done = run(candidate);
-                    candidate.settle(done);
+                if !enough {
+                    candidate.run();
                 }
             }
         }
@@ -148,34 +138,28 @@ impl Bench<'_> {
 }
 
 impl Candidate<'_> {
-    fn settle(&mut self, done: Result<(), Problem>) {
-        if let Err(problem) = done {
-            self.state = Err(problem);
+    /// The first frame compiles what the driver compiles, and is not counted; its image is kept.
+    fn warm_up(&mut self) {
+        self.run();
+        self.frames.clear();
+        if let Ok(Some(runner)) = &mut self.state {
+            match runner.image() {
+                Ok(image) => self.image = image.unwrap_or_else(|| std::mem::take(&mut self.image)),
+                Err(problem) => self.state = Err(problem),
+            }
         }
     }
 
-    /// The first frame compiles what the driver compiles, and is not counted; its image is kept.
-    fn warm_up(&mut self, tracer: &Tracer, light: &RectangleLight, receivers: &[Receiver]) {
-        let done = self.run(tracer, light, receivers).and_then(|()| {
-            let Ok(Some(runner)) = &mut self.state else { return Ok(()) };
-            self.image = runner.image()?.unwrap_or_else(|| std::mem::take(&mut self.image));
-            Ok(())
-        });
-        self.frames.clear();
-        self.settle(done);
-    }
-
-    fn run(
-        &mut self,
-        tracer: &Tracer,
-        light: &RectangleLight,
-        r: &[Receiver],
-    ) -> Result<(), Problem> {
-        let Ok(Some(runner)) = &mut self.state else { return Ok(()) };
-        let (times, image) = runner.run(tracer, light, r)?;
-        self.image = image.unwrap_or_else(|| std::mem::take(&mut self.image));
-        self.frames.push(times);
-        Ok(())
+    /// One frame, where there is a runner whose frames have not failed.
+    fn run(&mut self) {
+        let Ok(Some(runner)) = &mut self.state else { return };
+        match runner.run() {
+            Ok((times, image)) => {
+                self.image = image.unwrap_or_else(|| std::mem::take(&mut self.image));
+                self.frames.push(times);
+            }
+            Err(problem) => self.state = Err(problem),
+        }
     }
 
     /// Times and image, or nothing where the technique is not there.

@@ -80,7 +80,7 @@ pub struct Options {
 
 impl Options {
     /// The project's root. cargo runs a bench in its package's folder, so that relative folders on
-    /// the command line are taken from here.
+    /// the command line begin here.
     pub fn root() -> PathBuf {
         let here = Path::new(env!("CARGO_MANIFEST_DIR"));
         here.ancestors().nth(2).unwrap_or(here).to_path_buf()

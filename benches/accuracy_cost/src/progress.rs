@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 /// Seconds that a row takes beside its frames: stage, pipelines, compilation, comparison.
 const SETUP_S: f64 = 0.25;
 
-/// What a frame is taken to cost before anything like it was measured, in ms.
+/// What a frame is estimated to cost before anything like it was measured, in ms.
 const UNKNOWN_MS: f64 = 60.0;
 
 /// What rows cost, learnt from those that were measured.

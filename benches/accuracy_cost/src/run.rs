@@ -35,19 +35,13 @@ pub fn run(options: &Options) -> Result<bool, Problem> {
         println!("{}", path.display());
         return Ok(true);
     }
-    if options.hard_cases {
-        return hard_cases(options);
-    }
-    if options.envelope {
-        return envelope::run(options);
-    }
-    if options.exam {
-        choices::exam(options)?;
-        return Ok(true);
-    }
-    if options.write_choices {
-        choices::write(options)?;
-        return Ok(true);
+    let Options { hard_cases: cases, envelope, exam, write_choices, .. } = *options;
+    match (cases, envelope, exam, write_choices) {
+        (true, ..) => return hard_cases(options),
+        (_, true, ..) => return envelope::run(options),
+        (_, _, true, _) => return choices::exam(options).map(|()| true),
+        (.., true) => return choices::write(options).map(|()| true),
+        _ => {}
     }
     let measured = options.out.join("measured.jsonl");
     if options.report {

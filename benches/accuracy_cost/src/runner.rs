@@ -15,24 +15,23 @@ use std::time::{Duration, Instant};
 const TRACER_SEED: u64 = 2;
 
 /// What computes one row's image.
-pub enum Runner {
-    Node {
-        stage: Box<Stage>,
-        plan: Box<FramePlan>,
-    },
+pub enum Runner<'a> {
+    /// The node, its stage and its frame.
+    Node { stage: Box<Stage>, plan: Box<FramePlan> },
     /// Rays by the processor.
     Rays {
+        tracer: &'a Tracer,
+        receivers: &'a [Receiver],
+        light: RectangleLight,
         sampling: Sampling,
     },
-    /// Rays of the fragments as they are drawn, by the node's maps.
-    Forward {
-        /// What draws, and the stage whose maps they are.
-        forward: Box<Forward>,
-    },
+    /// Rays of the fragments as they are drawn, by the maps of the stage within.
+    Forward(Box<Forward>),
     /// The paper's scheme ends with its map. Its image is that of blending, whose sums are the same
     /// (a test of the crate's holds that), and its frame takes that one's last pass on top.
     Readback {
         scheme: Box<ReadbackScheme>,
+        light: RectangleLight,
         /// The occluder map's tangents.
         window: Option<[[f64; 2]; 2]>,
         stage: Box<Stage>,
@@ -40,7 +39,7 @@ pub enum Runner {
     },
 }
 
-impl Runner {
+impl<'a> Runner<'a> {
     /// What a method takes to run; nothing where the crate does not have it.
     pub fn new(
         device: &HeadlessDevice,
@@ -49,59 +48,48 @@ impl Runner {
         entry: &Entry,
         method: Result<Option<Method>, Problem>,
         light: &RectangleLight,
-        receivers: &[Receiver],
+        (tracer, receivers): (&'a Tracer, &'a [Receiver]),
     ) -> Result<Option<Self>, Problem> {
+        let lit = scaled(light, entry.light_scale);
         let stage = |settings| ready.stage(device, group.extent, settings).map(Box::new);
         Ok(match method? {
             None => None,
             Some(Method::Rays(rays)) => {
                 let sampling =
                     truth::sampling(Sampling::one_grid(rays.isqrt(), TRACER_SEED), receivers)?;
-                Some(Self::Rays { sampling })
+                Some(Self::Rays { tracer, receivers, light: lit?, sampling })
             }
             Some(Method::Readback(side)) => {
-                let words = format!(
-                    "receivers=map accumulate=blend sides=one map={side} receiver_map={side}"
-                );
-                let Some(Method::Node(settings)) =
-                    crate::techniques::method("soft-shadow-map", &words)?
-                else {
-                    return Ok(None);
-                };
-                let mut stage = stage(*settings)?;
+                let words = "soft-shadow-map receivers=map accumulate=blend sides=one";
+                let words = format!("{words} map={side} receiver_map={side}");
+                let mut stage = stage(words.parse()?)?;
                 let plan = stage.plan(light, ready.window)?;
-                let scheme = ReadbackScheme::new(device, &ready.scene, side, side);
-                let scheme = Box::new(scheme?);
+                let scheme = Box::new(ReadbackScheme::new(device, &ready.scene, side, side)?);
                 stage.run(&plan)?;
-                Some(Self::Readback { scheme, window: ready.window, stage, plan: Box::new(plan) })
+                let (light, window, plan) = (lit?, ready.window, Box::new(plan));
+                Some(Self::Readback { scheme, light, window, stage, plan })
             }
             Some(Method::Node(settings)) => {
                 let mut stage = stage(*settings)?;
-                let light = scaled(light, entry.light_scale)?;
-                let plan = stage.plan(&light, ready.window)?;
+                let plan = stage.plan(&lit?, ready.window)?;
                 Some(Self::Node { stage, plan: Box::new(plan) })
             }
             Some(Method::Forward(settings)) => {
                 let mut stage = stage(*settings)?;
                 let plan = stage.plan(light, ready.window)?;
                 let keep = |i: &Instance| ready.keeps(i);
-                let forward = Forward::new(device, *stage, plan, &ready.scene, keep);
-                Some(Self::Forward { forward: Box::new(forward?) })
+                let forward = Forward::new(device, *stage, plan, &ready.scene, keep)?;
+                Some(Self::Forward(Box::new(forward)))
             }
         })
     }
 
     /// One frame; its image where that comes with it.
-    pub fn run(
-        &mut self,
-        tracer: &Tracer,
-        light: &RectangleLight,
-        receivers: &[Receiver],
-    ) -> Result<(FrameTimes, Option<Vec<f32>>), Problem> {
+    pub fn run(&mut self) -> Result<(FrameTimes, Option<Vec<f32>>), Problem> {
         match self {
             Self::Node { stage, plan } => Ok((stage.run(plan)?, None)),
-            Self::Forward { forward } => Ok((forward.run()?, None)),
-            Self::Readback { scheme, window, stage, plan } => {
+            Self::Forward(forward) => Ok((forward.run()?, None)),
+            Self::Readback { scheme, light, window, stage, plan } => {
                 let times = scheme.run(light, *window)?;
                 let resolve = stage.run(plan)?.passes;
                 let (name, ms) = resolve.last().copied().ok_or("the device has no timestamps")?;
@@ -118,7 +106,7 @@ impl Runner {
                 };
                 Ok((times, None))
             }
-            Self::Rays { sampling } => {
+            Self::Rays { tracer, receivers, light, sampling } => {
                 let started = Instant::now();
                 let traced = tracer.visible_fractions(light, receivers, sampling)?;
                 let frame = started.elapsed();
@@ -132,7 +120,7 @@ impl Runner {
     pub fn image(&mut self) -> Result<Option<Vec<f32>>, Problem> {
         Ok(match self {
             Self::Node { stage, .. } | Self::Readback { stage, .. } => Some(stage.visibility()?),
-            Self::Forward { forward } => Some(forward.visibility()?),
+            Self::Forward(forward) => Some(forward.visibility()?),
             Self::Rays { .. } => None,
         })
     }
@@ -141,7 +129,7 @@ impl Runner {
     pub fn bytes(&mut self) -> Result<u64, Problem> {
         Ok(match self {
             Self::Rays { .. } => 0,
-            Self::Forward { forward } => forward.memory()?.iter().map(|(_, bytes)| bytes).sum(),
+            Self::Forward(forward) => forward.memory()?.iter().map(|(_, bytes)| bytes).sum(),
             Self::Node { stage, .. } | Self::Readback { stage, .. } => {
                 stage.node()?.memory().iter().map(|r| r.bytes).sum()
             }

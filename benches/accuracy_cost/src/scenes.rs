@@ -61,6 +61,9 @@ pub fn standard() -> Vec<SceneSpec> {
 }
 
 /// The glTF files of a folder, sorted by name.
+///
+/// # Errors
+/// A folder that cannot be read or holds none.
 pub fn own(folder: &Path) -> Result<Vec<SceneSpec>, Problem> {
     let problem = Problem::of::<std::io::Error>(format!("--scenes {}", folder.display()));
     let paths = std::fs::read_dir(folder).map_err(&problem)?.map(|e| e.map(|e| e.path()));
@@ -95,7 +98,9 @@ impl SceneSpec {
             Source::Made(name) => {
                 let mut scene = made(name, square(LIGHTS[index].1)?)?;
                 if *name == "card" {
-                    turn(&mut scene);
+                    // The node fits its map to what blocks, so that a lone aligned card has its edges on texel
+                    // borders and no error at all, which says nothing of a card in a scene of many.
+                    move_blocks(&mut scene, DMat4::from_rotation_y(20f64.to_radians()));
                 }
                 Ok(scene)
             }
@@ -125,13 +130,10 @@ impl SceneSpec {
     }
 }
 
-/// Turns what blocks light by 20° about the middle. The node fits its map to what blocks, so that a
-/// lone aligned card has its edges on texel borders and no error at all, which says nothing of a
-/// card in a scene of many.
-fn turn(scene: &mut Scene) {
+/// Moves what blocks light, after it was placed.
+pub fn move_blocks(scene: &mut Scene, by: DMat4) {
     for instance in scene.instances.iter_mut().filter(|i| i.role.blocks()) {
-        let turn = DMat4::from_rotation_y(20f64.to_radians());
-        instance.world_from_mesh = turn * instance.world_from_mesh;
+        instance.world_from_mesh = by * instance.world_from_mesh;
     }
 }
 
@@ -228,10 +230,7 @@ pub fn dragon(light: RectangleLight) -> Result<Scene, Problem> {
     let scene = generate::normalized(&object, light)?;
     let low = scene.bounds(|i| i.role.blocks()).map_or(0.0, |b| b.min.y);
     let mut scene = scene.with_occluders_as(Role::Both);
-    for instance in scene.instances.iter_mut().filter(|i| i.role.blocks()) {
-        instance.world_from_mesh =
-            DMat4::from_translation(DVec3::NEG_Y * low) * instance.world_from_mesh;
-    }
+    move_blocks(&mut scene, DMat4::from_translation(DVec3::NEG_Y * low));
     Ok(with_camera(scene))
 }
 

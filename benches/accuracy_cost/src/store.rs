@@ -54,6 +54,7 @@ pub struct Times {
     pub passes: Vec<(String, f64)>,
     /// Median µs of recording.
     pub record_us: f64,
+    /// The memory of the node, 0 for what runs on the processor.
     pub gpu_bytes: u64,
 }
 
@@ -204,12 +205,10 @@ impl Store {
     pub fn read(path: &Path) -> Result<(Header, Vec<Row>), Problem> {
         let text = std::fs::read(path).map_err(Problem::of(path.display()))?;
         let mut contents = Contents::read(&text).0;
-        let header =
-            contents.header.ok_or_else(|| format!("{}: no run is in it", path.display()))?;
-        Ok((
-            header,
-            contents.whole.iter().filter_map(|g| contents.rows.remove(g)).flatten().collect(),
-        ))
+        let none = || format!("{}: no run is in it", path.display());
+        let header = contents.header.ok_or_else(none)?;
+        let rows = contents.whole.iter().filter_map(|g| contents.rows.remove(g)).flatten();
+        Ok((header, rows.collect()))
     }
 
     fn write(&mut self, line: &Line) -> Result<(), Problem> {
@@ -280,13 +279,11 @@ pub(crate) mod tests {
         let path = scratch("resumes.jsonl");
         let header = Header { commit: "abc".into(), ..Header::default() };
         let mut store = Store::open(&path, &header).unwrap();
-        store
-            .add("a", vec![row("one", 64.0, 1.0, 0.1), row("one", 128.0, 2.0, 0.05)], 3.0)
-            .unwrap();
+        let whole = vec![row("one", 64.0, 1.0, 0.1), row("one", 128.0, 2.0, 0.05)];
+        store.add("a", whole, 3.0).unwrap();
         // Killed in the middle of a group, and of a line.
-        store
-            .write(&Line::Row { group: "b".into(), row: Box::new(row("one", 1.0, 1.0, 0.5)) })
-            .unwrap();
+        let torn = Box::new(row("one", 1.0, 1.0, 0.5));
+        store.write(&Line::Row { group: "b".into(), row: torn }).unwrap();
         store.file.write_all(b"{\"row\":{\"group\":\"b\",\"row\":{\"stu").unwrap();
         drop(store);
         let mut store = Store::open(&path, &header).unwrap();

@@ -96,13 +96,13 @@ pub const CURVES: &[Curve] = &[
 /// How a visible fraction is to be computed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Method {
-    /// By the node.
+    /// The node's passes over a G-buffer.
     Node(Box<Technique>),
-    /// By the node's maps, at fragments as they are drawn.
+    /// Rays by the node's maps, at fragments as they are drawn.
     Forward(Box<Technique>),
-    /// By so many rays a pixel on the processor.
+    /// So many rays a pixel on the processor.
     Rays(u32),
-    /// By the paper's own scheme, with maps of this side.
+    /// The paper's own scheme, with maps of this side.
     Readback(u32),
 }
 
@@ -112,15 +112,14 @@ pub enum Method {
 /// # Errors
 /// A sentence for a setting that is refused.
 pub fn method(technique: &str, words: &str) -> Result<Option<Method>, Problem> {
-    if technique == RAY_TRACER {
-        let rays = words.strip_prefix("rays=").and_then(|rays| rays.parse().ok());
-        return rays.map(|rays| Some(Method::Rays(rays))).ok_or(format!("{words}: no rays").into());
-    }
-    if technique == READBACK {
-        let side = words.strip_prefix("map=").and_then(|side| side.parse().ok());
-        return side
-            .map(|side| Some(Method::Readback(side)))
-            .ok_or(format!("{words}: no map").into());
+    let number = |key: &str| {
+        let value = words.strip_prefix(key).and_then(|value| value.strip_prefix('=')?.parse().ok());
+        value.ok_or_else(|| Problem(format!("{words}: no {key}")))
+    };
+    match technique {
+        RAY_TRACER => return Ok(Some(Method::Rays(number("rays")?))),
+        READBACK => return Ok(Some(Method::Readback(number("map")?))),
+        _ => {}
     }
     let is_forward = technique == FORWARD;
     let technique = if is_forward { "ray-march" } else { technique };

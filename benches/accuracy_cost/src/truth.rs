@@ -59,7 +59,7 @@ fn card_corners(scene: &Scene) -> Result<[DVec3; 4], Problem> {
     corners.try_into().map_err(|_| "the closed form wants one card of four corners".into())
 }
 
-/// The truth by the means asked for.
+/// The truth in closed form or traced, as `against` says.
 pub fn truth(
     scene: &Scene,
     receivers: &[Receiver],

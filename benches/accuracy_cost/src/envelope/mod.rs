@@ -53,10 +53,8 @@ struct Axis {
     unit: &'static str,
     /// Where the sweep looks, rising; the centre is among them.
     steps: &'static [f64],
-    /// Reads the variable.
-    get: fn(&Place) -> f64,
-    /// Sets it, and nothing else.
-    set: fn(&mut Place, f64),
+    /// The variable.
+    of: fn(&mut Place) -> &mut f64,
 }
 
 const AXES: [Axis; 5] = [
@@ -67,8 +65,7 @@ const AXES: [Axis; 5] = [
             0.001, 0.002, 0.004, 0.01, 0.02, 0.04, 0.1, 0.2, 0.4, 1.0, 2.0, 4.0, 10.0, 20.0, 40.0,
             100.0,
         ],
-        get: |place| place.light,
-        set: |place, to| place.light = to,
+        of: |place| &mut place.light,
     },
     Axis {
         name: "Distance from the receiver",
@@ -76,37 +73,39 @@ const AXES: [Axis; 5] = [
         steps: &[
             0.001, 0.003, 0.01, 0.03, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 0.97, 0.99, 0.997, 0.999,
         ],
-        get: |place| place.height,
-        set: |place, to| place.height = to,
+        of: |place| &mut place.height,
     },
     Axis {
         name: "Distance of the light",
         unit: "from the ground to the light over the object's size, the object halfway",
         steps: &[1.01, 1.1, 1.5, 2.0, 4.0, 10.0, 30.0, 100.0, 1e3, 1e4, 1e5],
-        get: |place| place.gap,
-        set: |place, to| place.gap = to,
+        of: |place| &mut place.gap,
     },
     Axis {
         name: "Maps",
         unit: "the side of the technique's maps in texels",
         steps: &[16.0, 32.0, 64.0, 128.0, 256.0, 512.0, 1024.0, 2048.0],
-        get: |place| place.map.into(),
-        set: |place, to| place.map = to as u32,
+        of: |place| &mut place.map,
     },
     Axis {
         name: "Image",
         unit: "pixels across all that is shadowed",
         steps: &[12.0, 24.0, 48.0, 96.0, 192.0],
-        get: |place| place.pixels.into(),
-        set: |place, to| place.pixels = to as u32,
+        of: |place| &mut place.pixels,
     },
 ];
 
 impl Axis {
+    /// The centre, but for the variable.
+    fn place(&self, at: f64) -> Place {
+        let mut place = CENTRE;
+        *(self.of)(&mut place) = at;
+        place
+    }
+
     /// The centre's index among the steps.
     fn centre(&self) -> Option<usize> {
-        let at = (self.get)(&CENTRE);
-        self.steps.iter().position(|step| *step == at)
+        self.steps.iter().position(|step| self.place(*step) == CENTRE)
     }
 }
 
@@ -164,8 +163,7 @@ pub fn run(options: &Options) -> Result<bool, Problem> {
         let centre = bench.measure("", f64::NAN, &CENTRE)?;
         for axis in &AXES {
             for &at in axis.steps {
-                let mut place = CENTRE;
-                (axis.set)(&mut place, at);
+                let place = axis.place(at);
                 if place == CENTRE {
                     let here = |row: &Row| Row { axis: axis.name, at, ..row.clone() };
                     rows.extend(centre.iter().map(here));
@@ -213,24 +211,24 @@ impl Bench<'_> {
         for (index, technique) in TECHNIQUES.into_iter().enumerate() {
             let done = self.compare(index, place, &ready, &mut truth);
             let visible = truth.iter().flat_map(|(visible, _)| visible);
-            let found = done.as_ref().ok();
+            let summary = done.as_ref().copied().unwrap_or_default();
             rows.push(Row {
                 scene: self.scene,
                 axis,
                 at,
                 technique,
-                mean_abs_error: found.map(|s| s.mean_abs_error),
-                pixels: found.map_or(0, |s| s.pixels),
-                penumbra_pixels: found.map_or(0, |s| s.penumbra_pixels),
+                mean_abs_error: done.is_ok().then_some(summary.mean_abs_error),
+                pixels: summary.pixels,
+                penumbra_pixels: summary.penumbra_pixels,
                 darkest: visible.map(|v| 1.0 - f64::from(*v)).fold(0.0, f64::max),
-                pixel_m: 2.0 * ready.half / f64::from(place.pixels),
+                pixel_m: 2.0 * ready.half / place.pixels,
                 status: done.err().unwrap_or(Status::Measured),
             });
         }
         Ok(rows)
     }
 
-    /// One technique's error; the first one's pixels say where the truth is asked for.
+    /// One technique's error; the truth is computed once, at the first one's pixels.
     fn compare(
         &mut self,
         index: usize,
@@ -267,7 +265,7 @@ impl Bench<'_> {
         let Some(Method::Node(settings)) = found else {
             return Err(Status::Failed(format!("{name} is none of the node's techniques")));
         };
-        let extent = [place.pixels; 2];
+        let extent = [place.pixels as u32; 2];
         let Ready { scene, view, .. } = ready;
         let mut stage = Stage::new(self.device, scene, view, extent, *settings.clone(), seen)?;
         stage.configure_with(*settings, |d| d.omit = Omit::Nothing)?;
@@ -304,11 +302,8 @@ mod tests {
         for axis in &AXES {
             assert!(axis.steps.is_sorted_by(|a, b| a < b), "{}", axis.name);
             let centre = axis.centre().unwrap_or_else(|| panic!("{}", axis.name));
-            let mut place = CENTRE;
-            (axis.set)(&mut place, axis.steps[0]);
-            assert_ne!(place, CENTRE, "{}", axis.name);
-            (axis.set)(&mut place, axis.steps[centre]);
-            assert_eq!(place, CENTRE, "{}", axis.name);
+            assert_ne!(axis.place(axis.steps[0]), CENTRE, "{}", axis.name);
+            assert_eq!(axis.place(axis.steps[centre]), CENTRE, "{}", axis.name);
         }
     }
 

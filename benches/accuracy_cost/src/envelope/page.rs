@@ -1,8 +1,9 @@
 //! What was measured, for readers and for programs.
 
-use super::{AXES, Axis, Envelope, FACTOR, FLOOR, Row, SCENES, Status, Step, TECHNIQUES};
+use super::{
+    AXES, Axis, CENTRE, Envelope, FACTOR, FLOOR, Place, Row, SCENES, Status, Step, TECHNIQUES,
+};
 use crate::Problem;
-use crate::envelope::CENTRE;
 use crate::report::csv_of;
 use serde_json::json;
 
@@ -27,16 +28,12 @@ impl Made {
 
     /// The tables.
     pub fn markdown(&self) -> String {
+        let Self { commit, driver, .. } = self;
+        let Place { light, gap, map, pixels, .. } = CENTRE;
         let mut text = format!(
-            "Made by `cargo bench --bench accuracy_cost -- --envelope`, commit {}, {}. The centre: a light of {} \
-             object sizes, {} from the ground, the object halfway; maps of {}², {}² pixels. Within is what \
-             is at most {FACTOR} times the error at the centre, or {} where that is more.\n",
-            self.commit,
-            self.driver,
-            CENTRE.light,
-            CENTRE.gap,
-            CENTRE.map,
-            CENTRE.pixels,
+            "Made by `cargo bench --bench accuracy_cost -- --envelope`, commit {commit}, {driver}. The centre: a light of \
+             {light} object sizes, {gap} from the ground, the object halfway; maps of {map}², {pixels}² pixels. Within \
+             is what is at most {FACTOR} times the error at the centre, or {} where that is more.\n",
             percent(FACTOR * FLOOR),
         );
         text.push_str("\n### At the centre\n\nMean error, and the most that is within.\n\n");
@@ -44,22 +41,23 @@ impl Made {
         for technique in TECHNIQUES {
             let cells = SCENES.map(|scene| {
                 let found = self.envelope(scene, &AXES[0], technique);
-                found.map_or_else(
-                    || "failed".into(),
-                    |e| format!("{}, {}", percent(e.centre), percent(e.bound)),
-                )
+                let errors = found.map(|e| [e.centre, e.bound].map(percent).join(", "));
+                errors.unwrap_or("failed".into())
             });
             text.push_str(&row(technique, &cells));
         }
         for axis in &AXES {
-            let [first, last] = [axis.steps.first(), axis.steps.last()];
+            let Axis { name, unit, steps, .. } = axis;
+            let [first, last] = [steps[0], steps[steps.len() - 1]];
             text.push_str(&format!(
-                "\n### {}\n\n{}, {} steps from {} to {}.\n\n",
-                axis.name,
-                capital(axis.unit),
-                axis.steps.len(),
-                first.map_or_else(String::new, f64::to_string),
-                last.map_or_else(String::new, f64::to_string),
+                "
+### {name}
+
+{}, {} steps from {first} to {last}.
+
+",
+                capital(unit),
+                steps.len()
             ));
             text.push_str(&head(&SCENES.map(|scene| [scene.into(), "next to it".into()]).concat()));
             for technique in TECHNIQUES {

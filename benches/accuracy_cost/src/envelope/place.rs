@@ -26,13 +26,13 @@ pub struct Place {
     /// From the ground to the light.
     pub gap: f64,
     /// The side of the technique's maps in texels.
-    pub map: u32,
+    pub map: f64,
     /// The side of the image in pixels.
-    pub pixels: u32,
+    pub pixels: f64,
 }
 
 /// The middle of every sweep.
-pub const CENTRE: Place = Place { light: 0.4, height: 0.5, gap: 4.0, map: 256, pixels: 96 };
+pub const CENTRE: Place = Place { light: 0.4, height: 0.5, gap: 4.0, map: 256.0, pixels: 96.0 };
 
 /// A sphere's segments and rings: 360 triangles, which cost the exact truth a tenth of what
 /// [`generate::spheres`]' do. Techniques and truth see the same triangles.
@@ -85,10 +85,7 @@ impl Place {
         let way = self.gap - bounds.size().y;
         let turn = DMat4::from_rotation_y(TURNS[0].to_radians());
         let moved = DVec3::Y * (self.height * way - bounds.min.y);
-        for instance in scene.instances.iter_mut().filter(|i| i.role.blocks()) {
-            instance.world_from_mesh =
-                DMat4::from_translation(moved) * turn * instance.world_from_mesh;
-        }
+        scenes::move_blocks(&mut scene, DMat4::from_translation(moved) * turn);
         let exact = Exact::new(&scene)?;
         let polygon = PolygonLight::from(&light);
         let widest = widest(&scene, self);

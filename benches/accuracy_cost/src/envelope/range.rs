@@ -5,7 +5,7 @@ use antumbra::truth::metrics::FULL_TOLERANCE;
 /// The most that an error within the envelope is, over the error at the centre.
 pub const FACTOR: f64 = 1.5;
 
-/// The least error that [`FACTOR`] is taken of. The metric takes a pixel this near to lit or umbra for
+/// The least error that [`FACTOR`] applies to. The metric takes a pixel this near to lit or umbra for
 /// that; of two errors below it none can be called the worse one, and 1.5 times an error of 0 is none.
 pub const FLOOR: f64 = FULL_TOLERANCE as f64;
 

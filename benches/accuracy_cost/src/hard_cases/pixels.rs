@@ -72,9 +72,9 @@ fn meet(floor: &Floor, near: DVec3, far: DVec3) -> Option<Seen> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     pub truth: f64,
-    /// With occluders as large as they can be taken for.
+    /// The fraction with occluders as large as a technique can see them.
     pub least: f64,
-    /// With occluders as small.
+    /// The fraction with occluders as small as a technique can see them.
     pub most: f64,
 }
 

@@ -138,6 +138,7 @@ pub struct Set {
 /// Where a whole scene goes: first scaled, then moved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
+    /// The factor on all lengths.
     pub scale: f64,
     /// The way, m.
     pub offset: DVec3,

@@ -3,7 +3,6 @@
 use super::headline::views;
 use super::{Report, ms, once};
 use crate::findings;
-use crate::groups::MATRIX;
 use crate::pareto::{self, front};
 use crate::plot::{self, Axis, Chart, PALETTE, Point, Series, Style};
 use crate::store::Row;
@@ -84,7 +83,7 @@ fn series<'a>(
 
 /// Error against time, a chart a scene and light; all on the same axes, so that they compare.
 pub fn matrix(report: &Report) -> Vec<(String, Vec<Markup>)> {
-    let measured: Vec<&Row> = report.study(MATRIX).filter(|r| r.mean().is_some()).collect();
+    let measured: Vec<&Row> = report.matrix().collect();
     let x = Axis::log(MS, measured.iter().filter_map(|r| r.ms()));
     let error = |r: &Row| Some((100.0 * r.mean()?).max(LEAST_SHOWN));
     let y = Axis::log(ERROR, measured.iter().filter_map(|r| error(r)));
@@ -117,8 +116,7 @@ pub fn matrix(report: &Report) -> Vec<(String, Vec<Markup>)> {
 
 /// The legend that the matrix's charts share.
 pub fn legend(report: &Report) -> Markup {
-    let labels =
-        once(report.study(MATRIX).filter(|r| r.mean().is_some()).map(|r| r.curve.as_str()));
+    let labels = once(report.matrix().map(|r| r.curve.as_str()));
     html! {
         p.legend {
             @for label in labels {

@@ -54,6 +54,9 @@ impl Page {
 }
 
 /// The page with the table between its marks, which are added at the end where they are missing.
+///
+/// # Errors
+/// One mark without the other, or both in the wrong order.
 pub fn with_table(of: &Page, page: &str, table: &str) -> Result<String, Problem> {
     let [begin, end] = &of.marks();
     let block = format!("{begin}\n{}\n{end}", table.trim());

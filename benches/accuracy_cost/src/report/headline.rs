@@ -1,7 +1,6 @@
 //! The time that each technique needs for 5, 3 and 2 % mean error.
 
 use super::{Report, ms, once};
-use crate::groups::MATRIX;
 use crate::pareto::{Point, time_for};
 use crate::store::Row;
 
@@ -18,7 +17,7 @@ pub struct Line<'a> {
 
 /// The techniques measured in the matrix, in the order of their curves.
 pub fn techniques<'a>(report: &'a Report) -> Vec<&'a str> {
-    once(report.study(MATRIX).filter(|r| r.mean().is_some()).map(|r| r.technique.as_str()))
+    once(report.matrix().map(|r| r.technique.as_str()))
 }
 
 /// All lines, in the order of the rows. A technique's time is that of the fastest among all its
@@ -29,7 +28,7 @@ pub fn lines<'a>(report: &'a Report) -> Vec<Line<'a>> {
     for (scene, light) in views(report) {
         let here = |r: &&Row| r.scene == scene && r.light == light;
         let time = |technique: &str, goal| {
-            let rows = report.study(MATRIX).filter(here).filter(|r| r.technique == technique);
+            let rows = report.matrix().filter(here).filter(|r| r.technique == technique);
             let points = rows.filter_map(|r| Some(Point { ms: r.ms()?, error: r.mean()? }));
             time_for(points, goal)
         };
@@ -41,16 +40,14 @@ pub fn lines<'a>(report: &'a Report) -> Vec<Line<'a>> {
 
 /// Scene and light of every measured view: scenes in the order of the rows, lights by size.
 pub fn views<'a>(report: &'a Report) -> Vec<(&'a str, &'a str)> {
-    let measured = || report.study(MATRIX).filter(|r| r.mean().is_some());
-    let scenes = once(measured().map(|r| r.scene.as_str()));
+    let scenes = once(report.matrix().map(|r| r.scene.as_str()));
     let mut views = Vec::new();
     for scene in scenes {
-        let mut own: Vec<&Row> = measured().filter(|r| r.scene == scene).collect();
+        let mut own: Vec<&Row> = report.matrix().filter(|r| r.scene == scene).collect();
         let area = |r: &Row| r.light_m[0] * r.light_m[1];
         own.sort_by(|a, b| area(a).total_cmp(&area(b)));
-        views.extend(
-            once(own.into_iter().map(|r| r.light.as_str())).into_iter().map(|l| (scene, l)),
-        );
+        let lights = once(own.into_iter().map(|r| r.light.as_str()));
+        views.extend(lights.into_iter().map(|light| (scene, light)));
     }
     views
 }

@@ -1,7 +1,6 @@
 //! The page: everything in one file.
 
 use super::{Report, charts, curtis, strip, tables};
-use crate::groups::MATRIX;
 use crate::hard_cases;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -113,7 +112,7 @@ fn matrix(report: &Report) -> Markup {
             "Down and left is better. Each curve is a technique whose quality sweeps (a pointer over a point shows \
              its settings); bars are the quartiles of the time. Errors under 0.1 % are drawn as 0.1 %."
         }
-        @if report.study(MATRIX).all(|r| r.mean().is_none()) {
+        @if report.matrix().next().is_none() {
             p.no { "Nothing was measured." }
         } @else {
             (charts::legend(report))

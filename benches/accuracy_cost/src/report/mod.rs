@@ -10,6 +10,7 @@ mod strip;
 mod tables;
 
 use crate::Problem;
+use crate::groups::MATRIX;
 use crate::hard_cases::judge::Tables;
 use crate::store::{Header, Outcome, Row};
 use std::path::Path;
@@ -34,6 +35,11 @@ impl Report<'_> {
     /// The rows of a study.
     fn study<'a>(&'a self, study: &'a str) -> impl Iterator<Item = &'a Row> {
         self.rows.iter().filter(move |r| r.study == study)
+    }
+
+    /// The measured rows of error against time.
+    fn matrix(&self) -> impl Iterator<Item = &Row> {
+        self.study(MATRIX).filter(|r| r.mean().is_some())
     }
 
     /// The techniques that the crate does not have yet, each once.

@@ -33,12 +33,7 @@ pub enum Limit {
 
 impl fmt::Display for Limit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Light => "light",
-            Self::Occluder => "occluder",
-            Self::Receiver => "receiver",
-            Self::Numbers => "numbers",
-        })
+        f.write_str(&format!("{self:?}").to_lowercase())
     }
 }
 
@@ -62,6 +57,7 @@ pub struct Noise {
 pub struct HardCase {
     pub limit: Limit,
     pub name: String,
+    /// Its light, occluders, receivers and pixels.
     pub set: Set,
     /// The occluders that can be known, where those are fewer.
     pub seen: Option<Vec<Block>>,
