@@ -333,7 +333,7 @@ fn a_plan_is_shown_as_a_table_and_as_a_picture() {
     assert!(table.contains("skip  visibility.lit"), "{table}");
     let dot = plan.graphviz();
     assert!(dot.starts_with("digraph") && dot.trim_end().ends_with('}'), "{dot}");
-    assert!(dot.contains("depth_layers.front_depth\\n256×256 D32_SFLOAT"), "{dot}");
+    assert!(dot.contains("depth_layers.front_depth\\n128×128 D32_SFLOAT"), "{dot}");
     assert_eq!(dot.matches("shape=box").count(), plan.steps.len());
 }
 
