@@ -26,11 +26,11 @@ const FEWEST_FRAMES: usize = 3;
 /// Groups of fewer rows than this take as many frames as if they had that many.
 const SMALL_GROUP: usize = 8;
 
-/// What is measured with, and where pictures and truths are kept.
+/// What is measured with, and where pictures are kept.
 pub struct Bench<'a> {
     pub device: &'a HeadlessDevice,
     pub scale: Scale,
-    /// The folder of kept truths and pictures.
+    /// The folder of kept pictures.
     pub cache: &'a Path,
 }
 
@@ -81,8 +81,7 @@ impl Bench<'_> {
         }
         self.take_turns(&mut candidates, say);
         say("truth");
-        let truth =
-            truth::truth(&ready.scene, &receivers, group.against, self.scale.rays, self.cache)?;
+        let truth = truth::truth(&ready.scene, &receivers, group.against, self.scale.rays)?;
         say("errors");
         let seen = ready.occluders_seen.then(|| Seen::of(&pixels, &light)).transpose()?;
         let sides = light.light.half_extents().map(|h| 2.0 * h);
