@@ -3,7 +3,7 @@
 use crate::Problem;
 use crate::groups::Against;
 use antumbra::scene::{Role, Scene};
-use antumbra::truth::{Receiver, Sampling, Tracer, visible_fraction_of_quad};
+use antumbra::truth::{Receiver, Sampling, Traced, Tracer, visible_fraction_of_quad};
 use antumbra_harness::GBuffer;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -11,15 +11,6 @@ use rayon::prelude::*;
 /// The random numbers of the truth; the ray tracer that is measured takes others, since the same
 /// numbers would err alike.
 const SEED: u64 = 1;
-
-/// Visible fractions to compare with.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Truth {
-    /// The visible fraction of each pixel, row by row.
-    pub visible: Vec<f32>,
-    /// The standard error of a penumbra pixel; 0 where the truth is exact.
-    pub noise: f64,
-}
 
 /// What each pixel of a G-buffer shows: position and normal, without a normal where nothing receives.
 pub fn receivers(gbuffer: &GBuffer) -> Result<Vec<Receiver>, Problem> {
@@ -55,13 +46,14 @@ fn card_corners(scene: &Scene) -> Result<[DVec3; 4], Problem> {
     corners.try_into().map_err(|_| "the closed form wants one card of four corners".into())
 }
 
-/// The truth in closed form or traced, as `against` says.
+/// The truth in closed form, which has no noise, or traced, as `against` says.
 pub fn truth(
     scene: &Scene,
+    tracer: &Tracer,
     receivers: &[Receiver],
     against: Against,
     rays: u32,
-) -> Result<Truth, Problem> {
+) -> Result<Traced, Problem> {
     let light = scene.light(None)?.light;
     match against {
         Against::Card => {
@@ -71,13 +63,11 @@ pub fn truth(
                 false => visible_fraction_of_quad(&light, card, r.position) as f32,
             };
             let visible = receivers.par_iter().map(seen).collect();
-            Ok(Truth { visible, noise: 0.0 })
+            Ok(Traced { visible, noise: 0.0, penumbra: 0, rays: 0 })
         }
         Against::Traced => {
             let sampling = sampling(Sampling::new(rays, SEED), receivers)?;
-            let tracer = Tracer::new(scene)?;
-            let traced = tracer.visible_fractions(&light, receivers, &sampling)?;
-            Ok(Truth { visible: traced.visible, noise: traced.noise })
+            Ok(tracer.visible_fractions(&light, receivers, &sampling)?)
         }
     }
 }
@@ -92,16 +82,14 @@ mod tests {
     use super::*;
     use crate::scenes;
 
-    fn line_of_receivers() -> Vec<Receiver> {
-        let at = |i: u32| DVec3::new(f64::from(i) * 0.05, 0.0, 0.0);
-        (0..64).map(|i| Receiver { position: at(i), normal: DVec3::Y }).collect()
-    }
-
     #[test]
     fn the_cards_two_truths_agree_within_the_noise_that_is_reported() {
         let scene = scenes::made("card", scenes::square(0.4).unwrap()).unwrap();
-        let receivers = line_of_receivers();
-        let of = |against| truth(&scene, &receivers, against, 512).unwrap();
+        let at = |i: u32| DVec3::new(f64::from(i) * 0.05, 0.0, 0.0);
+        let receiver = |i| Receiver { position: at(i), normal: DVec3::Y };
+        let receivers: Vec<Receiver> = (0..64).map(receiver).collect();
+        let tracer = Tracer::new(&scene).unwrap();
+        let of = |against| truth(&scene, &tracer, &receivers, against, 512).unwrap();
         let (exact, traced) = (of(Against::Card), of(Against::Traced));
         for (a, b) in exact.visible.iter().zip(&traced.visible) {
             assert!((a - b).abs() <= 6.0 * traced.noise as f32 + 1e-6, "{a} {b}");
