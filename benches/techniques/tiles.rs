@@ -6,6 +6,7 @@ use crate::ready::{Ready, ending_ms, in_turns, scene};
 use crate::table::Table;
 use crate::{Bench, Scale};
 use antumbra::scene::{Camera, Role, Scene};
+use antumbra_bench::scenes::camera_at;
 use antumbra_harness::{HeadlessDevice, View};
 use glam::{DMat4, DVec3};
 
@@ -35,15 +36,6 @@ const TEXTURES: &str = "occlusion_textures.visibility";
 
 const EXTENT: [u32; 2] = [640, 480];
 
-/// Stands further off from what it frames, by this factor.
-fn from_afar(scene: &Scene, factor: f64) -> Camera {
-    let mut camera = Camera::framing(scene, 4.0 / 3.0);
-    let target = DVec3::new(0.0, 1.0, 0.0);
-    let eye = camera.world_from_view.w_axis.truncate();
-    camera.world_from_view.w_axis = (target + factor * (eye - target)).extend(1.0);
-    camera
-}
-
 /// Scenes with what looks at them. Occluders receive as well, so that their own shadows are among the pixels.
 fn views(side: f64) -> [(&'static str, Scene, View); 6] {
     let receiving = |name| scene(name, side).with_occluders_as(Role::Both);
@@ -53,7 +45,7 @@ fn views(side: f64) -> [(&'static str, Scene, View); 6] {
         (name, scene, view)
     };
     let card = receiving("card");
-    let afar = perspective(&from_afar(&card, 3.0));
+    let afar = perspective(&camera_at(&card, DVec3::Y, 3.0));
     // The same camera, turned aside until the shadow is out of sight.
     let mut aside = Camera::framing(&card, 4.0 / 3.0);
     aside.world_from_view =

@@ -4,6 +4,7 @@ use crate::Problem;
 use crate::groups::Group;
 use crate::options::Options;
 use crate::report::csv_of;
+use crate::stats::quantile;
 use crate::store::{Row, Store};
 use crate::studies;
 use antumbra::Technique;
@@ -11,7 +12,6 @@ use antumbra::auto::{Auto, Budget, CANDIDATES, COLUMNS, Costs, Features, Measure
 use antumbra::effects::Situation;
 use antumbra::scene::Instance;
 use antumbra_harness::{HeadlessDevice, HeadlessOptions, Stage, probe, technique};
-use std::path::Path;
 
 /// Passes in light space, by what their names begin with; all others run at the pixels.
 const MAPS: [&str; 13] = [
@@ -83,7 +83,7 @@ pub fn write(options: &Options) -> Result<(), Problem> {
     }
     let text = csv_of(lines)?;
     let path = Options::root().join("src/auto/table.csv");
-    write_to(&path, &text)?;
+    std::fs::write(&path, text).map_err(Problem::of(path.display()))?;
     println!("{}", path.display());
     Ok(())
 }
@@ -137,24 +137,15 @@ pub fn exam(options: &Options) -> Result<(), Problem> {
             }
             ratios.extend(best.map(|best| ms / best));
         }
-        ratios.sort_by(f64::total_cmp);
-        let at = |share: f64| {
-            let i = (share * ratios.len().saturating_sub(1) as f64).round() as usize;
-            ratios.get(i).copied().unwrap_or(f64::NAN)
-        };
         let not = views.len() - promised;
         println!(
             "| {goal} | {promised} of {} | {kept} | {right} of {not} | {:.2}, {:.2} |",
             views.len(),
-            at(0.5),
-            at(0.9)
+            quantile(&ratios, 0.5),
+            quantile(&ratios, 0.9)
         );
     }
     Ok(())
-}
-
-fn write_to(path: &Path, text: &str) -> Result<(), Problem> {
-    std::fs::write(path, text).map_err(Problem::of(path.display()))
 }
 
 /// What the planner sees of a view.

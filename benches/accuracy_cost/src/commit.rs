@@ -7,18 +7,13 @@ use std::process::Command;
 
 /// git's commit, and a hash of this program where it is not that commit's.
 pub fn commit() -> String {
-    let git = |arguments: &[&str]| {
-        let output =
-            Command::new("git").current_dir(Options::root()).args(arguments).output().ok()?;
-        let text = String::from_utf8(output.stdout).ok()?;
-        output.status.success().then(|| text.trim().to_string())
-    };
-    let Some(commit) = git(&["rev-parse", "--short=10", "HEAD"]) else {
-        return format!("unknown, {}", program());
-    };
-    let clean =
-        git(&["status", "--porcelain", "--untracked-files=no"]).is_some_and(|s| s.is_empty());
-    if clean { commit } else { format!("{commit}-dirty, {}", program()) }
+    let describe = ["describe", "--always", "--dirty", "--abbrev=10", "--exclude=*"];
+    let output = Command::new("git").current_dir(Options::root()).args(describe).output();
+    let output = output.ok().filter(|output| output.status.success());
+    match output.and_then(|output| String::from_utf8(output.stdout).ok()) {
+        Some(commit) if !commit.trim().ends_with("-dirty") => commit.trim().into(),
+        changed => format!("{}, {}", changed.as_deref().unwrap_or("unknown").trim(), program()),
+    }
 }
 
 fn program() -> String {

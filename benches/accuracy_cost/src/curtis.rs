@@ -5,6 +5,7 @@ use crate::findings::{Finding, Verdict};
 use crate::groups::{Entry, Group};
 use crate::options::Scale;
 use crate::scenes::{self, CUBE, DRAGON, SceneSpec, Source};
+use crate::stats::range;
 use crate::store::Row;
 use crate::techniques::{FORWARD, value_of};
 
@@ -107,10 +108,7 @@ fn ratios(
         let others = under.iter().filter(|b| a.scene == b.scene && pair(a, b));
         others.filter_map(|b| Some(a.ms()? / b.ms()?)).collect::<Vec<f64>>()
     });
-    all.fold(None, |range: Option<[f64; 2]>, ratio| {
-        let [least, most] = range.unwrap_or([ratio; 2]);
-        Some([least.min(ratio), most.max(ratio)])
-    })
+    range(all)
 }
 
 /// Whether two rows have the same pixels, rays and map.

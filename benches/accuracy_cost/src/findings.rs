@@ -3,10 +3,10 @@
 //! Each finding is a law of a curve, and each law is applied to every object that was swept. It holds
 //! where it holds for all of them; the sentence says what was measured either way.
 
+use crate::report::once;
 use crate::stats::{exponent, jaggedness, line, rising};
 use crate::store::Row;
 use crate::sweeps;
-use std::collections::BTreeSet;
 
 /// A finding of the paper beside what was measured.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,9 +75,7 @@ type Judged = Option<(bool, String)>;
 
 /// The objects of a study, in the rows' order.
 pub fn scenes<'a>(rows: &'a [Row], study: &str) -> Vec<&'a str> {
-    let mut seen = BTreeSet::new();
-    let all = rows.iter().filter(|r| r.study == study).map(|r| r.scene.as_str());
-    all.filter(|s| seen.insert(*s)).collect()
+    once(rows.iter().filter(|r| r.study == study).map(|r| r.scene.as_str()))
 }
 
 /// Applies a law to each object.

@@ -38,6 +38,7 @@ pub fn hills(side: f64, cells: u32) -> Mesh {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stats::range;
 
     #[test]
     fn hills_face_up_and_are_the_same_each_time() {
@@ -52,10 +53,7 @@ mod tests {
             let vertex = DVec3::from_array(mesh.normals[triangle[0] as usize].map(f64::from));
             assert!(normal.normalize().dot(vertex) > 0.9);
         }
-        let (low, high) = mesh
-            .positions
-            .iter()
-            .fold((f32::MAX, f32::MIN), |(low, high), p| (low.min(p[1]), high.max(p[1])));
+        let [low, high] = range(mesh.positions.iter().map(|p| f64::from(p[1]))).unwrap();
         assert!(low >= 0.0 && high <= 0.6 && high - low > 0.3, "{low} to {high}");
     }
 }

@@ -4,7 +4,7 @@
 //!   techniques ─┐                            ┌─► report   index.html, .json, .csv, headline.md
 //!   scenes ─────┼─► groups ─► measure ─► store
 //!   sweeps ─────┘      ▲          │          └─► what was measured, one line each, flushed
-//!                      └── truth ◄┘ (cached)
+//!                      └── truth ◄┘
 //! ```
 //! A **group** is what is compared: several techniques on the same pixels of one scene under one
 //! light, with one truth, timed in turns in one process. It is also what a stopped run resumes at.

@@ -4,18 +4,18 @@ use crate::Problem;
 use crate::groups::{Entry, Group};
 use crate::options::Scale;
 use crate::picture::{self, Pictures};
+use crate::report::once;
 use crate::runner::Runner;
 use crate::stats::{median, quartiles};
 use crate::store::{Errors, Outcome, Row, Times};
 use crate::techniques::method;
-use crate::truth::{self, Truth, mask};
+use crate::truth::{self, mask};
 use antumbra::Technique;
 use antumbra::scene::AreaLight;
-use antumbra::truth::{ErrorSummary, Receiver, Tracer};
+use antumbra::truth::{ErrorSummary, Receiver, Traced, Tracer};
 use antumbra_harness::shade;
 use antumbra_harness::{FrameTimes, HeadlessDevice, Stage};
 use rayon::prelude::*;
-use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::time::Duration;
@@ -26,11 +26,11 @@ const FEWEST_FRAMES: usize = 3;
 /// Groups of fewer rows than this take as many frames as if they had that many.
 const SMALL_GROUP: usize = 8;
 
-/// What is measured with, and where pictures and truths are kept.
+/// What is measured with, and where pictures are kept.
 pub struct Bench<'a> {
     pub device: &'a HeadlessDevice,
     pub scale: Scale,
-    /// The folder of kept truths and pictures.
+    /// The folder of kept pictures.
     pub cache: &'a Path,
 }
 
@@ -81,8 +81,8 @@ impl Bench<'_> {
         }
         self.take_turns(&mut candidates, say);
         say("truth");
-        let truth =
-            truth::truth(&ready.scene, &receivers, group.against, self.scale.rays, self.cache)?;
+        let (against, rays) = (group.against, self.scale.rays);
+        let truth = truth::truth(&ready.scene, &tracer, &receivers, against, rays)?;
         say("errors");
         let seen = ready.occluders_seen.then(|| Seen::of(&pixels, &light)).transpose()?;
         let sides = light.light.half_extents().map(|h| 2.0 * h);
@@ -124,7 +124,7 @@ impl Bench<'_> {
     }
 
     /// Keeps the pictures of the strip; what cannot be kept is missing there and nowhere else.
-    fn paint(&self, group: &Group, all: &[Candidate], truth: &Truth, seen: &Seen, mask: &[bool]) {
+    fn paint(&self, group: &Group, all: &[Candidate], truth: &Traced, seen: &Seen, mask: &[bool]) {
         let pictures = Pictures::new(self.cache);
         let shaded = seen.shade(&truth.visible);
         pictures.keep(&group.scene, picture::TRUTH, group.extent, &shaded);
@@ -176,18 +176,14 @@ impl Candidate<'_> {
         let ms = |of: fn(&FrameTimes) -> Duration| -> Vec<f64> {
             self.frames.iter().map(|f| of(f).as_secs_f64() * 1e3).collect()
         };
-        let mut passes: BTreeMap<&str, (usize, Vec<f64>)> = BTreeMap::new();
-        for frame in &self.frames {
-            for (place, (name, ms)) in frame.passes.iter().enumerate() {
-                passes.entry(name).or_insert((place, Vec::new())).1.push(*ms);
-            }
-        }
-        let mut passes: Vec<_> = passes.into_iter().collect();
-        passes.sort_by_key(|(_, (place, _))| *place);
+        let passes = || self.frames.iter().flat_map(|f| &f.passes);
+        let median_of =
+            |name: &str| median(&passes().filter(|p| p.0 == name).map(|p| p.1).collect::<Vec<_>>());
+        let names = once(passes().map(|p| p.0));
         let times = Times {
             frame_ms: quartiles(&ms(|f| f.frame)),
             frames: self.frames.len(),
-            passes: passes.into_iter().map(|(n, (_, all))| (n.into(), median(&all))).collect(),
+            passes: names.into_iter().map(|n| (n.into(), median_of(n))).collect(),
             record_us: 1e3 * median(&ms(|f| f.record)),
             gpu_bytes,
         };
@@ -218,7 +214,7 @@ impl Seen {
 }
 
 fn errors(
-    truth: &Truth,
+    truth: &Traced,
     image: &[f32],
     receivers: &[Receiver],
     seen: &Option<Seen>,

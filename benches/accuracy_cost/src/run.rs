@@ -8,7 +8,7 @@ use crate::groups::Group;
 use crate::hard_cases::store;
 use crate::measure::Bench;
 use crate::options::{FULL, Options, QUICK};
-use crate::progress::{Estimate, Progress, duration};
+use crate::progress::Progress;
 use crate::report::docs::{ENVELOPE, HARD_CASES, HEADLINE};
 use crate::report::{self, Report};
 use crate::scenes::{self, SceneSpec, Source};
@@ -16,12 +16,13 @@ use crate::store::{Header, Outcome, Row, Store};
 use crate::studies;
 use antumbra_harness::{HeadlessDevice, HeadlessOptions};
 use fnv::FnvHasher;
+use indicatif::HumanDuration;
 use std::hash::Hasher;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// What the quick run may take, less what the report takes to write.
-const QUICK_BUDGET_S: f64 = 270.0;
+const QUICK_BUDGET: Duration = Duration::from_secs(270);
 
 /// Measures and reports; whether every row is good.
 pub fn run(options: &Options) -> Result<bool, Problem> {
@@ -82,7 +83,7 @@ pub fn run(options: &Options) -> Result<bool, Problem> {
     let left_out = measure(&Bench { device: &device, scale, cache: &cache }, &groups, &mut store)?;
     let keys: Vec<String> = groups.iter().map(Group::key).collect();
     let rows = store.rows(keys.iter().map(String::as_str));
-    println!("{} rows in {}", rows.len(), duration(started.elapsed().as_secs_f64()));
+    println!("{} rows in {}", rows.len(), HumanDuration(started.elapsed()));
     // The quick run has no time for them, and shows those of a longer one.
     let mut held = true;
     if !scale.quick && !options.choices && options.only.is_none() {
@@ -132,51 +133,32 @@ fn finish(report: &Report, options: &Options) -> Result<bool, Problem> {
 
 /// Measures every group that is not there, and names those that the quick run has no time for.
 fn measure(bench: &Bench, groups: &[Group], store: &mut Store) -> Result<Vec<String>, Problem> {
-    let scale = &bench.scale;
     let missing: Vec<&Group> = groups.iter().filter(|g| !store.has(&g.key())).collect();
-    let mut estimate = Estimate::default();
-    let keys: Vec<String> = groups.iter().map(Group::key).collect();
-    estimate.learn(&store.rows(keys.iter().map(String::as_str)));
-    if missing.len() < groups.len() {
-        println!(
-            "{} of {} groups are there from before",
-            groups.len() - missing.len(),
-            groups.len()
-        );
-    }
-    let progress = Progress::new(missing.len());
+    let progress = Progress::new(missing.iter().map(|g| g.entries.len()).sum());
+    progress.say(&format!(
+        "{} of {} groups are to be measured; a run that is stopped goes on where it was",
+        missing.len(),
+        groups.len()
+    ));
     let mut left_out = Vec::new();
-    for (i, group) in missing.iter().enumerate() {
-        let key = group.key();
-        let elapsed = progress.elapsed().as_secs_f64();
-        let expected = estimate.total(std::iter::once(*group), scale);
-        if scale.quick && elapsed + expected > QUICK_BUDGET_S {
+    for group in missing {
+        let (key, count) = (group.key(), group.entries.len());
+        if bench.scale.quick && progress.elapsed() + progress.expected(count) > QUICK_BUDGET {
             progress.say(&format!("left out, for the time is up: {key}"));
             left_out.push(key);
             continue;
         }
         let started = Instant::now();
         let rows = bench.measure(group, &|what| progress.doing(&format!("{key}: {what}")));
-        let took = started.elapsed().as_secs_f64();
-        estimate.learn(&rows);
-        estimate.correct(group, scale, took);
-        store.add(&key, rows, took)?;
-        let left = estimate.total(missing[i + 1..].iter().copied(), scale);
-        progress.done(&key, took, left);
-        // The first is a sweep's and the second a view, so that both kinds are known.
-        if i == 1 && !scale.quick {
-            progress.say(&format!(
-                "the run will take about {} (by its first two groups); it can be stopped, and goes \
-                 on where it was",
-                duration(left + progress.elapsed().as_secs_f64())
-            ));
-        }
+        let took = started.elapsed();
+        store.add(&key, rows, took.as_secs_f64())?;
+        progress.done(&key, count, took);
     }
     progress.finish();
     Ok(left_out)
 }
 
-/// The folder of truths and pictures that belong to this run; those of other runs are removed.
+/// The folder of the pictures that belong to this run; those of other runs are removed.
 fn kept(out: &Path, header: &Header) -> Result<PathBuf, Problem> {
     let mut hash = FnvHasher::default();
     format!("{header:?}").bytes().for_each(|b| hash.write_u64(u64::from(b)));

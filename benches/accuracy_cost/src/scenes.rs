@@ -205,12 +205,17 @@ pub fn elongated_cube(light: RectangleLight) -> Scene {
 
 /// A camera nearer than one that frames all of the scene: what is compared should fill the picture.
 fn with_camera(mut scene: Scene) -> Scene {
-    let mut camera = Camera::framing(&scene, 4.0 / 3.0);
     let target = scene.bounds(|i| i.role.blocks()).map_or(DVec3::ZERO, |b| b.center());
-    let eye = camera.world_from_view.w_axis.truncate();
-    camera.world_from_view.w_axis = (target + (eye - target) * 0.6).extend(1.0);
-    scene.camera = Some(camera);
+    scene.camera = Some(camera_at(&scene, target, 0.6));
     scene
+}
+
+/// The camera that frames all of a scene, its distance from a target times a factor.
+pub fn camera_at(scene: &Scene, target: DVec3, factor: f64) -> Camera {
+    let mut camera = Camera::framing(scene, 4.0 / 3.0);
+    let eye = camera.world_from_view.w_axis.truncate();
+    camera.world_from_view.w_axis = (target + factor * (eye - target)).extend(1.0);
+    camera
 }
 
 /// Where `benches/fetch_dragon.sh` puts it.

@@ -21,6 +21,12 @@ pub fn quartiles(values: &[f64]) -> [f64; 3] {
     [0.25, 0.5, 0.75].map(|share| quantile(values, share))
 }
 
+/// The least and the largest of the finite values.
+pub fn range(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]> {
+    let finite = values.into_iter().filter(|v| v.is_finite());
+    finite.map(|v| [v; 2]).reduce(|[low, high], [v, _]| [low.min(v), high.max(v)])
+}
+
 /// A line y = base + slope · x.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line {

@@ -163,11 +163,4 @@ mod tests {
         assert_eq!(method("time-machine", "map=1").unwrap(), None);
         assert!(method("soft-shadow-map", "map=0").unwrap_err().0.contains("1 to 4096"));
     }
-
-    #[test]
-    fn labels_tell_curves_apart() {
-        for (i, a) in CURVES.iter().enumerate() {
-            assert!(CURVES[..i].iter().all(|b| b.label != a.label), "{}", a.label);
-        }
-    }
 }

@@ -1,29 +1,16 @@
-//! The truth of a group's pixels, kept in a folder so that a resumed run need not trace it again.
+//! The truth of a group's pixels: what every technique's image is compared with.
 
 use crate::Problem;
 use crate::groups::Against;
-use antumbra::RectangleLight;
 use antumbra::scene::{Role, Scene};
-use antumbra::truth::{Receiver, Sampling, Tracer, visible_fraction_of_quad};
+use antumbra::truth::{Receiver, Sampling, Traced, Tracer, visible_fraction_of_quad};
 use antumbra_harness::GBuffer;
-use fnv::FnvHasher;
 use glam::DVec3;
 use rayon::prelude::*;
-use std::hash::Hasher;
-use std::path::Path;
 
 /// The random numbers of the truth; the ray tracer that is measured takes others, since the same
 /// numbers would err alike.
 const SEED: u64 = 1;
-
-/// Visible fractions to compare with.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Truth {
-    /// The visible fraction of each pixel, row by row.
-    pub visible: Vec<f32>,
-    /// The standard error of a penumbra pixel; 0 where the truth is exact.
-    pub noise: f64,
-}
 
 /// What each pixel of a G-buffer shows: position and normal, without a normal where nothing receives.
 pub fn receivers(gbuffer: &GBuffer) -> Result<Vec<Receiver>, Problem> {
@@ -59,14 +46,14 @@ fn card_corners(scene: &Scene) -> Result<[DVec3; 4], Problem> {
     corners.try_into().map_err(|_| "the closed form wants one card of four corners".into())
 }
 
-/// The truth in closed form or traced, as `against` says.
+/// The truth in closed form, which has no noise, or traced, as `against` says.
 pub fn truth(
     scene: &Scene,
+    tracer: &Tracer,
     receivers: &[Receiver],
     against: Against,
     rays: u32,
-    cache: &Path,
-) -> Result<Truth, Problem> {
+) -> Result<Traced, Problem> {
     let light = scene.light(None)?.light;
     match against {
         Against::Card => {
@@ -76,19 +63,11 @@ pub fn truth(
                 false => visible_fraction_of_quad(&light, card, r.position) as f32,
             };
             let visible = receivers.par_iter().map(seen).collect();
-            Ok(Truth { visible, noise: 0.0 })
+            Ok(Traced { visible, noise: 0.0, penumbra: 0, rays: 0 })
         }
         Against::Traced => {
-            let path = cache.join(format!("{:016x}.truth", hash(scene, &light, receivers, rays)));
-            if let Some(kept) = load(&path, receivers.len()) {
-                return Ok(kept);
-            }
             let sampling = sampling(Sampling::new(rays, SEED), receivers)?;
-            let tracer = Tracer::new(scene)?;
-            let traced = tracer.visible_fractions(&light, receivers, &sampling)?;
-            let truth = Truth { visible: traced.visible, noise: traced.noise };
-            keep(&path, &truth);
-            Ok(truth)
+            Ok(tracer.visible_fractions(&light, receivers, &sampling)?)
         }
     }
 }
@@ -98,86 +77,22 @@ pub fn mask(receivers: &[Receiver]) -> Vec<bool> {
     receivers.iter().map(|r| r.normal != DVec3::ZERO).collect()
 }
 
-/// Noise first, then the pixels, all little-endian.
-fn keep(path: &Path, truth: &Truth) {
-    let mut bytes = truth.noise.to_le_bytes().to_vec();
-    bytes.extend(truth.visible.iter().flat_map(|v| v.to_le_bytes()));
-    // Written aside and renamed: half a file is never taken for a whole one. What cannot be kept
-    // is traced again, so a full disk is no failure here.
-    let part = path.with_extension("part");
-    if std::fs::write(&part, bytes).is_ok() {
-        let _ = std::fs::rename(&part, path);
-    }
-}
-
-fn load(path: &Path, pixels: usize) -> Option<Truth> {
-    let bytes = std::fs::read(path).ok()?;
-    let (noise, values) = bytes.split_first_chunk::<8>()?;
-    let visible: Vec<f32> =
-        values.chunks_exact(4).map(|v| f32::from_le_bytes([v[0], v[1], v[2], v[3]])).collect();
-    (visible.len() == pixels && values.len() == 4 * pixels)
-        .then_some(Truth { visible, noise: f64::from_le_bytes(*noise) })
-}
-
-/// All that the truth depends on, but for the tracer's own code: the folder is one commit's.
-fn hash(scene: &Scene, light: &RectangleLight, receivers: &[Receiver], rays: u32) -> u64 {
-    let mut hash = FnvHasher::default();
-    hash.write_u32(rays);
-    let frame = light.world_from_light().to_cols_array();
-    frame.iter().chain(&light.half_extents()).for_each(|f| hash.write_u64(f.to_bits()));
-    for instance in scene.instances.iter().filter(|i| i.role.blocks()) {
-        instance.world_from_mesh.to_cols_array().iter().for_each(|f| hash.write_u64(f.to_bits()));
-        let mesh = &scene.meshes[instance.mesh];
-        mesh.indices.iter().for_each(|&i| hash.write_u32(i));
-        mesh.positions.iter().flatten().for_each(|f| hash.write_u32(f.to_bits()));
-    }
-    for r in receivers {
-        let numbers = [r.position.to_array(), r.normal.to_array()];
-        numbers.iter().flatten().for_each(|f| hash.write_u64(f.to_bits()));
-    }
-    hash.finish()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::scenes;
 
-    fn line_of_receivers() -> Vec<Receiver> {
-        let at = |i: u32| DVec3::new(f64::from(i) * 0.05, 0.0, 0.0);
-        (0..64).map(|i| Receiver { position: at(i), normal: DVec3::Y }).collect()
-    }
-
     #[test]
     fn the_cards_two_truths_agree_within_the_noise_that_is_reported() {
-        let folder = std::env::temp_dir().join(format!("antumbra-truth-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).unwrap();
         let scene = scenes::made("card", scenes::square(0.4).unwrap()).unwrap();
-        let receivers = line_of_receivers();
-        let of = |against| truth(&scene, &receivers, against, 512, &folder).unwrap();
+        let at = |i: u32| DVec3::new(f64::from(i) * 0.05, 0.0, 0.0);
+        let receiver = |i| Receiver { position: at(i), normal: DVec3::Y };
+        let receivers: Vec<Receiver> = (0..64).map(receiver).collect();
+        let tracer = Tracer::new(&scene).unwrap();
+        let of = |against| truth(&scene, &tracer, &receivers, against, 512).unwrap();
         let (exact, traced) = (of(Against::Card), of(Against::Traced));
         for (a, b) in exact.visible.iter().zip(&traced.visible) {
             assert!((a - b).abs() <= 6.0 * traced.noise as f32 + 1e-6, "{a} {b}");
         }
-        // The second time it comes from the folder, to the bit; torn files are traced anew.
-        assert_eq!(of(Against::Traced), traced);
-        let file = std::fs::read_dir(&folder).unwrap().next().unwrap().unwrap().path();
-        std::fs::write(&file, b"torn").unwrap();
-        assert_eq!(of(Against::Traced), traced);
-    }
-
-    #[test]
-    fn whatever_the_truth_depends_on_changes_its_name() {
-        let scene = scenes::made("card", scenes::square(0.4).unwrap()).unwrap();
-        let light = scene.light(None).unwrap().light;
-        let receivers = line_of_receivers();
-        let base = hash(&scene, &light, &receivers, 64);
-        assert_ne!(base, hash(&scene, &light, &receivers, 65));
-        assert_ne!(base, hash(&scene, &light, &receivers[1..], 64));
-        let other = scenes::square(0.5).unwrap();
-        assert_ne!(base, hash(&scene, &other, &receivers, 64));
-        let mut moved = scene.clone();
-        moved.instances[1].world_from_mesh.w_axis.x += 1e-9;
-        assert_ne!(base, hash(&moved, &light, &receivers, 64));
     }
 }

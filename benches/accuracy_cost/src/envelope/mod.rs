@@ -17,7 +17,6 @@ mod range;
 
 use crate::commit::commit;
 use crate::options::Options;
-use crate::progress::duration;
 use crate::techniques::{Method, method};
 use crate::truth::{mask, receivers};
 use crate::{Problem, report};
@@ -25,6 +24,7 @@ use antumbra::Omit;
 use antumbra::scene::{Instance, Role};
 use antumbra::truth::ErrorSummary;
 use antumbra_harness::{HeadlessDevice, HeadlessOptions, Stage};
+use indicatif::HumanDuration;
 use place::{CENTRE, FLAT, Place, Ready, SOLID};
 pub use range::{Envelope, FACTOR, FLOOR, Step};
 use serde::Serialize;
@@ -171,7 +171,7 @@ pub fn run(options: &Options) -> Result<bool, Problem> {
                     rows.extend(bench.measure(axis.name, at, &place)?);
                 }
             }
-            let took = duration(started.elapsed().as_secs_f64());
+            let took = HumanDuration(started.elapsed());
             println!("{scene}: {} ({took} so far)", axis.name.to_lowercase());
         }
     }

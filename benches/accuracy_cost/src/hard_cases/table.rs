@@ -2,6 +2,7 @@
 
 use super::judge::{Row, Tables, Verdict};
 use super::techniques;
+use crate::report::head_of;
 use maud::{Markup, html};
 use std::fmt::Write as _;
 
@@ -106,11 +107,7 @@ pub fn html(rows: &[Row], driver: &str) -> Markup {
     html! {
         p { (driver) ": " (counts(rows)) "." }
         table.n {
-            tr {
-                @for name in ["case", "technique", "truth", "mean", "≤", "worst", "≤", "verdict", "why"] {
-                    th { (name) }
-                }
-            }
+            (head_of(["case", "technique", "truth", "mean", "≤", "worst", "≤", "verdict", "why"]))
             @for row in rows {
                 @let (class, verdict, why) = match &row.verdict {
                     Verdict::Held => ("yes", "held", &row.why),

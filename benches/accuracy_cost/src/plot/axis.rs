@@ -1,5 +1,7 @@
 //! Axes: where a value lies, and which values are labelled.
 
+use crate::stats::range;
+
 /// One axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
@@ -7,15 +9,6 @@ pub struct Axis {
     pub log: bool,
     pub from: f64,
     pub to: f64,
-}
-
-/// The least and the largest of the finite values, as a range.
-fn range(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]> {
-    let finite = values.into_iter().filter(|v| v.is_finite());
-    finite.fold(None, |range: Option<[f64; 2]>, v| {
-        let [low, high] = range.unwrap_or([v, v]);
-        Some([low.min(v), high.max(v)])
-    })
 }
 
 impl Axis {

@@ -73,23 +73,15 @@ const LEGEND: f64 = 18.0;
 const LEGEND_COLUMNS: usize = 3;
 
 fn mark(style: Style, x: f64, y: f64, size: f64) -> Markup {
-    let path = match style.mark {
-        1 => {
-            let (l, s) = (0.9 * size, 1.8 * size);
-            format!("M{:.1} {:.1}h{s:.1}v{s:.1}h-{s:.1}z", x - l, y - l)
-        }
-        2 => {
-            let (left, right, low) = (x - 1.1 * size, x + 1.1 * size, y + 0.8 * size);
-            format!("M{x:.1} {:.1}L{right:.1} {low:.1}L{left:.1} {low:.1}z", y - 1.2 * size)
-        }
-        3 => {
-            let s = 1.3 * size;
-            let (left, right) = (x - s, x + s);
-            format!("M{x:.1} {:.1}L{right:.1} {y:.1}L{x:.1} {:.1}L{left:.1} {y:.1}z", y - s, y + s)
-        }
+    let corners: &[[f64; 2]] = match style.mark {
+        1 => &[[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]],
+        2 => &[[0.0, -1.2], [1.1, 0.8], [-1.1, 0.8]],
+        3 => &[[0.0, -1.3], [1.3, 0.0], [0.0, 1.3], [-1.3, 0.0]],
         _ => return html! { circle cx=(tenth(x)) cy=(tenth(y)) r=(size) fill=(style.color) {} },
     };
-    html! { path d=(path) fill=(style.color) {} }
+    let at = |[u, v]: &[f64; 2]| format!("{:.1},{:.1}", x + size * u, y + size * v);
+    let points: Vec<String> = corners.iter().map(at).collect();
+    html! { polygon points=(points.join(" ")) fill=(style.color) {} }
 }
 
 /// A length in tenths of a pixel.

@@ -81,14 +81,13 @@ fn series<'a>(
     curves.filter(|s| !s.points.is_empty()).collect()
 }
 
-/// Error against time, a chart a scene and light; all on the same axes, so that they compare.
-pub fn matrix(report: &Report) -> Vec<(String, Vec<Markup>)> {
+/// Error against time, for each scene a chart a light; all on the same axes, so that they compare.
+pub fn matrix(report: &Report) -> Vec<Vec<Markup>> {
     let measured: Vec<&Row> = report.matrix().collect();
     let x = Axis::log(MS, measured.iter().filter_map(|r| r.ms()));
     let error = |r: &Row| Some((100.0 * r.mean()?).max(LEAST_SHOWN));
     let y = Axis::log(ERROR, measured.iter().filter_map(|r| error(r)));
-    let mut scenes: Vec<(String, Vec<Markup>)> = Vec::new();
-    for (scene, light) in views(report) {
+    let chart = |&(scene, light): &(&str, &str)| {
         let rows: Vec<&Row> =
             measured.iter().copied().filter(|r| r.scene == scene && r.light == light).collect();
         let mut series = series(&rows, |r| Some((r.ms()?, error(r)?)), true);
@@ -98,20 +97,18 @@ pub fn matrix(report: &Report) -> Vec<(String, Vec<Markup>)> {
         let [width, height] = rows.first().map_or([0.0; 2], |r| r.light_m);
         let floor =
             rows.iter().filter_map(|r| Some(r.measured()?.0.noise_floor)).fold(0.0, f64::max);
-        let chart = Chart {
+        Chart {
             title: format!("{scene}, {light} light ({width:.2} × {height:.2} m)"),
             x: x.clone(),
             y: y.clone(),
             series,
             floor: (floor > 0.0).then_some(100.0 * floor),
             legend: false,
-        };
-        match scenes.last_mut().filter(|s| s.0 == scene) {
-            Some(last) => last.1.push(chart.svg()),
-            None => scenes.push((scene.into(), vec![chart.svg()])),
         }
-    }
-    scenes
+        .svg()
+    };
+    let scenes = views(report);
+    scenes.chunk_by(|a, b| a.0 == b.0).map(|own| own.iter().map(chart).collect()).collect()
 }
 
 /// The legend that the matrix's charts share.
@@ -229,7 +226,7 @@ mod tests {
     fn a_chart_a_view_with_its_front() {
         let charts = with(&rows(), matrix);
         assert_eq!(charts.len(), 1);
-        let svg = &charts[0].1[0].0;
+        let svg = &charts[0][0].0;
         assert!(svg.contains("card, medium light") && svg.contains("r=\"6.5\""));
         assert!(with(&rows(), figures).is_empty());
     }

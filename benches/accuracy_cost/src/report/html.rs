@@ -116,7 +116,7 @@ fn matrix(report: &Report) -> Markup {
             p.no { "Nothing was measured." }
         } @else {
             (charts::legend(report))
-            @for (_, charts) in charts::matrix(report) {
+            @for charts in charts::matrix(report) {
                 div.charts { @for chart in charts { (chart) } }
             }
         }

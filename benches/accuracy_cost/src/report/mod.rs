@@ -18,6 +18,7 @@ use std::path::Path;
 pub use charts::style;
 pub use files::csv_of;
 pub use headline::markdown;
+pub use tables::head_of;
 
 /// What the report is made of.
 pub struct Report<'a> {

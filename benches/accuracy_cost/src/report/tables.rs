@@ -13,7 +13,7 @@ const EISEMANN: [[&str; 3]; 3] =
     [["under 1", "under 1", "under 1"], ["5.1", "21.9", "96.8"], ["under 1", "1.7", "7.3"]];
 
 /// A table's head.
-pub(super) fn head_of<T: Render>(names: impl IntoIterator<Item = T>) -> Markup {
+pub fn head_of<T: Render>(names: impl IntoIterator<Item = T>) -> Markup {
     html! { tr { @for name in names { th { (name) } } } }
 }
 
