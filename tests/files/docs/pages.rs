@@ -129,7 +129,7 @@ fn rows(page: &str, head: &str) -> Vec<String> {
 #[test]
 fn the_walks_of_architecture_are_short() {
     let rows = rows(&page("docs/architecture.md"), "| pass | files |");
-    assert_eq!(rows.len(), antumbra::Technique::NAMES.len(), "one a technique");
+    assert_eq!(rows.len(), Technique::NAMES.len(), "one a technique");
     for row in rows {
         let mut words = row.split('`').skip(1).step_by(2);
         let (pass, files) = (words.next().unwrap(), words.collect::<Vec<_>>());
