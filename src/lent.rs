@@ -145,8 +145,7 @@ impl HostImage {
         Self { image, view, format, extent, usage, before, after }
     }
 
-    /// The same image as a frame hands it back: what the next light's frame, behind it in the same
-    /// command buffer, says of it. [`Self::after`] must name a layout, so it cannot be [`Scope::ANY`]; that of the last
+    /// The image as a frame hands it back, for the frame of the next light, which follows in the same command buffer. [`Self::after`] must name a layout, so it cannot be [`Scope::ANY`]; that of the last
     /// light's frame can.
     #[must_use]
     pub fn handed_back(self) -> Self {

@@ -3,7 +3,7 @@
 use antumbra::stages::nbuffer::twin::Values;
 use antumbra::stages::nbuffer::{Kind, Levels};
 
-/// Rows that make the levels.
+/// The passes that make the levels.
 pub const BUILD: [&str; 1] = ["level"];
 
 /// Milliseconds of passes by their names' ends.

@@ -277,7 +277,7 @@ fn the_border_is_listed_with_stage_access_and_layout() {
     let entries: Vec<_> = plan.entry_barriers().collect();
     assert_eq!(entries[1].before.layout, vk::ImageLayout::UNDEFINED, "written whole");
 
-    // Where the node places them, what is behind it is what the host asked for.
+    // Where the node places them, what follows it is what the host named.
     let plan = make(&description(&[]), &frame(&meshes));
     let result = plan.accesses()[1];
     assert_eq!(result.node.unwrap().exit, result.after);

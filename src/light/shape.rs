@@ -76,7 +76,7 @@ impl Light {
         self.rectangle.emission()
     }
 
-    /// The same light with the axes of its space turned by a quarter: x where y was.
+    /// The light with the axes of its space turned by a quarter: x where y was.
     pub(crate) fn quarter_turned(&self) -> Self {
         let mut turned = *self;
         turned.rectangle = self.rectangle.quarter_turned();

@@ -169,7 +169,7 @@ fn sun(extras: &Value, world: &DMat4, all: &Bounds) -> Result<RectangleLight, Pr
     let size = value.as_f64().ok_or_else(|| {
         format!("its angular_size is {}; write a number of radians", shown(value))
     })?;
-    // Of its direction nothing is left but the direction.
+    // Only the direction of the transform counts for a sun, not its scale.
     let emission = -world.z_axis.truncate();
     let radius = (0.5 * all.size().length()).max(SIDES[0]);
     RectangleLight::sun(emission, size, all.center(), radius).map_err(|e| match e {
