@@ -215,7 +215,7 @@ pub enum Geometry {
 /// A mesh as the host keeps it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshInstance {
-    /// Its triangles.
+    /// The triangles of the mesh.
     pub geometry: Geometry,
     /// Mesh space to world space, for column vectors: the last row is 0, 0, 0, 1.
     pub world_from_mesh: DMat4,

@@ -11,7 +11,7 @@ macro_rules! techniques {
     ($($(#[$about:meta])* $variant:ident($room:ident),)+) => {
         /// How the visible fraction is computed: a technique with its settings.
         ///
-        /// Its text form is the technique's name and any settings: `"pcss taps=32"`.
+        /// The text form of a technique is its name and any settings: `"pcss taps=32"`.
         #[derive(Clone, Copy, Debug, PartialEq)]
         #[non_exhaustive]
         pub enum Technique {

@@ -13,7 +13,7 @@ use gpu_allocator::vulkan::Allocation;
 pub struct ImageSource {
     /// The image; its usage must hold `TRANSFER_SRC` to be read and `TRANSFER_DST` to be written.
     pub image: vk::Image,
-    /// Its format, one of those that [`bytes_per_texel`] knows.
+    /// The format of the image, one of those that [`bytes_per_texel`] knows.
     pub format: vk::Format,
     /// Width and height in texels.
     pub extent: [u32; 2],
@@ -103,7 +103,7 @@ impl OwnedImage {
         self.view
     }
 
-    /// Its format.
+    /// The format of the image.
     pub fn format(&self) -> vk::Format {
         self.source.format
     }

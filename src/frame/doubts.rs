@@ -11,7 +11,7 @@ use std::fmt;
 
 /// Something in a frame that looks like a mistake of the host's, and may be meant; see [`FramePlan::doubts`].
 ///
-/// Its `Display` is one sentence: what the matter is, and the likely remedy.
+/// A doubt is displayed as one sentence: what the matter is, and the likely remedy.
 ///
 /// [`FramePlan::doubts`]: super::FramePlan::doubts
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,7 +56,7 @@ pub enum Doubt {
     NothingReceives,
     /// A mesh blocks and does not receive, and there is no mask to tell its pixels by.
     OccluderWithoutMask {
-        /// Its place in [`Frame::meshes`].
+        /// The place of the mesh in [`Frame::meshes`].
         mesh: usize,
     },
 }

@@ -221,9 +221,9 @@ pub struct Pass {
     pub name: &'static str,
     /// The resources that it uses.
     pub uses: Uses,
-    /// Its push constants, without the matrix that each mesh draw pushes before them.
+    /// The push constants of the pass, without the matrix that each mesh draw pushes before them.
     pub push: Push,
-    /// Its command.
+    /// The command of the pass.
     pub work: Work,
     /// Whether this frame needs it, and why.
     pub need: Need,

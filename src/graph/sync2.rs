@@ -75,12 +75,12 @@ impl From<(PipelineStageFlags2, AccessFlags2, ImageLayout)> for Scope {
 }
 
 impl Scope {
-    /// Its stages as synchronization2 has them.
+    /// The stages, as synchronization2 has them.
     pub fn stage2(&self) -> PipelineStageFlags2 {
         PipelineStageFlags2::from_raw(u64::from(self.stage.as_raw()))
     }
 
-    /// Its accesses as synchronization2 has them.
+    /// The accesses, as synchronization2 has them.
     pub fn access2(&self) -> AccessFlags2 {
         AccessFlags2::from_raw(u64::from(self.access.as_raw()))
     }

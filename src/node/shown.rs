@@ -46,7 +46,7 @@ pub struct Inspected {
     pub name: &'static str,
     /// The image.
     pub image: vk::Image,
-    /// Its format.
+    /// The format of the image.
     pub format: vk::Format,
     /// The image's width and height in texels.
     pub extent: [u32; 2],
@@ -68,7 +68,7 @@ pub enum PlanObject {
     Buffer {
         /// The buffer.
         buffer: vk::Buffer,
-        /// Its size in bytes.
+        /// The size of the resource in bytes.
         bytes: u64,
     },
 }

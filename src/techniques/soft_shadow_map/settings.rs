@@ -9,7 +9,7 @@ pub enum Receivers {
     /// At the G-buffer's pixels, self-shadowing included.
     #[default]
     Pixels,
-    /// On a soft shadow map, projected onto the pixels; occluders do not receive from themselves.
+    /// At the texels of a soft shadow map, which is projected onto the pixels; occluders do not receive from themselves.
     Map,
 }
 
