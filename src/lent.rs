@@ -145,8 +145,8 @@ impl HostImage {
         Self { image, view, format, extent, usage, before, after }
     }
 
-    /// The image as a frame hands it back, for the frame of the next light, which follows in the same command buffer. [`Self::after`] must name a layout, so it cannot be [`Scope::ANY`]; that of the last
-    /// light's frame can.
+    /// The image as a frame hands it back, for the frame of the next light, which follows in the same command buffer.
+    /// [`Self::after`] must name a layout, so it cannot be [`Scope::ANY`]; that of the last light's frame can.
     #[must_use]
     pub fn handed_back(self) -> Self {
         Self { before: self.after, ..self }

@@ -22,12 +22,12 @@
 //!    ▼
 //!  the host: visibility × unshadowed irradiance
 //! ```
-//! Each technique is a folder of [`techniques`]; what they share is in [`stages`]. A [`Technique`] is one of them with its
-//! settings, and reads from text: `"pcss taps=32".parse()`.
+//! Each technique is a folder of [`techniques`]; what they share is in [`stages`]. A [`Technique`] is one of them with
+//! its settings, and reads from text: `"pcss taps=32".parse()`.
 //!
 //! Data flows down the picture and never back up. Each of these modules declares its passes as data in a [`graph`];
-//! [`ShadowNode::plan`] keeps the passes that a frame needs and derives their barriers; [`ShadowNode::record`] turns the
-//! plan into commands.
+//! [`ShadowNode::plan`] keeps the passes that a frame needs and derives their barriers; [`ShadowNode::record`] turns
+//! the plan into commands.
 //!
 //! ```no_run
 //! # use antumbra::{Allocator, Description, Error, Frame, Host, Requirements, ShadowNode};

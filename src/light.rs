@@ -71,8 +71,8 @@ impl RectangleLight {
 
     /// A light that shines along `emission`, of any length, from its centre, with its whole width and height in metres.
     ///
-    /// The height of the light runs along `up`, of any length, as far as that lies across the emission, and its width to
-    /// the right, seen as the light shines. All are in world space.
+    /// The height of the light runs along `up`, of any length, as far as that lies across the emission, and its width
+    /// to the right, seen as the light shines. All are in world space.
     ///
     /// # Errors
     /// [`Error::Light`] for values that are not finite, no emission, an `up` that is nothing or lies along the

@@ -23,9 +23,9 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// Soft shadows as one node of the host's render graph.
 ///
 /// The node borrows the host's device and memory and records into the host's command buffers; while recording it never
-/// submits, waits, allocates or panics. Call [`ShadowNode::destroy`] once the device has completed the node's last frame.
-/// Dropping the node leaks its Vulkan objects, because only the host knows when they are idle and which allocator they
-/// came from.
+/// submits, waits, allocates or panics. Call [`ShadowNode::destroy`] once the device has completed the node's last
+/// frame. Dropping the node leaks its Vulkan objects, because only the host knows when they are idle and which
+/// allocator they came from.
 pub struct ShadowNode {
     host: Host,
     description: Description,
@@ -83,8 +83,8 @@ impl ShadowNode {
         &self.description
     }
 
-    /// Plans one frame of one light, in microseconds and without Vulkan calls. Record the plans of several lights in the
-    /// order in which they were made.
+    /// Plans one frame of one light, in microseconds and without Vulkan calls. Record the plans of several lights in
+    /// the order in which they were made.
     ///
     /// # Errors
     /// See [`frame::plan`].
@@ -94,9 +94,9 @@ impl ShadowNode {
         Ok(plan)
     }
 
-    /// Plans the frames of several lights, in order, into plans that the host keeps from frame to frame. After the first
-    /// call it allocates no memory, visits a list of meshes that frames share once, and does not visit it while the
-    /// frames' revision stays. Record the plans in that order.
+    /// Plans the frames of several lights, in order, into plans that the host keeps from frame to frame. After the
+    /// first call it allocates no memory, visits a list of meshes that frames share once, and does not visit it while
+    /// the frames' revision stays. Record the plans in that order.
     ///
     /// # Errors
     /// See [`frame::plan`]; `plans` then holds those of the frames before the refused one.
@@ -146,8 +146,8 @@ impl ShadowNode {
         self.record_with(cmd, plan, &mut |_| {})
     }
 
-    /// Records a plan with meshes that the host draws: calls `draw` for each of them in each layer that shows it, between
-    /// the node's own draws. [`Self::layer_pass`] says what the host's pipelines must be compatible with.
+    /// Records a plan with meshes that the host draws: calls `draw` for each of them in each layer that shows it,
+    /// between the node's own draws. [`Self::layer_pass`] says what the host's pipelines must be compatible with.
     ///
     /// # Errors
     /// As [`Self::record`], but for [`Error::NeedsHostDraws`].
@@ -174,7 +174,8 @@ impl ShadowNode {
         Ok(())
     }
 
-    /// The render pass and raster state that a host's own pipeline needs to draw into a layer of a technique; `None` where the technique has no such layer.
+    /// The render pass and raster state that a host's own pipeline needs to draw into a layer of a technique; `None`
+    /// where the technique has no such layer.
     pub fn layer_pass(&self, technique: TechniqueIndex, layer: Layer) -> Option<LayerPass> {
         let description = self.description.choosing(technique).ok()?;
         let graph = frame::all_passes(&description, self.limits);
@@ -197,15 +198,15 @@ impl ShadowNode {
         owned.then_some(VisibilityImage { image, view, extent, layers })
     }
 
-    /// A 2D image view of a light's layer of the node's visibility image; `None` for a light that does not exist, or where
-    /// the host lends the image.
+    /// A 2D image view of a light's layer of the node's visibility image; `None` for a light that does not exist, or
+    /// where the host lends the image.
     pub fn visibility_layer(&self, light: LightIndex) -> Option<vk::ImageView> {
         let view = self.objects.result_layer(light);
         (light.0 < self.description.lights && view != vk::ImageView::null()).then_some(view)
     }
 
-    /// Replaces every object that depends on the G-buffer's size, and returns the old ones to retire. Pipelines stay, and
-    /// so do the timings of frames in flight.
+    /// Replaces every object that depends on the G-buffer's size, and returns the old ones to retire. Pipelines stay,
+    /// and so do the timings of frames in flight.
     ///
     /// # Errors
     /// See [`Self::new`]; the node then keeps its old size, and accepts plans made before.
@@ -243,9 +244,9 @@ impl ShadowNode {
         Ok(Retired::new(old.host, old.objects.into_owner()))
     }
 
-    /// Lets `auto` choose a technique for each light and sets each frame's [`Frame::technique_index`]. Where the node lacks
-    /// a chosen technique, every object is replaced. Returns the choices, light by light, and the objects to retire. Call
-    /// it before [`Self::plan`], with the frames of all lights.
+    /// Lets `auto` choose a technique for each light and sets each frame's [`Frame::technique_index`]. Where the node
+    /// lacks a chosen technique, every object is replaced. Returns the choices, light by light, and the objects to
+    /// retire. Call it before [`Self::plan`], with the frames of all lights.
     ///
     /// # Errors
     /// See [`Auto::choose_all`] and [`Self::new`]; the node then stays as it was.
@@ -312,8 +313,8 @@ impl ShadowNode {
             .collect()
     }
 
-    /// The image or buffer of a resource of a plan's graph, by the resource's name, for tests and debuggers; `None` where
-    /// no pass uses it, where the host lends it, and for the visibility image.
+    /// The image or buffer of a resource of a plan's graph, by the resource's name, for tests and debuggers; `None`
+    /// where no pass uses it, where the host lends it, and for the visibility image.
     pub fn object(&self, plan: &FramePlan, name: &str) -> Option<PlanObject> {
         let graph = &plan.plan.graph;
         let mut ids = (0..graph.resources().len()).map(|index| graph.id(index));
@@ -327,14 +328,14 @@ impl ShadowNode {
         }
     }
 
-    /// The bytes of each image and buffer that the node holds in device memory: the visibility image, then those of each
-    /// technique in turn.
+    /// The bytes of each image and buffer that the node holds in device memory: the visibility image, then those of
+    /// each technique in turn.
     pub fn memory(&self) -> Vec<ResourceBytes> {
         self.objects.memory()
     }
 
-    /// The bytes of the images and buffers of one technique, which its lights share; empty for a technique that does not
-    /// exist.
+    /// The bytes of the images and buffers of one technique, which its lights share; empty for a technique that does
+    /// not exist.
     pub fn memory_of(&self, technique: TechniqueIndex) -> Vec<ResourceBytes> {
         self.objects.memory_of(technique)
     }

@@ -3,7 +3,8 @@
 
 use glam::{DMat4, DVec3, Mat4, Vec3};
 
-/// A 4×4 matrix for column vectors, made from arrays in column-major order (16 numbers, or 4 columns), of 32 or 64 bits.
+/// A 4×4 matrix for column vectors, made from arrays in column-major order (16 numbers, or 4 columns), of 32 or 64
+/// bits.
 ///
 /// ```
 /// use antumbra::Matrix;

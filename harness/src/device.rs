@@ -28,8 +28,8 @@ pub struct HeadlessOptions {
     pub tables: Option<Tables>,
 }
 
-/// Replacements for Vulkan's functions, for tests: a device on which calls fail, or that reports fewer abilities than it
-/// has.
+/// Replacements for Vulkan's functions, for tests: a device on which calls fail, or that reports fewer abilities than
+/// it has.
 ///
 /// Each function gets the table that Vulkan loaded and returns the table that is called instead, for the same objects.
 #[derive(Clone, Copy, Debug)]

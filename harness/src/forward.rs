@@ -94,9 +94,9 @@ impl Forward {
         })
     }
 
-    /// Runs a frame of the node for its map and levels, and then draws the scene with its rays. The times are those of the
-    /// passes that forward evaluation needs, and `frame` is their sum: what the node does at the G-buffer's pixels is
-    /// left out.
+    /// Runs a frame of the node for its map and levels, and then draws the scene with its rays. The times are those of
+    /// the passes that forward evaluation needs, and `frame` is their sum: what the node does at the G-buffer's pixels
+    /// is left out.
     ///
     /// # Errors
     /// [`Error::Frame`] where the device has no timestamps; otherwise as [`Stage::run`].

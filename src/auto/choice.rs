@@ -9,11 +9,11 @@ use std::fmt;
 pub struct Choice {
     /// The technique, with its settings.
     pub technique: Technique,
-    /// The promised mean error of the visible fraction over the pixels in shadow and penumbra, 0 to 1; `None` where nothing
-    /// can be shadowed.
-    pub error: Option<f64>,
-    /// The expected time on the device, milliseconds; `None` where the table has none: for lines and polygons, and where
+    /// The promised mean error of the visible fraction over the pixels in shadow and penumbra, 0 to 1; `None` where
     /// nothing can be shadowed.
+    pub error: Option<f64>,
+    /// The expected time on the device, milliseconds; `None` where the table has none: for lines and polygons, and
+    /// where nothing can be shadowed.
     pub ms: Option<f64>,
     /// Scene and light of the table's view that is nearest to the situation.
     pub nearest: Option<[String; 2]>,

@@ -5,8 +5,8 @@
 //!                                        │ their worst error, their mean time × Costs
 //!   Budget ──────────────────────────────┴─► the fastest whose error is allowed ─► hysteresis ─► Choice
 //! ```
-//! The promised error is the worst of the nearest views, and grows with their distance. `docs/planner.md` says how often
-//! the promise is kept, for scenes of the table and for scenes that the table does not have.
+//! The promised error is the worst of the nearest views, and grows with their distance. `docs/planner.md` says how
+//! often the promise is kept, for scenes of the table and for scenes that the table does not have.
 
 use super::budget::ValidBudget;
 use super::expected::{Expected, expect, nearest_views, share, unmet};
@@ -62,8 +62,8 @@ impl Default for LightState {
 }
 
 impl LightState {
-    /// Replaces each candidate's error by the worst of the last frames, so that an occluder that moves to and fro does not
-    /// change the choice each time. A peak decays within some [`PATIENCE`] frames.
+    /// Replaces each candidate's error by the worst of the last frames, so that an occluder that moves to and fro does
+    /// not change the choice each time. A peak decays within some [`PATIENCE`] frames.
     fn remember(&mut self, expected: &mut [Expected]) {
         for e in expected {
             let worst = &mut self.worst[e.candidate];
@@ -75,8 +75,8 @@ impl LightState {
 
 /// Chooses technique and settings for the lights of a node, frame by frame.
 ///
-/// It holds no Vulkan objects and makes no Vulkan calls. The host gets its choices, reconfigures the node where they change
-/// ([`crate::ShadowNode::adapt`] does both), and reports the times of frames to [`Self::observe`].
+/// It holds no Vulkan objects and makes no Vulkan calls. The host gets its choices, reconfigures the node where they
+/// change ([`crate::ShadowNode::adapt`] does both), and reports the times of frames to [`Self::observe`].
 #[derive(Clone, Debug)]
 pub struct Auto {
     budget: Budget,
@@ -110,8 +110,8 @@ impl Auto {
         Ok(all.swap_remove(0))
     }
 
-    /// Chooses the technique for a light with an area from its situation and the image's size in pixels, with no host to
-    /// restrict the techniques: to study how choices are made.
+    /// Chooses the technique for a light with an area from its situation and the image's size in pixels, with no host
+    /// to restrict the techniques: to study how choices are made.
     pub fn choose_in(&mut self, situation: &Situation, [width, height]: [u32; 2]) -> Choice {
         self.lights.resize(1, LightState::default());
         let budget = self.budget.valid();
@@ -202,8 +202,8 @@ impl Auto {
         Ok(choices)
     }
 
-    /// Reports the device's time for the last choice: the milliseconds of all passes of light number `light`. Does nothing
-    /// for a light without a choice.
+    /// Reports the device's time for the last choice: the milliseconds of all passes of light number `light`. Does
+    /// nothing for a light without a choice.
     pub fn observe(&mut self, light: usize, ms: f64) {
         if let Some((technique, expected)) = self.lights.get(light).and_then(|state| state.expected)
         {

@@ -17,8 +17,8 @@ const DRAW_MS: f64 = 0.35e-3;
 
 /// Factors from times on the table's device to times on the device at hand; 1 where nothing was measured.
 ///
-/// The factors hold for one device and driver: with the feature `serde` a host keeps them under the device's name, in any
-/// format of serde's, until the next start. Factors that are missing, not finite or not above 0 are then read as 1.
+/// The factors hold for one device and driver: with the feature `serde` a host keeps them under the device's name, in
+/// any format of serde's, until the next start. Factors that are missing, not finite or not above 0 are then read as 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(from = "kept::Kept", into = "kept::Kept"))]
@@ -45,15 +45,15 @@ fn place(technique: &str) -> Option<usize> {
 }
 
 impl Costs {
-    /// The costs of a device on which passes in light space and passes over the pixels take `maps` and `pixels` times as
-    /// long as on the table's. A factor that is not finite or not above 0 counts as 1.
+    /// The costs of a device on which passes in light space and passes over the pixels take `maps` and `pixels` times
+    /// as long as on the table's. A factor that is not finite or not above 0 counts as 1.
     pub fn new(maps: f64, pixels: f64) -> Self {
         let sound = |x: f64| if x.is_finite() && x > 0.0 { x } else { 1.0 };
         Self { maps: sound(maps), pixels: sound(pixels), ..Self::default() }
     }
 
-    /// The expected milliseconds of a technique that took `table`'s times, for `pixels` pixels and `more_triangles` more
-    /// triangles than in the table.
+    /// The expected milliseconds of a technique that took `table`'s times, for `pixels` pixels and `more_triangles`
+    /// more triangles than in the table.
     pub(crate) fn ms(
         &self,
         technique: &str,

@@ -8,8 +8,8 @@ use super::{CANDIDATES, Costs, Features};
 const NEAR: f64 = 0.1;
 const FAR: f64 = 1.6;
 
-/// The share that the promised error grows by for each unit of distance to the nearest view. This and [`FAR`] are fitted
-/// by leaving out each scene and predicting it from the others (docs/planner.md).
+/// The share that the promised error grows by for each unit of distance to the nearest view. This and [`FAR`] are
+/// fitted by leaving out each scene and predicting it from the others (docs/planner.md).
 const DOUBT: f64 = 0.7;
 
 /// A factor on the promised error, for images of other sizes than the table's.
@@ -61,8 +61,8 @@ pub(super) fn nearest_views<'a>(table: &'a Table, features: &Features) -> (f64, 
     (nearest, all.into_iter().map(|v| v.1).collect())
 }
 
-/// Picks a candidate for each light: the fastest whose error is allowed. Where the time does not suffice, it starts from
-/// the fastest and takes the steps that reduce errors most for their time.
+/// Picks a candidate for each light: the fastest whose error is allowed. Where the time does not suffice, it starts
+/// from the fastest and takes the steps that reduce errors most for their time.
 pub(super) fn share(expected: &[Vec<Expected>], budget: &ValidBudget) -> Vec<Option<Expected>> {
     let good = |e: &Expected| e.error <= budget.max_error;
     let fastest = |all: &[Expected], which: &dyn Fn(&Expected) -> bool| {

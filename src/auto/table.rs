@@ -19,7 +19,8 @@ pub const PIXELS: f64 = 512.0 * 384.0;
 /// The error and time of one candidate in one view.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measured {
-    /// The mean error of the visible fraction over the pixels in shadow and penumbra, 0 to 1, less the noise of the truth.
+    /// The mean error of the visible fraction over the pixels in shadow and penumbra, 0 to 1, less the noise of the
+    /// truth.
     pub error: f64,
     /// The time of the passes in light space, milliseconds.
     pub maps_ms: f64,

@@ -1,5 +1,5 @@
-//! Which effects a frame needs: those that change its image by more than an allowed error. The others are left out, each
-//! with a bound on the error that this adds.
+//! Which effects a frame needs: those that change its image by more than an allowed error. The others are left out,
+//! each with a bound on the error that this adds.
 //!
 //! ```text
 //!   Frame: boxes, light, camera ──► Situation ──► Verdicts    `ShadowNode::plan` leaves passes out by them,

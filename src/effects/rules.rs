@@ -1,7 +1,7 @@
 //! The effects that the node can simulate, one entry each: when it is needed, what leaving it out costs, and why.
 //!
-//! `docs/planner.md` shows the list and derives the bounds. A bound is of the mean error of the visible fraction over the
-//! pixels that shadow touches, beyond the error that the size of the maps' texels causes.
+//! `docs/planner.md` shows the list and derives the bounds. A bound is of the mean error of the visible fraction over
+//! the pixels that shadow touches, beyond the error that the size of the maps' texels causes.
 
 use super::Situation;
 use crate::graph::Why;
@@ -101,8 +101,8 @@ impl Case {
             .and(" edges in a pixel's width")
     }
 
-    /// Whether surfaces behind an occluder's front are needed, and the bound of leaving them out: no two surfaces of one
-    /// occluder are further apart than it is thick.
+    /// Whether surfaces behind an occluder's front are needed, and the bound of leaving them out: no two surfaces of
+    /// one occluder are further apart than it is thick.
     fn inside(&self) -> Judgement {
         let bound = if self.situation.overlap { 1.0 } else { self.situation.thickness };
         (self.exceeds(bound), bound)

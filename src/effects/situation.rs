@@ -1,4 +1,5 @@
-//! A description of a light, its occluders and its receivers, from their bounding boxes alone, before anything is drawn.
+//! A description of a light, its occluders and its receivers, from their bounding boxes alone, before anything is
+//! drawn.
 
 use crate::lent::{Geometry, MeshInstance};
 use crate::stages::depth_layers::{self, Eye, LightBox, MapView};
@@ -46,13 +47,13 @@ pub struct Situation {
     /// The width of the widest penumbra in pixels of the smallest size there; infinite where the camera is inside the
     /// region that may be shadowed.
     pub penumbra_pixels: f64,
-    /// The most shadow edges that a line of one metre may cross, estimated from the occluders' triangles as if they cover
-    /// a face of their box once; infinite where the triangles are not known.
+    /// The most shadow edges that a line of one metre may cross, estimated from the occluders' triangles as if they
+    /// cover a face of their box once; infinite where the triangles are not known.
     pub edges: f64,
     /// The most shadow edges across a pixel of the largest size there, 0 to 1.
     pub edges_a_pixel: f64,
-    /// The size of a map's texel at the furthest shadow, in pixels of the smallest size there; infinite where the camera is
-    /// inside the region. Every technique's edges are off by about this much.
+    /// The size of a map's texel at the furthest shadow, in pixels of the smallest size there; infinite where the
+    /// camera is inside the region. Every technique's edges are off by about this much.
     pub texel_pixels: f64,
     /// The smaller side of the map's view at the occluders' mean distance, metres.
     pub size: f64,
@@ -197,8 +198,8 @@ fn meet(a: &Window, b: &Window, texel: [f64; 2]) -> bool {
     (0..2).all(|i| a.1[i] + texel[i] >= b.0[i] && b.1[i] + texel[i] >= a.0[i])
 }
 
-/// The width of the smallest and of the largest pixel where shadows may fall, metres; 0 and infinity where the camera is
-/// inside that region.
+/// The width of the smallest and of the largest pixel where shadows may fall, metres; 0 and infinity where the camera
+/// is inside that region.
 ///
 /// A pixel at a point is 2w/(W |g|) wide, with w the point's clip coordinate, W the image's width and g the part of the
 /// gradient of clip x across the view. w is linear, so that its extremes over the frustum that may be shadowed lie at

@@ -39,8 +39,8 @@ pub struct Verdicts {
 impl Verdicts {
     /// Decides about each effect for a technique in a situation, which is `None` where nothing can be shadowed.
     ///
-    /// `max_error` is the most mean error, 0 to 1, that leaving out one effect may add; with `None` every effect that may
-    /// show is needed. `texture` says whether the light has a texture.
+    /// `max_error` is the most mean error, 0 to 1, that leaving out one effect may add; with `None` every effect that
+    /// may show is needed. `texture` says whether the light has a texture.
     pub fn judge(
         situation: Option<Situation>,
         room: &dyn Room,

@@ -62,8 +62,8 @@ impl Boxes {
                 self.occluder_alone.get_or_insert(index);
             }
             let [center, half] = around(mesh);
-            // Every number of the mesh enters one of these, so one that is not finite shows. Finite numbers may overflow
-            // on the way; `is_finite` then looks at the mesh itself.
+            // Every number of the mesh enters one of these, so one that is not finite shows. Finite numbers may
+            // overflow on the way; `is_finite` then looks at the mesh itself.
             let sound =
                 center.is_finite() && half.is_finite() && mesh.world_from_mesh.row(3).is_finite();
             if !(sound || is_finite(mesh)) {

@@ -1,5 +1,5 @@
-//! Doubts: what a frame says that can be meant, and seldom is. They are no errors. All follow from numbers that planning
-//! has looked at already, so that they cost microseconds and no memory.
+//! Doubts: what a frame says that can be meant, and seldom is. They are no errors. All follow from numbers that
+//! planning has looked at already, so that they cost microseconds and no memory.
 
 use super::camera::{Camera, Seen};
 use super::fit::Fit;

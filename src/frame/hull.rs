@@ -28,8 +28,9 @@ pub(super) struct Hull {
 }
 
 impl Hull {
-    /// The region around a light of half-extents `half` and the boxes of its receivers; `None` where no receiver lies in
-    /// front of the light. What of a receiver is further from the light's centre than `reach`, in metres, is cut off.
+    /// The region around a light of half-extents `half` and the boxes of its receivers; `None` where no receiver lies
+    /// in front of the light. What of a receiver is further from the light's centre than `reach`, in metres, is cut
+    /// off.
     pub fn new(half: [f64; 2], receivers: &[LightBox], reach: Option<f64>) -> Option<Self> {
         let reach = DVec3::splat(reach.unwrap_or(f64::INFINITY));
         let least = receivers.iter().fold(DVec3::INFINITY, |m, b| m.min(b.min)).max(-reach);

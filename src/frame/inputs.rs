@@ -1,5 +1,5 @@
-//! The numbers of a frame's passes and the effects it needs, made from a fit and the camera; and the situation of a light
-//! before a technique is chosen.
+//! The numbers of a frame's passes and the effects it needs, made from a fit and the camera; and the situation of a
+//! light before a technique is chosen.
 
 use super::boxes::MeshBoxes;
 use super::check::bad;

@@ -95,8 +95,8 @@ pub(crate) fn plan_with(
     Ok(plan)
 }
 
-/// Plans one frame into the memory of the light's earlier frames. The description has the frame's technique alone. After
-/// an error no node records the plan.
+/// Plans one frame into the memory of the light's earlier frames. The description has the frame's technique alone.
+/// After an error no node records the plan.
 pub(crate) fn plan_into(
     description: &Description,
     limits: Limits,

@@ -63,8 +63,8 @@ pub struct Description {
     pub technique: Technique,
     /// Which effects may be left out where they hardly matter; those that add less than 1/256 by default.
     pub omit: Omit,
-    /// Up to 7 further techniques that a frame may choose ([`Frame::technique_index`]), for lights that need another one
-    /// or other settings. Each has its own pipelines, maps and buffers, which the lights that choose it share.
+    /// Up to 7 further techniques that a frame may choose ([`Frame::technique_index`]), for lights that need another
+    /// one or other settings. Each has its own pipelines, maps and buffers, which the lights that choose it share.
     pub other_techniques: Vec<Technique>,
     /// The number of lights, 1 to 64. Each light has its own frames ([`Frame::light_index`]) and its own layer of the
     /// node's visibility image, which is an array image where there are several lights.
@@ -77,15 +77,16 @@ pub struct Description {
     pub mask_format: Option<vk::Format>,
     /// Whether the node's own images can be copied out, for tests and debuggers; off by default.
     pub inspect: bool,
-    /// The strides of vertex positions, in bytes, that the meshes have: multiples of 4 from 12, tightly packed, to 2048.
+    /// The strides of vertex positions, in bytes, that the meshes have: multiples of 4 from 12, tightly packed, to
+    /// 2048.
     pub position_strides: Vec<u32>,
     /// Whether the host lends the visibility image each frame ([`Visibility::Lent`]); otherwise the node owns one.
     pub lent_visibility: bool,
     /// The format of the occluder maps that the host draws itself and lends each frame ([`Frame::occluder_maps`]);
     /// `None` where the node draws meshes.
     pub occluder_maps: Option<vk::Format>,
-    /// The texture of the light's emission, which the host lends each frame ([`Frame::light_texture`]); `None` for a light
-    /// of uniform emission. Only `ray-march` accepts a texture.
+    /// The texture of the light's emission, which the host lends each frame ([`Frame::light_texture`]); `None` for a
+    /// light of uniform emission. Only `ray-march` accepts a texture.
     pub light_texture: Option<LightTexture>,
 }
 
@@ -130,8 +131,8 @@ impl Description {
         Ok(Cow::Owned(Self { technique, other_techniques: Vec::new(), ..self.clone() }))
     }
 
-    /// A description with the default technique, one light, a D32_SFLOAT G-buffer of `extent` pixels without a mask, two
-    /// frames in flight and tightly packed positions.
+    /// A description with the default technique, one light, a D32_SFLOAT G-buffer of `extent` pixels without a mask,
+    /// two frames in flight and tightly packed positions.
     pub fn new(extent: [u32; 2]) -> Self {
         Self {
             extent,
@@ -257,15 +258,14 @@ pub struct Frame<'a> {
     pub light_index: LightIndex,
     /// Which of the description's techniques the frame uses.
     pub technique_index: TechniqueIndex,
-    /// How far the light reaches from its centre, in metres above 0: the host lights nothing further away. Receivers and
-    /// occluders beyond it are left out. `None` for a light without limit.
+    /// How far the light reaches from its centre, in metres above 0: the host lights nothing further away. Receivers
+    /// and occluders beyond it are left out. `None` for a light without limit.
     pub reach: Option<f64>,
     /// Normalized device coordinates and depth to world space, for column vectors: `inverse(projection * view)`.
     ///
-    /// The first row of pixels lies at y = −1, as Vulkan has it; where a host's y runs up (wgpu, or a
-    /// viewport of negative height), it is `inverse(projection * view) * scale(1, -1, 1)`. "World" is whatever space the light
-    /// and the meshes' transforms are in: a host that keeps its numbers relative to the camera gives
-    /// all of them so.
+    /// The first row of pixels lies at y = −1, as Vulkan has it; where a host's y runs up (wgpu, or a viewport of
+    /// negative height), it is `inverse(projection * view) * scale(1, -1, 1)`. "World" is whatever space the light and
+    /// the meshes' transforms are in: a host that keeps its numbers relative to the camera gives all of them so.
     pub world_from_ndc: DMat4,
     /// The depth of pixels that show no surface: 0 with reversed depth, 1 otherwise. `None` derives it from
     /// [`Self::world_from_ndc`]: the end of depth that lies further from the eye. An orthographic camera has no eye, so
@@ -275,32 +275,34 @@ pub struct Frame<'a> {
     pub meshes: &'a [MeshInstance],
     /// The G-buffer's depth image, with SAMPLED usage.
     pub depth: HostImage,
-    /// The role of each pixel's mesh, with SAMPLED usage: red 1 blocks and receives, ½ receives only, 0 receives nothing.
+    /// The role of each pixel's mesh, with SAMPLED usage: red 1 blocks and receives, ½ receives only, 0 receives
+    /// nothing.
     pub mask: Option<HostImage>,
     /// The image that the result is written to.
     pub visibility: Visibility,
-    /// The host's own depth images of the occluders, exactly where [`Description::occluder_maps`] has a format for them.
-    /// [`Self::meshes`] then only says where receivers are.
+    /// The host's own depth images of the occluders, exactly where [`Description::occluder_maps`] has a format for
+    /// them. [`Self::meshes`] then only says where receivers are.
     pub occluder_maps: Option<OccluderMaps>,
-    /// The light's emission over its surface, exactly where [`Description::light_texture`] is given: an image of any size
-    /// with SAMPLED usage. The light's first half-axis points to its last column, the second half-axis to its first row.
+    /// The light's emission over its surface, exactly where [`Description::light_texture`] is given: an image of any
+    /// size with SAMPLED usage. The light's first half-axis points to its last column, the second half-axis to its
+    /// first row.
     pub light_texture: Option<HostImage>,
     /// The occluder map's window: its least and largest tangents (u, v). `None` fits the map to the occluders.
     /// `many-lights` always fits its maps, and so does `ray-march` unless `projection=centre`.
     pub window: Option<[[f64; 2]; 2]>,
-    /// Is added to the seed of `ray-march`'s noise. A number that changes each frame lets later passes average the noise
-    /// over frames; 0 keeps the noise as it is.
+    /// Is added to the seed of `ray-march`'s noise. A number that changes each frame lets later passes average the
+    /// noise over frames; 0 keeps the noise as it is.
     pub noise: u32,
     /// The revision of light and meshes relative to each other: geometry, transforms, roles, lent occluder maps,
     /// [`Self::reach`] and [`Self::window`]. While the host gives the same number, the node reuses the maps that it has
-    /// drawn. `None` where anything may have changed. A recorded frame counts as drawn: submit it, and before the frames
-    /// recorded after it.
+    /// drawn. `None` where anything may have changed. A recorded frame counts as drawn: submit it, and before the
+    /// frames recorded after it.
     pub revision: Option<u64>,
-    /// The revision of what the pixels show: camera, G-buffer, [`Self::noise`], and how the host uses the result. Where both
-    /// revisions are those of the last frame, the node's own visibility image stays as it is and no pass runs.
+    /// The revision of what the pixels show: camera, G-buffer, [`Self::noise`], and how the host uses the result. Where
+    /// both revisions are those of the last frame, the node's own visibility image stays as it is and no pass runs.
     pub view_revision: Option<u64>,
-    /// Which of the frames in flight this is. The device must have completed the last frame of the same slot before this
-    /// one is recorded.
+    /// Which of the frames in flight this is. The device must have completed the last frame of the same slot before
+    /// this one is recorded.
     pub slot: Slot,
     /// Whether node or host records the barriers before and after the node.
     pub border_barriers: BorderBarriers,

@@ -20,8 +20,8 @@ pub(super) struct Odd {
 }
 
 impl Odd {
-    /// Looks at the meshes of a frame. `none_before` says whether no occluder, and no receiver, lies before the light and
-    /// within its reach; meshes are looked at one by one only in these cases.
+    /// Looks at the meshes of a frame. `none_before` says whether no occluder, and no receiver, lies before the light
+    /// and within its reach; meshes are looked at one by one only in these cases.
     pub fn of(frame: &Frame, boxes: &Boxes, none_before: [bool; 2]) -> Self {
         let [no_occluder, no_receiver] = none_before;
         let lent = frame.occluder_maps.is_some();

@@ -78,7 +78,8 @@ pub(super) struct Needs {
     pub filter: Need<Why>,
 }
 
-/// Whether a hard shadow may replace the technique's penumbra. It cannot where the image holds a fraction for each color.
+/// Whether a hard shadow may replace the technique's penumbra. It cannot where the image holds a fraction for each
+/// color.
 fn hardens(description: &Description) -> bool {
     description.technique.room().shows().penumbra && !description.has_color()
 }

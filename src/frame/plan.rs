@@ -104,32 +104,34 @@ impl FramePlan {
     }
 
     /// Everything in the frame that looks like a mistake and may be meant, such as a camera that shows the world
-    /// mirrored; a frame that is in order has no doubts. Each [`Doubt`] is a sentence, and [`Self::explain`] begins with
-    /// them.
+    /// mirrored; a frame that is in order has no doubts. Each [`Doubt`] is a sentence, and [`Self::explain`] begins
+    /// with them.
     pub fn doubts(&self) -> &[Doubt] {
         self.sight.doubts()
     }
 
-    /// A report for people: the doubts, which passes run and why, which do not and why not, how the camera is understood,
-    /// and which effects are simulated or left out, with a bound on the error of each that is left out.
+    /// A report for people: the doubts, which passes run and why, which do not and why not, how the camera is
+    /// understood, and which effects are simulated or left out, with a bound on the error of each that is left out.
     pub fn explain(&self) -> String {
         let doubts: String =
             self.doubts().iter().map(|doubt| format!("doubt: {doubt}\n")).collect();
         format!("{doubts}{}\n{}\n{}", self.plan.table(), self.sight, self.verdicts)
     }
 
-    /// The barriers to record before the node, for a host that chose [`BorderBarriers::Host`](super::BorderBarriers::Host).
+    /// The barriers to record before the node, for a host that chose
+    /// [`BorderBarriers::Host`](super::BorderBarriers::Host).
     pub fn entry_barriers(&self) -> impl Iterator<Item = ImageBarrier> + '_ {
         self.accesses.iter().filter_map(HostAccess::entry_barrier)
     }
 
-    /// The barriers to record after the node, for a host that chose [`BorderBarriers::Host`](super::BorderBarriers::Host).
+    /// The barriers to record after the node, for a host that chose
+    /// [`BorderBarriers::Host`](super::BorderBarriers::Host).
     pub fn exit_barriers(&self) -> impl Iterator<Item = ImageBarrier> + '_ {
         self.accesses.iter().filter_map(HostAccess::exit_barrier)
     }
 
-    /// The vertex and index buffers that this frame reads, each once. The node records no barrier for them: the host must
-    /// make what it wrote to them visible to these scopes.
+    /// The vertex and index buffers that this frame reads, each once. The node records no barrier for them: the host
+    /// must make what it wrote to them visible to these scopes.
     pub fn buffer_accesses(&self) -> Vec<BufferAccess> {
         accesses::of_buffers(self.occluders.meshes.iter().chain(&self.receivers.meshes))
     }

@@ -16,8 +16,8 @@ pub(crate) struct GraphObjects {
     pub kinds: Vec<PassObjects>,
     pub labels: Vec<CString>,
     pub descriptors: Descriptors,
-    /// The number of Vulkan objects that the node's owner does not keep one by one: descriptor sets, which are freed with
-    /// their pool, and layouts that nodes share.
+    /// The number of Vulkan objects that the node's owner does not keep one by one: descriptor sets, which are freed
+    /// with their pool, and layouts that nodes share.
     pub unowned: usize,
 }
 
@@ -45,8 +45,8 @@ impl GraphObjects {
         })
     }
 
-    /// Whether all objects but images and buffers can stay for `graph`, which has the same passes: no attachment changes its
-    /// shape.
+    /// Whether all objects but images and buffers can stay for `graph`, which has the same passes: no attachment
+    /// changes its shape.
     pub fn keeps_pipelines(&self, graph: &Graph) -> bool {
         let rasters = graph.passes().iter().filter(|p| matches!(p.work, Work::Raster { .. }));
         rasters.flat_map(Pass::writes).all(|id| !self.objects.changes(graph, id))

@@ -54,8 +54,8 @@ impl Host {
         }
     }
 
-    /// Makes an allocator on the host's device, for hosts that have none of their own. The caller must drop it before the
-    /// device is destroyed.
+    /// Makes an allocator on the host's device, for hosts that have none of their own. The caller must drop it before
+    /// the device is destroyed.
     ///
     /// # Errors
     /// [`Error::Memory`] where it cannot be made.
@@ -91,9 +91,9 @@ impl Host {
         self
     }
 
-    /// Makes the node share its passes' layouts with other nodes on this device, so that a driver which looks up compiled
-    /// pipelines by their layout finds those of an earlier node. Call [`SharedLayouts::destroy`] after all of these nodes
-    /// are destroyed and before the device is.
+    /// Makes the node share its passes' layouts with other nodes on this device, so that a driver which looks up
+    /// compiled pipelines by their layout finds those of an earlier node. Call [`SharedLayouts::destroy`] after all of
+    /// these nodes are destroyed and before the device is.
     #[must_use]
     pub fn with_layouts(mut self, layouts: Arc<SharedLayouts>) -> Self {
         self.layouts = Some(layouts);

@@ -57,8 +57,8 @@ impl PassLayouts {
 /// equal bindings and push constants share a pair.
 ///
 /// A host that creates nodes again and again passes this to each of them with [`super::Host::with_layouts`].
-/// SwiftShader's pipeline cache looks up compiled code by the layout object as well as the shader, and so finds nothing for
-/// a node with layouts of its own.
+/// SwiftShader's pipeline cache looks up compiled code by the layout object as well as the shader, and so finds nothing
+/// for a node with layouts of its own.
 #[derive(Default)]
 pub struct SharedLayouts(Mutex<(HashMap<Key, PassLayouts>, ObjectOwner)>);
 

@@ -52,14 +52,14 @@ impl NodeObjects {
         (slot.0 * self.lights + light.0) as usize
     }
 
-    /// Whether all objects but images and buffers can stay for `graphs`, which have the same passes: no attachment changes
-    /// its shape.
+    /// Whether all objects but images and buffers can stay for `graphs`, which have the same passes: no attachment
+    /// changes its shape.
     pub fn keeps_pipelines(&self, graphs: &[Graph]) -> bool {
         self.settings.iter().zip(graphs).all(|(settings, graph)| settings.keeps_pipelines(graph))
     }
 
-    /// Replaces the visibility image, and the images and buffers whose shape differs in `graphs`, and returns the owner of
-    /// the old ones. Where that fails, nothing changes.
+    /// Replaces the visibility image, and the images and buffers whose shape differs in `graphs`, and returns the owner
+    /// of the old ones. Where that fails, nothing changes.
     pub fn resize(
         &mut self,
         host: &Host,
@@ -128,8 +128,8 @@ impl NodeObjects {
         .record(plan);
     }
 
-    /// The render pass of a kind of pass of one of the techniques, and the size of its attachments; `None` for a kind that
-    /// draws nothing.
+    /// The render pass of a kind of pass of one of the techniques, and the size of its attachments; `None` for a kind
+    /// that draws nothing.
     pub fn render_pass(
         &self,
         TechniqueIndex(settings): TechniqueIndex,

@@ -58,8 +58,8 @@ impl Objects {
         Self::default().resized(maker, graph, inspect)
     }
 
-    /// The objects for `graph`, which has the same resources: those of unchanged shape are shared with `self`, the others
-    /// are created.
+    /// The objects for `graph`, which has the same resources: those of unchanged shape are shared with `self`, the
+    /// others are created.
     pub fn resized(&self, maker: &mut Maker, graph: &Graph, inspect: bool) -> Result<Self, Error> {
         let ids = (0..graph.resources().len()).map(|index| graph.id(index));
         let backed = ids.map(|id| match self.0.get(id.index()) {

@@ -22,8 +22,8 @@ const BATCH: usize = 16;
 /// A mesh that the host draws with its own pipeline, inside a pass of the node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HostDraw {
-    /// The command buffer, inside the layer's render pass. The callback binds its pipeline and draws; it neither ends the
-    /// render pass nor leaves queries open.
+    /// The command buffer, inside the layer's render pass. The callback binds its pipeline and draws; it neither ends
+    /// the render pass nor leaves queries open.
     pub cmd: vk::CommandBuffer,
     /// The number that [`Geometry::HostDrawn`] gave the mesh.
     pub mesh: u64,
@@ -273,7 +273,8 @@ impl Recorder<'_> {
         }
     }
 
-    /// The object of a resource: the one the host lends for this frame, the visibility image, or one of the technique's.
+    /// The object of a resource: the one the host lends for this frame, the visibility image, or one of the
+    /// technique's.
     fn object_of(&self, frame: &FramePlan, id: ResourceId) -> Object {
         if let Some((_, host)) = frame.imports.iter().find(|(r, _)| *r == id) {
             return Object::Image { image: host.image, view: host.view };
@@ -284,7 +285,8 @@ impl Recorder<'_> {
         }
     }
 
-    /// The layers that a barrier for a resource covers: the light's layer of the visibility image, all layers of others.
+    /// The layers that a barrier for a resource covers: the light's layer of the visibility image, all layers of
+    /// others.
     fn range(&self, frame: &FramePlan, id: ResourceId) -> vk::ImageSubresourceRange {
         let aspect = graph::aspects(frame.plan.graph.resource(id).shape);
         match self.result.filter(|_| id == frame.visibility) {

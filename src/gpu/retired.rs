@@ -5,8 +5,8 @@ use super::memory::Allocator;
 use super::owner::ObjectOwner;
 use std::collections::VecDeque;
 
-/// The objects that a resize or a reconfiguration replaced. They must live until the device has completed the frames that
-/// use them.
+/// The objects that a resize or a reconfiguration replaced. They must live until the device has completed the frames
+/// that use them.
 #[must_use = "destroy it once the frames recorded before are done, or its memory is lost"]
 pub struct Retired {
     host: Host,

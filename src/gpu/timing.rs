@@ -108,8 +108,8 @@ impl Timing {
         };
     }
 
-    /// The kinds of pass that were recorded last at a place, in the order of their first passes, each with the milliseconds
-    /// of all of its passes; `None` until the device has completed them.
+    /// The kinds of pass that were recorded last at a place, in the order of their first passes, each with the
+    /// milliseconds of all of its passes; `None` until the device has completed them.
     pub fn read(&self, host: &Host, place: usize) -> Option<Vec<(usize, f64)>> {
         let recorded = self.recorded.get(place)?;
         let count = recorded.count.load(Ordering::Relaxed) as usize;

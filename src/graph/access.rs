@@ -70,8 +70,8 @@ impl Scope {
         vk::ImageLayout::UNDEFINED,
     );
     /// Whatever comes next, in whatever layout the node leaves the image: `ALL_COMMANDS`, no access, `UNDEFINED`. For
-    /// `after`, where the host's next use clears the image or places a barrier of its own. What comes next waits for the
-    /// node, and may not read what the node wrote without that barrier.
+    /// `after`, where the host's next use clears the image or places a barrier of its own. What comes next waits for
+    /// the node, and may not read what the node wrote without that barrier.
     pub const ANY: Self = Self::of(
         vk::PipelineStageFlags::ALL_COMMANDS,
         vk::AccessFlags::empty(),
@@ -231,7 +231,8 @@ impl Access {
         }
     }
 
-    /// The type of descriptor that a shader accesses the resource through; `None` for attachments and indirect arguments.
+    /// The type of descriptor that a shader accesses the resource through; `None` for attachments and indirect
+    /// arguments.
     pub fn descriptor(self) -> Option<vk::DescriptorType> {
         match self {
             Self::SampledCompute | Self::SampledFragment => Some(vk::DescriptorType::SAMPLED_IMAGE),

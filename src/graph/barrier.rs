@@ -1,8 +1,8 @@
 //! The barriers between accesses, derived by a pure function.
 //!
-//! Each resource has a [`State`]: its last write, the stages that the write is visible to, the stages that have read since,
-//! and an image's layout. [`State::touch`] advances the state by the next use and returns the barrier that this use needs,
-//! if any. There are four cases:
+//! Each resource has a [`State`]: its last write, the stages that the write is visible to, the stages that have read
+//! since, and an image's layout. [`State::touch`] advances the state by the next use and returns the barrier that this
+//! use needs, if any. There are four cases:
 //!
 //! | next use | after | needs |
 //! |---|---|---|

@@ -64,8 +64,8 @@ impl Graph {
         self.add(Resource { name, shape, owner })
     }
 
-    /// Declares a transient array image of at least one layer. Shaders see all of its layers, and a barrier covers all of
-    /// them.
+    /// Declares a transient array image of at least one layer. Shaders see all of its layers, and a barrier covers all
+    /// of them.
     pub fn image_array(
         &mut self,
         name: &'static str,
@@ -77,7 +77,8 @@ impl Graph {
         self.add(Resource { name, shape, owner: Owner::Transient })
     }
 
-    /// Declares a transient buffer of at least 16 bytes: a buffer that small maps leave empty has to be bound all the same.
+    /// Declares a transient buffer of at least 16 bytes: a buffer that small maps leave empty has to be bound all the
+    /// same.
     pub fn buffer(&mut self, name: &'static str, bytes: u64) -> ResourceId {
         let shape = Shape::Buffer { bytes: bytes.max(16) };
         self.add(Resource { name, shape, owner: Owner::Transient })
@@ -139,8 +140,8 @@ impl Graph {
         self.firsts.reserve(other.firsts.len());
     }
 
-    /// Whether two graphs differ in push constants, grids and reasons alone: then they run the same passes behind the same
-    /// barriers.
+    /// Whether two graphs differ in push constants, grids and reasons alone: then they run the same passes behind the
+    /// same barriers.
     #[cfg(test)]
     pub(super) fn differs_in_numbers_alone(&self, other: &Self) -> bool {
         let same = |(a, b): (&Pass, &Pass)| a.does_work_of(b) && a.need.is_yes() == b.need.is_yes();
@@ -168,8 +169,8 @@ impl Graph {
         self.passes.push(pass);
     }
 
-    /// The kind of the pass at an index: passes of one name are of one kind, counted from 0 in the order in which names first
-    /// appear.
+    /// The kind of the pass at an index: passes of one name are of one kind, counted from 0 in the order in which names
+    /// first appear.
     pub fn kind_of(&self, place: usize) -> usize {
         usize::from(self.kinds[place])
     }

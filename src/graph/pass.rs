@@ -188,7 +188,8 @@ impl Work {
     }
 }
 
-/// Refers to a reason of one [`Graph`](super::Graph), which passes may share; [`Graph::why`](super::Graph::why) returns it.
+/// Refers to a reason of one [`Graph`](super::Graph), which passes may share; [`Graph::why`](super::Graph::why) returns
+/// it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Reason(pub(super) u16);
 

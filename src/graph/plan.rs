@@ -23,11 +23,11 @@ pub struct BoundaryUse {
     pub resource: ResourceId,
     /// The resource's name in the graph.
     pub name: &'static str,
-    /// The scope of the node's first use, or of all its uses where it only reads, with the layout that the resource must
-    /// be in then.
+    /// The scope of the node's first use, or of all its uses where it only reads, with the layout that the resource
+    /// must be in then.
     pub entry: Scope,
-    /// The scope of the node's last uses, with the layout that the resource is left in; where the node records the host's
-    /// barriers, the scope of the host's next use.
+    /// The scope of the node's last uses, with the layout that the resource is left in; where the node records the
+    /// host's barriers, the scope of the host's next use.
     pub exit: Scope,
     /// Whether the node writes the resource.
     pub writes: bool,
@@ -107,8 +107,8 @@ impl Plan {
 
 /// Drops passes that are not needed or whose output nobody reads, and derives the barriers.
 ///
-/// `borders` has the host's uses of shared resources before and after the node. With `place_borders` the plan contains the
-/// barriers against these uses too; without, the host records them from [`Plan::boundary`].
+/// `borders` has the host's uses of shared resources before and after the node. With `place_borders` the plan contains
+/// the barriers against these uses too; without, the host records them from [`Plan::boundary`].
 ///
 /// # Errors
 /// [`Error::Frame`] where a pass reads a resource that no pass has written, uses a resource that it writes twice, or does
@@ -135,8 +135,9 @@ pub(crate) struct Compiler {
 }
 
 impl Compiler {
-    /// Compiles a graph into a plan of an earlier frame, and exchanges the two graphs; see [`compile`]. Where the caller
-    /// knows that both differ in numbers alone (`same`), the steps stay as they are. After an error the plan is of no frame.
+    /// Compiles a graph into a plan of an earlier frame, and exchanges the two graphs; see [`compile`]. Where the
+    /// caller knows that both differ in numbers alone (`same`), the steps stay as they are. After an error the plan is
+    /// of no frame.
     ///
     /// # Errors
     /// See [`compile`].

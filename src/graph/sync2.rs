@@ -40,8 +40,9 @@ const ACCESSES: [(AccessFlags2, vk::AccessFlags); 2] = [
 ];
 
 impl From<(PipelineStageFlags2, AccessFlags2, ImageLayout)> for Scope {
-    /// Converts into the equal use of version 1, or one that covers it: `COPY` becomes `TRANSFER`, `SHADER_SAMPLED_READ` becomes `SHADER_READ`,
-    /// no stage becomes `TOP_OF_PIPE`, and what version 1 has no word for becomes all stages and all accesses.
+    /// Converts into the equal use of version 1, or one that covers it: `COPY` becomes `TRANSFER`,
+    /// `SHADER_SAMPLED_READ` becomes `SHADER_READ`, no stage becomes `TOP_OF_PIPE`, and what version 1 has no word for
+    /// becomes all stages and all accesses.
     ///
     /// `SYNCHRONIZATION_2`'s layouts `ATTACHMENT_OPTIMAL` and `READ_ONLY_OPTIMAL` stay what they are, and need that
     /// feature of the host's device.

@@ -1,5 +1,5 @@
-//! The reason why a pass runs or does not, kept as words and numbers. They become text when it is shown, so that planning
-//! a frame formats none.
+//! The reason why a pass runs or does not, kept as words and numbers. They become text when it is shown, so that
+//! planning a frame formats none.
 
 use std::fmt;
 

@@ -134,9 +134,9 @@ fn apart([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> f64 {
 }
 
 impl RectangleLight {
-    /// The smallest rectangle around a polygon, and the polygon's corners in its light space: a light of any
-    /// outline, for [`Light::with_outline`](super::Light::with_outline) (Heidrich, Brabec and Seidel 2000 section 4 has polygons as
-    /// their edges).
+    /// The smallest rectangle around a polygon, and the polygon's corners in its light space: a light of any outline,
+    /// for [`Light::with_outline`](super::Light::with_outline) (Heidrich, Brabec and Seidel 2000 section 4 has polygons
+    /// as their edges).
     ///
     /// `corners` are 3 to 16 points of one plane in world space, in metres, in order; the polygon need not be
     /// convex. It shines to the side from which they run counter-clockwise, as a glTF triangle faces. The

@@ -21,8 +21,8 @@ pub struct VisibilityImage {
     /// R32_SFLOAT, or R32G32B32A32_SFLOAT where the description asks for color; usage STORAGE | SAMPLED |
     /// TRANSFER_SRC.
     pub image: vk::Image,
-    /// A view of the whole image: 2D with one light, a 2D array with several. [`crate::ShadowNode::visibility_layer`] has
-    /// a view of each layer.
+    /// A view of the whole image: 2D with one light, a 2D array with several. [`crate::ShadowNode::visibility_layer`]
+    /// has a view of each layer.
     pub view: vk::ImageView,
     /// The image's width and height in pixels: those of the G-buffer.
     pub extent: [u32; 2],

@@ -212,8 +212,8 @@ pub fn normalized(object: &Scene, light: RectangleLight) -> Result<Scene, Error>
 }
 
 impl Scene {
-    /// The scene with `role` for every instance whose role is `Occluder`: with `Both` they receive shadows too, their own
-    /// included.
+    /// The scene with `role` for every instance whose role is `Occluder`: with `Both` they receive shadows too, their
+    /// own included.
     pub fn with_occluders_as(mut self, role: Role) -> Self {
         for instance in self.instances.iter_mut().filter(|i| i.role == Role::Occluder) {
             instance.role = role;
@@ -221,7 +221,8 @@ impl Scene {
         self
     }
 
-    /// The scene with its first light cut to a polygon, as the field [`AreaLight::outline`](field@AreaLight::outline) has it.
+    /// The scene with its first light cut to a polygon, as the field [`AreaLight::outline`](field@AreaLight::outline)
+    /// has it.
     pub fn with_outline(mut self, outline: Vec<[f64; 2]>) -> Self {
         if let Some(light) = self.lights.first_mut() {
             light.outline = outline;

@@ -134,8 +134,8 @@ impl ExactLine {
         self.of_point(frame, from, offset, hidden)
     }
 
-    /// The visible fraction from a point relative to the blockers' origin. What lies within `panel` of the light's plane, be
-    /// it the point or a triangle, counts as in it.
+    /// The visible fraction from a point relative to the blockers' origin. What lies within `panel` of the light's
+    /// plane, be it the point or a triangle, counts as in it.
     fn of_point(
         &self,
         frame: &Frame,

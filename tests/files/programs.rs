@@ -1,4 +1,5 @@
-//! No test is left out: each file of a program's folder is a module of it, and each folder with a `main.rs` is a program.
+//! No test is left out: each file of a program's folder is a module of it, and each folder with a `main.rs` is a
+//! program.
 
 use antumbra_tests::example::root;
 use std::fs;

@@ -247,8 +247,8 @@ fn memory_is_a_multiple_of_the_buffers_length_too() {
 /// Where Debian's package assimp-testmodels puts them.
 const MODELS: &str = "/usr/share/assimp/models";
 
-/// How many of them load at least: 27 of the 53 of version 5.2.5. The others are broken on purpose, of glTF 1.0, without a
-/// triangle or compressed.
+/// How many of them load at least: 27 of the 53 of version 5.2.5. The others are broken on purpose, of glTF 1.0,
+/// without a triangle or compressed.
 const LOAD: usize = 27;
 
 /// The glTF files in a folder and those in it, in order.

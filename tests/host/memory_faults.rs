@@ -1,5 +1,5 @@
-//! An allocator that fails, at each of its calls: an error that names what the piece was for, every piece comes back, and
-//! what was there before is as it was, to the bit.
+//! An allocator that fails, at each of its calls: an error that names what the piece was for, every piece comes back,
+//! and what was there before is as it was, to the bit.
 //!
 //! The device is under the validation layer: an object that nobody destroyed is told when it is.
 

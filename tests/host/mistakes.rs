@@ -1,5 +1,5 @@
-//! Mistakes that hosts make, one a test: each is refused by a sentence, doubted in `FramePlan::doubts` and `explain`, told
-//! by the validation layer, or documented where nothing can be known.
+//! Mistakes that hosts make, one a test: each is refused by a sentence, doubted in `FramePlan::doubts` and `explain`,
+//! told by the validation layer, or documented where nothing can be known.
 //!
 //! 1 to 13 are refused, 14 to 17 the validation layer's, and 18 to 26 are those that give a wrong image and no error.
 

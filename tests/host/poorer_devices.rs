@@ -1,4 +1,5 @@
-//! Devices that have less than the drivers here: what they can do is the same to the bit, and what they cannot is refused.
+//! Devices that have less than the drivers here: what they can do is the same to the bit, and what they cannot is
+//! refused.
 //!
 //! They are these drivers, which say less of themselves; that no row asks for more than every device has is held by
 //! `tests/limits/row_limits.rs`.
@@ -46,8 +47,8 @@ fn image(stage: &mut Stage) -> (Vec<f32>, bool) {
 }
 
 /// Each technique's image on the device as it is, and as poorer devices: without blending of floats; with the least
-/// limits of all, and the driver's own sub-pixel bits, by which surfaces stand off the planes that they shadow; and with
-/// the four bits that every device has, for a card that is nowhere near the ground that it shadows.
+/// limits of all, and the driver's own sub-pixel bits, by which surfaces stand off the planes that they shadow; and
+/// with the four bits that every device has, for a card that is nowhere near the ground that it shadows.
 #[test]
 fn what_poorer_devices_can_do_is_the_same() {
     let device = TestDevice::through(POORER);

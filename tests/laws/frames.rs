@@ -44,8 +44,8 @@ fn bits(image: &[f32]) -> Vec<u32> {
     image.iter().map(|v| v.to_bits()).collect()
 }
 
-/// One node a way, which sees one scene after the other: the same bits twice and from another node, within bounds and up
-/// to both, nothing where nothing blocks, and nothing on what receives nothing.
+/// One node a way, which sees one scene after the other: the same bits twice and from another node, within bounds and
+/// up to both, nothing where nothing blocks, and nothing on what receives nothing.
 #[test]
 fn every_way_keeps_the_laws() {
     let device = device();

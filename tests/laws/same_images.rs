@@ -3,8 +3,8 @@
 //! `tests/laws/same_images.txt` records a hash and a mean visible fraction for each device and case. A device that it
 //! records must give the same hashes; any other device must give the same means, to [`TOLERANCE`].
 //!
-//! `ANTUMBRA_WRITE_IMAGES=1 cargo test --workspace --test laws same_images` writes the lines of the device at hand anew and
-//! keeps those of other devices.
+//! `ANTUMBRA_WRITE_IMAGES=1 cargo test --workspace --test laws same_images` writes the lines of the device at hand anew
+//! and keeps those of other devices.
 
 // What the driver calls its version is queried from Vulkan itself.
 #![allow(unsafe_code)]

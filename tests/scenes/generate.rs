@@ -34,8 +34,8 @@ fn at(p: [f32; 3]) -> DVec3 {
     DVec3::from_array(p.map(f64::from))
 }
 
-/// Checks a mesh: its normals have unit length, its indices are in range, and its triangles have an area and face the way
-/// their normals point.
+/// Checks a mesh: its normals have unit length, its indices are in range, and its triangles have an area and face the
+/// way their normals point.
 fn check_mesh(name: &str, mesh: &Mesh) {
     assert_eq!(mesh.positions.len(), mesh.normals.len(), "{name}");
     assert!(mesh.indices.len().is_multiple_of(3) && !mesh.indices.is_empty(), "{name}");

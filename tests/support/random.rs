@@ -370,7 +370,8 @@ pub fn times() -> f64 {
     }
 }
 
-/// Runs a law on so many cases times [`times`], the same each time for a seed, and panics with the smallest that breaks it.
+/// Runs a law on so many cases times [`times`], the same each time for a seed, and panics with the smallest that breaks
+/// it.
 ///
 /// # Panics
 /// Where a case does.

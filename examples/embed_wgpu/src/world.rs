@@ -63,8 +63,8 @@ pub struct View {
 }
 
 impl View {
-    /// The matrix from pixels and depth to the world, with y as in Vulkan and so in the node: y runs down, and row 0 of the
-    /// image lies at −1.
+    /// The matrix from pixels and depth to the world, with y as in Vulkan and so in the node: y runs down, and row 0 of
+    /// the image lies at −1.
     pub fn world_from_ndc(&self) -> DMat4 {
         (down_from_up() * self.clip_from_world).inverse()
     }

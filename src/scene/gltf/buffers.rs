@@ -24,7 +24,8 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
     GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
 );
 
-/// Splits a file into its JSON and, for a .glb, its binary chunk. The content decides which of the two it is, not the name.
+/// Splits a file into its JSON and, for a .glb, its binary chunk. The content decides which of the two it is, not the
+/// name.
 pub(super) fn split(file: &[u8]) -> Result<(&[u8], Option<&[u8]>), Problem> {
     let Some(rest) = file.strip_prefix(b"glTF") else { return Ok((file, None)) };
     let (version, rest) = word(rest).ok_or("its .glb header is cut off")?;

@@ -71,8 +71,8 @@ pub fn from_gltf(path: &Path) -> Result<Scene, Error> {
     from_gltf_bytes(&bytes, path)
 }
 
-/// Reads a glTF file that is in memory already, perhaps from an archive; see [`from_gltf`]. Errors name it by `path`, in whose
-/// folder buffer files are looked for; no file has to exist at `path`.
+/// Reads a glTF file that is in memory already, perhaps from an archive; see [`from_gltf`]. Errors name it by `path`,
+/// in whose folder buffer files are looked for; no file has to exist at `path`.
 ///
 /// # Errors
 /// See [`from_gltf`].
@@ -164,8 +164,8 @@ impl<'a> Meshes<'a> {
         }
     }
 
-    /// The range of the scene's meshes that hold the triangles of `meshes[index]`; `owner` is the node that places it, which
-    /// errors name.
+    /// The range of the scene's meshes that hold the triangles of `meshes[index]`; `owner` is the node that places it,
+    /// which errors name.
     fn find(
         &mut self,
         index: usize,

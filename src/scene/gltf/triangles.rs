@@ -251,8 +251,8 @@ struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// The number of vertices that the primitive's triangles may share; 0 with flat normals, which differ from triangle to
-    /// triangle.
+    /// The number of vertices that the primitive's triangles may share; 0 with flat normals, which differ from triangle
+    /// to triangle.
     fn shared(&self) -> usize {
         if self.normals.is_some() { self.positions.len() } else { 0 }
     }

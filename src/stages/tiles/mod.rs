@@ -19,8 +19,8 @@
 //! hierarchy's nodes that the light's window touches, and 64 values written where it is lit. A pixel that finds by
 //! itself that it is lit fetches 13 depths for its normal, and four pixels share a query of the nodes.
 //!
-//! Measured in 640×480 (`benches/techniques`): sorting takes 5 to 15 ms, where the passes without it take 55 to 5000; with
-//! tiles of 4×4 and of 16×16 pixels the sums are within a tenth of each other.
+//! Measured in 640×480 (`benches/techniques`): sorting takes 5 to 15 ms, where the passes without it take 55 to 5000;
+//! with tiles of 4×4 and of 16×16 pixels the sums are within a tenth of each other.
 //!
 //! The order of the list is up to the device, but the image is not: each tile writes only its own pixels.
 

@@ -9,7 +9,8 @@ pub enum Receivers {
     /// At the G-buffer's pixels, self-shadowing included.
     #[default]
     Pixels,
-    /// At the texels of a soft shadow map, which is projected onto the pixels; occluders do not receive from themselves.
+    /// At the texels of a soft shadow map, which is projected onto the pixels; occluders do not receive from
+    /// themselves.
     Map,
 }
 
@@ -51,8 +52,8 @@ choices! { Accumulate: "gather" => Gather, "blend" => Blend, "blend-fp16" => Ble
 /// The knobs of soft shadow maps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// The occluder map's side, texels, 1 to 4096; 128 by default. With 256 the median error of twelve scenes is 1.1 % instead
-    /// of 1.3, in twice the time (`docs/accuracy.md`).
+    /// The occluder map's side, texels, 1 to 4096; 128 by default. With 256 the median error of twelve scenes is 1.1 %
+    /// instead of 1.3, in twice the time (`docs/accuracy.md`).
     pub map: u32,
     /// The soft shadow map's side, texels, 1 to 4096; 256 by default. Unused at the pixels.
     pub receiver_map: u32,

@@ -42,8 +42,8 @@ impl Sampling {
         Ok(Self { side, grids: 2, seed, position_error: 0.0 })
     }
 
-    /// Sampling with one grid of `side` × `side` strata for each receiver, 1..=1024: 1, 4, 16, 64 rays are what a renderer
-    /// would send. Its noise cannot be estimated ([`super::Estimate::half_difference`] is NaN).
+    /// Sampling with one grid of `side` × `side` strata for each receiver, 1..=1024: 1, 4, 16, 64 rays are what a
+    /// renderer would send. Its noise cannot be estimated ([`super::Estimate::half_difference`] is NaN).
     ///
     /// # Errors
     /// [`Error::Setting`] for a side outside the range.

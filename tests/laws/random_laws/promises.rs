@@ -30,9 +30,9 @@ pub const ONE_TEXEL: f64 = 0.5;
 /// And how many of all pixels of a law's images: that happens in fewer than one image in fifty.
 pub const FEW_TEXELS: f64 = 2e-3;
 
-/// The same under mirrors. A raster that moves vertices by up to 2⁻⁴ texels (four bits are what Vulkan asks for) need not
-/// move them the other way there: of the texels at an edge one in 16 is won or lost, and 4/24 of a map of 24² are at
-/// the edge of what fills it.
+/// The same under mirrors. A raster that moves vertices by up to 2⁻⁴ texels (four bits are what Vulkan asks for) need
+/// not move them the other way there: of the texels at an edge one in 16 is won or lost, and 4/24 of a map of 24² are
+/// at the edge of what fills it.
 pub const FEW_TEXELS_MIRRORED: f64 = 4.0 / 24.0 / 16.0;
 
 /// How an image of the same scene differs, turned, mirrored or seen with other random numbers.
