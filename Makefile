@@ -52,7 +52,7 @@ test_once := $(CARGO) test --workspace --lib $(patsubst %,--test %,$(filter-out 
 # The embed example's own tests are what the node says to an engine that gets something wrong.
 test_on_device := $(CARGO) test --workspace $(patsubst %,--test %,$(filter-out $(once),$(programs))) --example embed
 # Cargo must not look for the job server of the make above.
-without_make := env -u MAKEFLAGS
+without_make := env -u MAKEFLAGS -u MFLAGS
 
 # Beside the installed drivers; a device must still be chosen by its name.
 SWIFTSHADER := VK_ADD_DRIVER_FILES=$(CURDIR)/.drivers/vk_swiftshader_icd.json
