@@ -7,7 +7,7 @@
 
 use super::host::Host;
 use super::maker::Maker;
-use super::objects::Object;
+use super::objects::{Object, name};
 use super::pipeline::PassObjects;
 use crate::Error;
 use crate::graph::{Graph, Pass};
@@ -63,6 +63,11 @@ impl Descriptors {
         // SAFETY: the pool was sized for exactly these sets, and the layouts are alive.
         let sets = unsafe { maker.host.device.allocate_descriptor_sets(&allocate) }
             .map_err(Error::vulkan("allocating the descriptor sets"))?;
+        for (place, of_place) in sets.chunks(kinds.len().max(1)).enumerate() {
+            for (set, pass) in of_place.iter().zip(graph.kinds()) {
+                name(maker.host, *set, &format!("{}.set_{place}", pass.name));
+            }
+        }
         Ok(Self { sets, kinds: kinds.len() })
     }
 
