@@ -23,21 +23,15 @@ fn root(buffers: &Value, length: usize, members: &[(&str, Value)]) -> Root {
 fn triangles_beyond_the_limit_are_refused_before_they_are_made() {
     let most = 1 << 16;
     let bytes = vec![0; 36 + 3 * most];
-    let (floats, indices) = (json!({"byteOffset": 0}), json!({"byteOffset": 36}));
-    let accessor = |place: Value, component, kind, count| {
-        let byte_offset = place["byteOffset"].clone();
-        json!({"bufferView": 0, "byteOffset": byte_offset, "componentType": component, "type": kind, "count": count})
-    };
-    let accessors =
-        json!([accessor(floats, 5126, "VEC3", 3), accessor(indices, 5121, "SCALAR", 3 * most)]);
+    // Positions, and behind them the indices, a byte each.
+    let accessors = json!([
+        {"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 3},
+        {"bufferView": 0, "byteOffset": 36, "componentType": 5121, "type": "SCALAR", "count": 3 * most},
+    ]);
     let primitive = json!({"attributes": {"POSITION": 0}, "indices": 1});
     let meshes = json!([{"name": "shape", "primitives": vec![primitive; 5]}]);
-    let length = bytes.len();
-    let root = root(
-        &json!([{"byteLength": length}]),
-        length,
-        &[("accessors", accessors), ("meshes", meshes)],
-    );
+    let members = [("accessors", accessors), ("meshes", meshes)];
+    let root = root(&json!([{"byteLength": bytes.len()}]), bytes.len(), &members);
     // As of a file so long that its length is no limit.
     let buffers = Buffers::new(&root, 5 * most, Some(&bytes), Path::new("."));
     let read = |limit| {
