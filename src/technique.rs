@@ -75,6 +75,8 @@ techniques! {
     OcclusionTextures(occlusion_textures),
     /// Visibility channels from warped skins (Heidrich, Brabec and Seidel 2000).
     LinearLight(linear_light),
+    /// Samples of the light covered by the triangles themselves.
+    Traced(traced),
 }
 
 impl Default for Technique {

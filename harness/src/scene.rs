@@ -32,7 +32,7 @@ impl SceneBuffers {
                 return Ok(None);
             }
             let vertices = |name, data| {
-                HostBuffer::with_data::<[f32; 3]>(device, name, data, Usage::VERTEX_BUFFER)
+                HostBuffer::with_data::<[f32; 3]>(device, name, data, Usage::VERTEX_BUFFER | Usage::STORAGE_BUFFER)
             };
             Ok(Some(OwnedMesh {
                 positions: vertices("positions", &mesh.positions)?,
@@ -41,7 +41,7 @@ impl SceneBuffers {
                     device,
                     "indices",
                     &mesh.indices,
-                    Usage::INDEX_BUFFER,
+                    Usage::INDEX_BUFFER | Usage::STORAGE_BUFFER,
                 )?,
                 count: mesh.indices.len() as u32,
                 bounds: mesh.bounds(),

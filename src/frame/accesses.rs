@@ -1,6 +1,7 @@
 //! How a frame accesses images and buffers of the host: the barriers and scopes at the node's border.
 
 use super::MeshDraw;
+use super::triangles::TriangleMesh;
 use crate::graph::Scope;
 use crate::lent::Geometry;
 use ash::vk;
@@ -133,29 +134,35 @@ pub struct BufferAccess {
     pub scope: Scope,
 }
 
-/// The buffers that these draws read, each once, with all accesses to it.
-pub(super) fn of_buffers<'a>(draws: impl Iterator<Item = &'a MeshDraw>) -> Vec<BufferAccess> {
-    let scope = |access| Scope {
-        stage: vk::PipelineStageFlags::VERTEX_INPUT,
-        access,
-        layout: vk::ImageLayout::UNDEFINED,
-    };
-    let mut found: Vec<BufferAccess> = draws
+/// The buffers that these draws read and that these meshes' triangles are read from, each once, with all accesses to it.
+pub(super) fn of_buffers<'a>(
+    draws: impl Iterator<Item = &'a MeshDraw>,
+    triangles: &[TriangleMesh],
+) -> Vec<BufferAccess> {
+    use vk::{AccessFlags as A, PipelineStageFlags as S};
+    let drawn = draws
         .filter_map(|d| match d.mesh.geometry {
             Geometry::Buffers(b) => Some(b),
             Geometry::HostDrawn(_) => None,
         })
         .flat_map(|b| {
-            let positions = (b.positions, vk::AccessFlags::VERTEX_ATTRIBUTE_READ);
-            let indices = b.indices.map(|(buffer, ..)| (buffer, vk::AccessFlags::INDEX_READ));
+            let positions = (b.positions, A::VERTEX_ATTRIBUTE_READ);
+            let indices = b.indices.map(|(buffer, ..)| (buffer, A::INDEX_READ));
             std::iter::once(positions).chain(indices)
         })
-        .map(|(buffer, access)| BufferAccess { buffer, scope: scope(access) })
+        .map(|(buffer, access)| (buffer, S::VERTEX_INPUT, access));
+    let read = triangles.iter().flat_map(|mesh| [mesh.positions, mesh.indices]);
+    let read = read.map(|buffer| (buffer, S::COMPUTE_SHADER, A::SHADER_READ));
+    let scope = |stage, access| Scope { stage, access, layout: vk::ImageLayout::UNDEFINED };
+    let mut found: Vec<BufferAccess> = drawn
+        .chain(read)
+        .map(|(buffer, stage, access)| BufferAccess { buffer, scope: scope(stage, access) })
         .collect();
     found.sort_by_key(|a| (a.buffer, a.scope.access.as_raw()));
     found.dedup_by(|next, kept| {
         let same = next.buffer == kept.buffer;
         if same {
+            kept.scope.stage |= next.scope.stage;
             kept.scope.access |= next.scope.access;
         }
         same

@@ -197,7 +197,7 @@ fn swapped([least, largest]: &MeshBounds) -> Option<&'static str> {
 }
 
 /// The centre of a mesh's bounding box in world space, and half the box's extents along the world's axes.
-fn around(mesh: &MeshInstance) -> [DVec3; 2] {
+pub(super) fn around(mesh: &MeshInstance) -> [DVec3; 2] {
     let [low, high] = mesh.bounds.map(|p| DVec3::from_array(p.map(f64::from)));
     let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
     let m = &mesh.world_from_mesh;

@@ -11,6 +11,7 @@
 //! still to be recorded.
 
 use super::reuse::{self, Cached, Reuse};
+use super::triangles::TreeKey;
 use crate::lent::{LightIndex, TechniqueIndex};
 
 /// Where a frame's results lie in the cache: the light picks the layer, the technique the maps.
@@ -36,6 +37,8 @@ struct Maps {
     drawn: Option<(LightIndex, reuse::Maps)>,
     /// A bit for each light with a plan that draws them and is not recorded yet.
     planned: u64,
+    /// The hierarchy of triangles, which serves all lights.
+    tree: Option<TreeKey>,
 }
 
 /// What a node still holds from recorded frames.
@@ -69,6 +72,7 @@ impl Cache {
             maps: maps.drawn.filter(|drawn| drawn.0 == light).map(|drawn| drawn.1),
             pixels: pixels.written.filter(|by| by.0 == technique).map(|by| by.1),
             lit: pixels.lit,
+            tree: maps.tree,
         }
     }
 
@@ -103,10 +107,11 @@ impl Cache {
         }
         // The light's earlier plans that were never recorded are not waited for any longer.
         self.maps.iter_mut().for_each(|maps| maps.planned &= !bit(key.light));
-        if let Some(maps) = self.maps.get_mut(key.technique.0 as usize)
-            && reuse.makes_maps.is_some()
-        {
-            maps.drawn = cached.maps.map(|made| (key.light, made));
+        if let Some(maps) = self.maps.get_mut(key.technique.0 as usize) {
+            maps.tree = cached.tree;
+            if reuse.makes_maps.is_some() {
+                maps.drawn = cached.maps.map(|made| (key.light, made));
+            }
         }
     }
 }

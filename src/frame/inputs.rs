@@ -5,6 +5,7 @@ use super::boxes::MeshBoxes;
 use super::check::bad;
 use super::fit::{Fit, FitRequest};
 use super::passes::{FrameInputs, Needs, PLACEHOLDER};
+use super::triangles::TriangleList;
 use super::{Description, Frame};
 use crate::Error;
 use crate::effects::{Camera, Situation, Verdicts};
@@ -20,6 +21,7 @@ pub(super) fn frame_inputs<'a>(
     description: &Description,
     frame: &Frame,
     fit: &'a mut Fit,
+    triangles: &TriangleList,
 ) -> Result<(FrameInputs<'a>, Verdicts), Error> {
     let room = description.technique.room();
     let texture = description.light_texture.is_some();
@@ -52,6 +54,7 @@ pub(super) fn frame_inputs<'a>(
         noise: frame.noise,
         ndc_from_light: from_light.to_cols_array(),
         background: frame.far_depth(),
+        tree: (triangles.sizes, triangles.space(frame, description)),
     };
     Ok((inputs, verdicts))
 }

@@ -8,6 +8,7 @@ use super::inputs::frame_inputs;
 use super::passes::{Ids, Limits, build};
 use super::plan::{FramePlan, Stamp};
 use super::reuse::{self, Cached, CameraDependence, Revisions};
+use super::triangles::TreeKey;
 use super::{Description, Frame, FramePlans};
 use crate::Error;
 use crate::graph::{self, Border, Compiler, Draw, Graph, MeshList, ResourceId, Work};
@@ -47,7 +48,7 @@ struct Shape {
     /// How many views the technique has.
     views: usize,
     /// What the plan reuses, as [`reuse::Reuse::uses`] lists it.
-    reuses: [bool; 3],
+    reuses: [bool; 5],
 }
 
 /// Plans one frame: fits the maps, decides what runs, derives the barriers. Pure: no Vulkan calls.
@@ -115,7 +116,12 @@ pub(crate) fn plan_into(
     let Workspace { graph, compiler, borders, mesh_boxes } = workspace;
     let Memory { fit, camera, built, drawn } = memory;
     fit.update(description, &FitRequest::of(&description.technique), frame, mesh_boxes)?;
-    let (inputs, verdicts) = frame_inputs(description, frame, fit)?;
+    plan.triangles.meshes.clear();
+    if room.reads_triangles() {
+        plan.triangles.fill(description, frame.meshes)?;
+    }
+    let tree = room.reads_triangles().then(|| TreeKey::of(&plan.triangles, frame));
+    let (inputs, verdicts) = frame_inputs(description, frame, fit, &plan.triangles)?;
     graph.clear();
     let ids = build(graph, description, limits, light.rectangle(), &inputs);
     let occluder_clips = inputs.occluder_clips();
@@ -130,7 +136,7 @@ pub(crate) fn plan_into(
         camera.find(graph, ids.pixels());
     }
     let revisions = Revisions { scene: frame.revision, view: frame.view_revision };
-    plan.reuse = reuse::apply(graph, camera, lit, &frame.visibility, revisions, cached);
+    plan.reuse = reuse::apply(graph, camera, lit, (&frame.visibility, tree), revisions, cached);
     let shape = Shape { needs, views, reuses: plan.reuse.uses() };
     plan.imports.clear();
     plan.imports.extend(imports(&ids, frame));
@@ -153,6 +159,12 @@ pub(crate) fn plan_into(
     plan.slot = frame.slot;
     (plan.light_index, plan.technique_index) = (frame.light_index, frame.technique_index);
 
+    // Meshes that no pass reads in this frame are no accesses of it.
+    if !plan.plan.steps.iter().any(|s| {
+        matches!(plan.plan.graph.passes()[s.pass].work, Work::EachMesh { .. })
+    }) {
+        plan.triangles.meshes.clear();
+    }
     let maps = room.maps();
     let receiver_clips = match maps.layers.receiver_map {
         Some(_) => smallvec![receiver_view.clip_from_light()],

@@ -17,6 +17,7 @@ mod passes;
 mod plan;
 mod plans;
 mod reuse;
+mod triangles;
 #[cfg(test)]
 mod tests;
 
@@ -35,6 +36,8 @@ pub use passes::{Limits, full_graph};
 pub use plan::FramePlan;
 pub(crate) use plan::Stamp;
 pub use plans::FramePlans;
+pub use triangles::{Capacity, Space};
+pub(crate) use triangles::TriangleList;
 
 use crate::Error;
 use crate::effects::Omit;
@@ -88,6 +91,8 @@ pub struct Description {
     /// The texture of the light's emission, which the host lends each frame ([`Frame::light_texture`]); `None` for a
     /// light of uniform emission. Only `ray-march` accepts a texture.
     pub light_texture: Option<LightTexture>,
+    /// The most triangles and meshes that block light, where a technique works with the triangles themselves.
+    pub capacity: Capacity,
 }
 
 /// The description of an image of a light's emission over its surface.
@@ -148,6 +153,7 @@ impl Description {
             lent_visibility: false,
             occluder_maps: None,
             light_texture: None,
+            capacity: Capacity::default(),
         }
     }
 
@@ -186,6 +192,7 @@ impl Description {
                 self.frames_in_flight
             )));
         }
+        self.capacity.check()?;
         let formats = [Some(self.depth_format), self.occluder_maps];
         for (format, whose) in
             formats.into_iter().zip(["the G-buffer's depth", "the occluder maps'"])
@@ -298,6 +305,10 @@ pub struct Frame<'a> {
     /// drawn. `None` where anything may have changed. A recorded frame counts as drawn: submit it, and before the
     /// frames recorded after it.
     pub revision: Option<u64>,
+    /// The revision of the blocking meshes alone: the list, their transforms, roles and vertices. While the host gives
+    /// the same number, the hierarchy of their triangles is kept for the frames of all lights. Without it the hierarchy
+    /// is kept as maps are, by [`Self::revision`].
+    pub mesh_revision: Option<u64>,
     /// The revision of what the pixels show: camera, G-buffer, [`Self::noise`], and how the host uses the result. Where
     /// both revisions are those of the last frame, the node's own visibility image stays as it is and no pass runs.
     pub view_revision: Option<u64>,
@@ -339,6 +350,7 @@ impl<'a> Frame<'a> {
             window: None,
             noise: 0,
             revision: None,
+            mesh_revision: None,
             view_revision: None,
             slot,
             border_barriers: BorderBarriers::Node,

@@ -1,10 +1,11 @@
 //! The passes of a description, with one frame's numbers in them.
 
-use super::Description;
+use super::{Description, Space};
 use crate::RectangleLight;
 use crate::effects::{Effect, Verdicts};
 use crate::graph::{Graph, Need, Owner, ResourceId, Why};
 use crate::stages::depth_layers::{self, Eye, HostMapView, LightLayers, MapView};
+use crate::stages::hierarchy::Sizes;
 use crate::stages::views::Views;
 use crate::stages::visibility::{self, GBuffer};
 use crate::techniques::hard::{self, Filter};
@@ -59,6 +60,8 @@ pub(super) struct FrameInputs<'a> {
     pub ndc_from_light: [f32; 16],
     pub noise: u32,
     pub background: f32,
+    /// The sizes of the hierarchy, and how the pixels see its space.
+    pub tree: (Sizes, Space),
 }
 
 /// Which passes a frame needs.
@@ -173,6 +176,7 @@ pub(crate) fn all_passes(description: &Description, limits: Limits) -> Graph {
         ndc_from_light: DMat4::IDENTITY.as_mat4().to_cols_array(),
         noise: 0,
         background: 0.0,
+        tree: (Sizes { capacity: description.capacity.triangles, triangles: 0 }, Space::default()),
     };
     let mut graph = Graph::new();
     build(&mut graph, description, limits, &RectangleLight::unit(), &frame);
@@ -231,6 +235,7 @@ pub(super) fn build(
         depth_error: frame.host_maps.map_or(0.0, |m| m.error),
         need,
         filter,
+        tree: &frame.tree,
     };
     let nearest = room.declare(graph, &inputs);
     if hardens(description) {

@@ -5,6 +5,7 @@ use super::cache::CacheKey;
 use super::doubts::{Doubt, Sight};
 use super::draws::{DrawList, MeshDraw};
 use super::reuse::Reuse;
+use super::triangles::TriangleList;
 use crate::effects::Verdicts;
 use crate::graph::{self, MeshList, ResourceId};
 use crate::lent::{Geometry, HostImage, LightIndex, Slot, TechniqueIndex};
@@ -32,6 +33,8 @@ pub struct FramePlan {
     pub(super) accesses: Vec<HostAccess>,
     pub(super) occluders: DrawList,
     pub(super) receivers: DrawList,
+    /// The meshes whose triangles a pass reads; empty where none does.
+    pub(crate) triangles: TriangleList,
 }
 
 impl Default for FramePlan {
@@ -51,6 +54,7 @@ impl Default for FramePlan {
             accesses: Vec::new(),
             occluders: DrawList::default(),
             receivers: DrawList::default(),
+            triangles: TriangleList::default(),
         }
     }
 }
@@ -133,7 +137,8 @@ impl FramePlan {
     /// The vertex and index buffers that this frame reads, each once. The node records no barrier for them: the host
     /// must make what it wrote to them visible to these scopes.
     pub fn buffer_accesses(&self) -> Vec<BufferAccess> {
-        accesses::of_buffers(self.occluders.meshes.iter().chain(&self.receivers.meshes))
+        let drawn = self.occluders.meshes.iter().chain(&self.receivers.meshes);
+        accesses::of_buffers(drawn, &self.triangles.meshes)
     }
 
     /// The meshes of a list.

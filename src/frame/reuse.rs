@@ -8,7 +8,8 @@
 //! The graph itself shows which passes those are: a pass depends on the camera where it reads or writes anything that
 //! does. An image in which every pixel is lit already stays as it is whatever the revisions are.
 
-use crate::graph::{Graph, Owner, ResourceId, Why};
+use super::triangles::TreeKey;
+use crate::graph::{Graph, Owner, ResourceId, Until, Why};
 use crate::lent::Visibility;
 use ash::vk;
 
@@ -54,6 +55,8 @@ pub(crate) struct Cached {
     pub pixels: Option<(u64, u64)>,
     /// Whether every pixel of that image is lit.
     pub lit: bool,
+    /// The hierarchy of triangles.
+    pub tree: Option<TreeKey>,
 }
 
 /// What a plan reuses from the cache, and what it leaves there.
@@ -67,6 +70,10 @@ pub(crate) struct Reuse {
     pub uses_lit: bool,
     /// The passes whose maps the plan draws for later frames; the maps show the frame's scene revision.
     pub makes_maps: Option<Kinds>,
+    /// The list of triangles whose tree the plan uses, and whether it uses their places too.
+    pub uses_tree: Option<(TreeKey, bool)>,
+    /// The hierarchy that the plan makes, or fits to where the meshes are.
+    makes_tree: Option<TreeKey>,
     /// Whether the plan makes every pixel lit.
     makes_lit: bool,
     revisions: Revisions,
@@ -78,11 +85,17 @@ impl Reuse {
         (self.uses_maps.is_none() || self.uses_maps == cached.maps)
             && (self.uses_pixels.is_none() || self.uses_pixels == cached.pixels)
             && (!self.uses_lit || cached.lit)
+            && self.uses_tree.is_none_or(|(key, places)| {
+                cached.tree.is_some_and(|tree| tree.list == key.list && (!places || tree == key))
+            })
     }
 
-    /// Whether the plan leaves out the maps' passes; all passes; all passes because every pixel is lit.
-    pub fn uses(&self) -> [bool; 3] {
-        [self.uses_maps.is_some(), self.uses_pixels.is_some(), self.uses_lit]
+    /// Whether the plan leaves out the maps' passes; all passes; all passes because every pixel is lit; those that build
+    /// the hierarchy; those that fit it to where the meshes are.
+    pub fn uses(&self) -> [bool; 5] {
+        let places = self.uses_tree.is_some_and(|(_, places)| places);
+        let (maps, pixels) = (self.uses_maps.is_some(), self.uses_pixels.is_some());
+        [maps, pixels, self.uses_lit, self.uses_tree.is_some(), places]
     }
 
     /// What the cache holds once the plan has run.
@@ -95,6 +108,7 @@ impl Reuse {
             },
             pixels: self.revisions.scene.zip(self.revisions.view),
             lit: self.makes_lit || self.uses_lit,
+            tree: self.makes_tree.or(cached.tree),
         }
     }
 }
@@ -104,7 +118,7 @@ pub(super) fn apply(
     graph: &mut Graph,
     camera: &CameraDependence,
     lit: bool,
-    visibility: &Visibility,
+    (visibility, tree): (&Visibility, Option<TreeKey>),
     revisions: Revisions,
     cached: &Cached,
 ) -> Reuse {
@@ -131,7 +145,11 @@ pub(super) fn apply(
         reuse.makes_lit = false;
         return reuse;
     }
-    let in_light_space = |place: usize| !camera.passes[place];
+    if let Some(tree) = tree {
+        reuse_tree(graph, tree, cached, &mut reuse);
+    }
+    let of_tree: Vec<bool> = graph.passes().iter().map(|p| graph.until(p).is_some()).collect();
+    let in_light_space = |place: usize| !camera.passes[place] && !of_tree[place];
     let passes = graph.passes().iter().enumerate();
     let needed = passes.filter(|(place, p)| in_light_space(*place) && p.need.is_yes());
     // Without a set of their passes, maps could not be compared later: they are then drawn each frame.
@@ -150,6 +168,26 @@ pub(super) fn apply(
         None => reuse.makes_maps = Some(kinds),
     }
     reuse
+}
+
+/// Leaves out the passes of the hierarchy whose results the cache still holds.
+fn reuse_tree(graph: &mut Graph, tree: TreeKey, cached: &Cached, reuse: &mut Reuse) {
+    let kept = cached.tree.filter(|kept| kept.list == tree.list);
+    let places = tree.moved.is_some() && kept == Some(tree);
+    reuse.uses_tree = kept.map(|_| (tree, places));
+    let of = |graph: &Graph, until| -> Vec<bool> {
+        graph.passes().iter().map(|p| graph.until(p) == Some(until)).collect()
+    };
+    if kept.is_some() {
+        let which = of(graph, Until::Listed);
+        graph.leave_out(|place| which[place], "the same triangles block as before");
+    }
+    if places {
+        let which = of(graph, Until::Moved);
+        graph.leave_out(|place| which[place], "no mesh that blocks has moved");
+    }
+    let needed = |p: &crate::graph::Pass| graph.until(p).is_some() && p.need.is_yes();
+    reuse.makes_tree = graph.passes().iter().any(needed).then_some(tree);
 }
 
 /// Which passes and resources of a graph depend on the camera.

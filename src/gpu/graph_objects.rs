@@ -2,6 +2,7 @@
 
 use super::descriptors::Descriptors;
 use super::maker::Maker;
+use super::mesh_sets::MeshSets;
 use super::objects::Objects;
 use super::pipeline::PassObjects;
 use crate::Error;
@@ -16,6 +17,7 @@ pub(crate) struct GraphObjects {
     pub kinds: Vec<PassObjects>,
     pub labels: Vec<CString>,
     pub descriptors: Descriptors,
+    pub mesh_sets: MeshSets,
     /// The number of Vulkan objects that the node's owner does not keep one by one: descriptor sets, which are freed
     /// with their pool, and layouts that nodes share.
     pub unowned: usize,
@@ -35,12 +37,14 @@ impl GraphObjects {
             graph.kinds().map(|pass| PassObjects::new(maker, graph, pass, &objects, strides));
         let kinds = kinds.collect::<Result<Vec<_>, _>>()?;
         let descriptors = Descriptors::new(maker, graph, &kinds, places)?;
+        let mesh_sets = MeshSets::new(maker, graph, &kinds, description, places)?;
         let shared_layouts = if maker.host.layouts.is_some() { 2 * kinds.len() } else { 0 };
         Ok(Self {
             objects,
             labels: graph.kinds().map(|p| label(p.name)).collect(),
             descriptors,
-            unowned: kinds.len() * places as usize + shared_layouts,
+            unowned: kinds.len() * places as usize + mesh_sets.count() + shared_layouts,
+            mesh_sets,
             kinds,
         })
     }

@@ -10,6 +10,8 @@ use std::sync::{Mutex, PoisonError};
 #[derive(Clone, Copy, Default)]
 pub(super) struct PassLayouts {
     pub set: vk::DescriptorSetLayout,
+    /// The layout of set 1, for passes that read the host's meshes; else a null handle.
+    pub mesh: vk::DescriptorSetLayout,
     pub pipeline: vk::PipelineLayout,
 }
 
@@ -18,6 +20,8 @@ pub(super) struct LayoutsInfo<'a> {
     pub bindings: &'a [vk::DescriptorSetLayoutBinding<'a>],
     pub push_stages: vk::ShaderStageFlags,
     pub push_bytes: u32,
+    /// Whether set 1 holds a mesh's positions and indices.
+    pub meshes: bool,
 }
 
 impl PassLayouts {
@@ -40,8 +44,24 @@ impl PassLayouts {
             offset: 0,
             size: info.push_bytes,
         }];
-        let set_layouts = [set];
-        let mut create = vk::PipelineLayoutCreateInfo::default().set_layouts(&set_layouts);
+        let mut mesh = vk::DescriptorSetLayout::null();
+        if info.meshes {
+            let bindings = [0, 1].map(|binding| {
+                vk::DescriptorSetLayoutBinding::default()
+                    .binding(binding)
+                    .descriptor_type(vk::DescriptorType::STORAGE_BUFFER)
+                    .descriptor_count(1)
+                    .stage_flags(vk::ShaderStageFlags::COMPUTE)
+            });
+            let create = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
+            // SAFETY: as above.
+            mesh = unsafe { device.create_descriptor_set_layout(&create, None) }
+                .map_err(Error::vulkan(doing("descriptor set layout of the meshes")))?;
+            owner.keep(mesh);
+        }
+        let set_layouts = [set, mesh];
+        let set_layouts = &set_layouts[..1 + usize::from(info.meshes)];
+        let mut create = vk::PipelineLayoutCreateInfo::default().set_layouts(set_layouts);
         if info.push_bytes > 0 {
             create = create.push_constant_ranges(&ranges);
         }
@@ -49,7 +69,7 @@ impl PassLayouts {
         let pipeline = unsafe { device.create_pipeline_layout(&create, None) }
             .map_err(Error::vulkan(doing("pipeline layout")))?;
         owner.keep(pipeline);
-        Ok(Self { set, pipeline })
+        Ok(Self { set, mesh, pipeline })
     }
 }
 
@@ -62,8 +82,9 @@ impl PassLayouts {
 #[derive(Default)]
 pub struct SharedLayouts(Mutex<(HashMap<Key, PassLayouts>, ObjectOwner)>);
 
-/// The key of a pair: number, type and stages of each binding; stages and bytes of the push constants.
-type Key = (Vec<(u32, vk::DescriptorType, vk::ShaderStageFlags)>, vk::ShaderStageFlags, u32);
+/// The key of a pair: number, type and stages of each binding; stages and bytes of the push constants; whether there are
+/// meshes.
+type Key = (Vec<(u32, vk::DescriptorType, vk::ShaderStageFlags)>, vk::ShaderStageFlags, u32, bool);
 
 impl SharedLayouts {
     /// Finds the layouts with these declarations, or creates them; the table owns them.
@@ -75,7 +96,7 @@ impl SharedLayouts {
     ) -> Result<PassLayouts, Error> {
         let bindings = info.bindings.iter();
         let bindings = bindings.map(|b| (b.binding, b.descriptor_type, b.stage_flags)).collect();
-        let key = (bindings, info.push_stages, info.push_bytes);
+        let key = (bindings, info.push_stages, info.push_bytes, info.meshes);
         let (known, owner) = &mut *self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(&layouts) = known.get(&key) {
             return Ok(layouts);

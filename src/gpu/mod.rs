@@ -9,6 +9,7 @@ mod graph_objects;
 mod host;
 mod layouts;
 mod maker;
+mod mesh_sets;
 mod memory;
 mod node_objects;
 mod objects;

@@ -119,6 +119,7 @@ impl NodeObjects {
             kinds: &settings.kinds,
             labels: &settings.labels,
             descriptors: &settings.descriptors,
+            mesh_sets: &settings.mesh_sets,
             timing: self.timing.as_ref(),
             place: self.place(plan.slot(), plan.light_index()),
             first_kind: kinds_of(&self.settings[..index]),

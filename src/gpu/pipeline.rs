@@ -10,6 +10,7 @@ use crate::frame::Faces;
 use crate::graph::{Draw, Graph, Pass, Shape, Target, Work};
 use crate::shaders::Module;
 use crate::stages::depth_layers::DepthPush;
+use crate::stages::hierarchy::MeshPush;
 use ash::vk;
 
 /// The objects that record the passes of one kind.
@@ -58,6 +59,9 @@ impl PassObjects {
             Work::Dispatch { .. } | Work::Indirect { .. } => {
                 (vk::ShaderStageFlags::COMPUTE, pass.push.bytes().len())
             }
+            Work::EachMesh { .. } => (vk::ShaderStageFlags::COMPUTE, size_of::<MeshPush>()),
+            // A command writes them, and no shader reads them.
+            Work::Constants { .. } => return Ok(Self::default()),
             Work::Raster { draw: Draw::Layer { .. }, .. } => {
                 // Each mesh pushes its matrix; the pass's own push constants follow it.
                 (vk::ShaderStageFlags::VERTEX, pass.push.bytes().len().max(size_of::<DepthPush>()))
@@ -68,14 +72,22 @@ impl PassObjects {
             ),
         };
         let info =
-            LayoutsInfo { bindings: &bindings, push_stages: stages, push_bytes: push_bytes as u32 };
+            LayoutsInfo {
+                bindings: &bindings,
+                push_stages: stages,
+                push_bytes: push_bytes as u32,
+                meshes: matches!(pass.work, Work::EachMesh { .. }),
+            };
         let layouts = match &host.layouts {
             Some(shared) => shared.find(&host.device, &info, pass.name)?,
             None => PassLayouts::new(&mut maker.owner, &host.device, &info, pass.name)?,
         };
         let mut made = Self { layouts, push_stages: stages, ..Self::default() };
         match pass.work {
-            Work::Dispatch { shader, .. } | Work::Indirect { shader, .. } => {
+            Work::Constants { .. } => {}
+            Work::Dispatch { shader, .. }
+            | Work::Indirect { shader, .. }
+            | Work::EachMesh { shader } => {
                 let pipeline = made.compute(host, pass, shader)?;
                 made.pipelines.push(maker.keep(pipeline));
             }

@@ -4,6 +4,7 @@
 
 use super::descriptors::Descriptors;
 use super::host::Host;
+use super::mesh_sets::MeshSets;
 use super::objects::{Object, Objects, layers, whole};
 use super::pipeline::{PassObjects, variant};
 use super::result::ResultImage;
@@ -45,6 +46,7 @@ pub(crate) struct Recorder<'a> {
     pub kinds: &'a [PassObjects],
     pub labels: &'a [CString],
     pub descriptors: &'a Descriptors,
+    pub mesh_sets: &'a MeshSets,
     pub timing: Option<&'a Timing>,
     /// The place of this frame's descriptor sets and timestamps.
     pub place: usize,
@@ -63,6 +65,9 @@ impl Recorder<'_> {
                 true => timing.nothing(self.place),
                 false => timing.begin(self.host, self.cmd, self.place),
             }
+        }
+        if !frame.triangles.meshes.is_empty() {
+            self.mesh_sets.write(self.host, &frame.triangles, self.place);
         }
         for (nth, step) in plan.steps.iter().enumerate() {
             let pass = &plan.graph.passes()[step.pass];
@@ -85,7 +90,10 @@ impl Recorder<'_> {
         let objects = self.objects;
         let set = self.descriptors.set(pass, kind, self.place);
         let point = match pass.work {
-            Work::Dispatch { .. } | Work::Indirect { .. } => vk::PipelineBindPoint::COMPUTE,
+            Work::Dispatch { .. }
+            | Work::Indirect { .. }
+            | Work::EachMesh { .. }
+            | Work::Constants { .. } => vk::PipelineBindPoint::COMPUTE,
             Work::Raster { .. } => vk::PipelineBindPoint::GRAPHICS,
         };
         if let Some(set) = set {
@@ -98,6 +106,15 @@ impl Recorder<'_> {
             };
         }
         let pushed = pass.push.bytes();
+        if let Work::Constants { offset } = pass.work {
+            let target = pass.uses.first().map_or(Object::None, |u| objects.get(u.resource));
+            if let Object::Buffer(buffer) = target {
+                // SAFETY: Host::borrow's promise: cmd is recording outside a render pass; the buffer has
+                // TRANSFER_DST usage, and holds these bytes from a multiple of 4 on.
+                unsafe { device.cmd_update_buffer(cmd, buffer, offset, pushed) };
+            }
+            return;
+        }
         if !pushed.is_empty() {
             // SAFETY: as above; the layout's range holds exactly these bytes.
             unsafe {
@@ -112,6 +129,8 @@ impl Recorder<'_> {
                 // that its accesses need were recorded before it.
                 unsafe { device.cmd_dispatch(cmd, x, y, z) };
             }
+            Work::Constants { .. } => {}
+            Work::EachMesh { .. } => self.each_mesh(frame, made),
             Work::Indirect { arguments, offset, .. } => {
                 let Object::Buffer(buffer) = objects.get(arguments) else { return };
                 // SAFETY: as for the other grids; the buffer holds one VkDispatchIndirectCommand,
@@ -146,6 +165,26 @@ impl Recorder<'_> {
                 // SAFETY: the render pass was begun above.
                 unsafe { device.cmd_end_render_pass(cmd) };
             }
+        }
+    }
+
+    fn each_mesh(&self, frame: &FramePlan, made: &PassObjects) {
+        let (device, cmd) = (&self.host.device, self.cmd);
+        let point = vk::PipelineBindPoint::COMPUTE;
+        // SAFETY: Host::borrow's promise: cmd is recording outside a render pass.
+        unsafe { device.cmd_bind_pipeline(cmd, point, made.pipelines[0]) };
+        let layout = made.layouts.pipeline;
+        let sets = self.mesh_sets.of(&frame.triangles, self.place);
+        for (mesh, set) in frame.triangles.meshes.iter().zip(sets) {
+            let [x, y, z] = mesh.push.groups();
+            let push = bytemuck::bytes_of(&mesh.push);
+            // SAFETY: as above; the set was made for a layout that is defined alike.
+            unsafe { device.cmd_bind_descriptor_sets(cmd, point, layout, 1, &[set], &[]) };
+            // SAFETY: as above; the layout's range is one MeshPush.
+            unsafe { device.cmd_push_constants(cmd, layout, made.push_stages, 0, push) };
+            // SAFETY: pipeline, sets and push constants are bound; the barriers that the pass needs came before
+            // it, and each mesh writes places of its own.
+            unsafe { device.cmd_dispatch(cmd, x, y, z) };
         }
     }
 

@@ -27,7 +27,7 @@ impl ResultImage {
         let format = visibility::format(description.has_color());
         let several = (description.lights > 1).then_some(description.lights);
         let shape = Shape::Image { format, width, height, layers: several };
-        let resource = Resource { name: "visibility", shape, owner: Owner::Exported };
+        let resource = Resource { name: "visibility", shape, owner: Owner::Exported, until: None };
         let backed = Backed::image(maker, &resource, visibility::USAGE)?;
         let (image, _) = backed.object.image();
         let view_of = |layer| {

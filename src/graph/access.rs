@@ -19,6 +19,8 @@ pub enum Access {
     SampledCompute,
     /// An image fetched by a fragment shader, without a sampler.
     SampledFragment,
+    /// A storage image that a compute shader reads.
+    ImageRead,
     /// A storage image that a compute shader writes, every texel once.
     ImageWrite,
     /// A storage image that a compute shader reads and writes, each texel by one invocation.
@@ -33,6 +35,8 @@ pub enum Access {
     BufferReadVertex,
     /// A buffer that holds the arguments of an indirect draw or dispatch.
     Indirect,
+    /// A buffer that a command writes, without a shader.
+    TransferWrite,
     /// A depth attachment, cleared and then tested and written.
     DepthTarget,
     /// A color attachment, cleared and then written or blended.
@@ -143,9 +147,10 @@ impl Scope {
 
 impl Access {
     /// Every access, in the order of the variants.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 13] = [
         Self::SampledCompute,
         Self::SampledFragment,
+        Self::ImageRead,
         Self::ImageWrite,
         Self::ImageUpdate,
         Self::BufferReadCompute,
@@ -153,6 +158,7 @@ impl Access {
         Self::BufferUpdate,
         Self::BufferReadVertex,
         Self::Indirect,
+        Self::TransferWrite,
         Self::DepthTarget,
         Self::ColorTarget,
     ];
@@ -165,6 +171,7 @@ impl Access {
                 | Self::ImageUpdate
                 | Self::BufferWriteCompute
                 | Self::BufferUpdate
+                | Self::TransferWrite
                 | Self::DepthTarget
                 | Self::ColorTarget
         )
@@ -185,6 +192,7 @@ impl Access {
             Self::SampledFragment => {
                 (S::FRAGMENT_SHADER, A::SHADER_READ, L::SHADER_READ_ONLY_OPTIMAL)
             }
+            Self::ImageRead => (S::COMPUTE_SHADER, A::SHADER_READ, L::GENERAL),
             Self::ImageWrite => (S::COMPUTE_SHADER, A::SHADER_WRITE, L::GENERAL),
             Self::ImageUpdate => (S::COMPUTE_SHADER, A::SHADER_READ | A::SHADER_WRITE, L::GENERAL),
             Self::BufferReadCompute => (S::COMPUTE_SHADER, A::SHADER_READ, L::UNDEFINED),
@@ -194,6 +202,7 @@ impl Access {
             }
             Self::BufferReadVertex => (S::VERTEX_SHADER, A::SHADER_READ, L::UNDEFINED),
             Self::Indirect => (S::DRAW_INDIRECT, A::INDIRECT_COMMAND_READ, L::UNDEFINED),
+            Self::TransferWrite => (S::TRANSFER, A::TRANSFER_WRITE, L::UNDEFINED),
             Self::DepthTarget => (
                 S::EARLY_FRAGMENT_TESTS | S::LATE_FRAGMENT_TESTS,
                 A::DEPTH_STENCIL_ATTACHMENT_READ | A::DEPTH_STENCIL_ATTACHMENT_WRITE,
@@ -212,7 +221,7 @@ impl Access {
     pub fn image_usage(self) -> vk::ImageUsageFlags {
         match self {
             Self::SampledCompute | Self::SampledFragment => vk::ImageUsageFlags::SAMPLED,
-            Self::ImageWrite | Self::ImageUpdate => vk::ImageUsageFlags::STORAGE,
+            Self::ImageRead | Self::ImageWrite | Self::ImageUpdate => vk::ImageUsageFlags::STORAGE,
             Self::DepthTarget => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
             Self::ColorTarget => vk::ImageUsageFlags::COLOR_ATTACHMENT,
             _ => vk::ImageUsageFlags::empty(),
@@ -227,6 +236,7 @@ impl Access {
             | Self::BufferUpdate
             | Self::BufferReadVertex => vk::BufferUsageFlags::STORAGE_BUFFER,
             Self::Indirect => vk::BufferUsageFlags::INDIRECT_BUFFER,
+            Self::TransferWrite => vk::BufferUsageFlags::TRANSFER_DST,
             _ => vk::BufferUsageFlags::empty(),
         }
     }
@@ -236,12 +246,14 @@ impl Access {
     pub fn descriptor(self) -> Option<vk::DescriptorType> {
         match self {
             Self::SampledCompute | Self::SampledFragment => Some(vk::DescriptorType::SAMPLED_IMAGE),
-            Self::ImageWrite | Self::ImageUpdate => Some(vk::DescriptorType::STORAGE_IMAGE),
+            Self::ImageRead | Self::ImageWrite | Self::ImageUpdate => {
+                Some(vk::DescriptorType::STORAGE_IMAGE)
+            }
             Self::BufferReadCompute
             | Self::BufferWriteCompute
             | Self::BufferUpdate
             | Self::BufferReadVertex => Some(vk::DescriptorType::STORAGE_BUFFER),
-            Self::Indirect | Self::DepthTarget | Self::ColorTarget => None,
+            Self::Indirect | Self::TransferWrite | Self::DepthTarget | Self::ColorTarget => None,
         }
     }
 

@@ -28,7 +28,9 @@ pub use pass::{
 pub(crate) use plan::Compiler;
 pub use plan::{Barriers, Border, BoundaryUse, Plan, ResourceBarrier, Skipped, Step, compile};
 pub(crate) use resource::aspects;
-pub use resource::{Owner, Resource, ResourceId, Shape, is_color_format, is_depth_format};
+pub use resource::{
+    Owner, Resource, ResourceId, Shape, Until, is_color_format, is_depth_format,
+};
 pub use show::Run;
 pub use why::{Part, Why};
 
@@ -61,7 +63,7 @@ impl Graph {
         owner: Owner,
     ) -> ResourceId {
         let shape = Shape::Image { format, width, height, layers: None };
-        self.add(Resource { name, shape, owner })
+        self.add(Resource { name, shape, owner, until: None })
     }
 
     /// Declares a transient array image of at least one layer. Shaders see all of its layers, and a barrier covers all
@@ -74,14 +76,14 @@ impl Graph {
         layers: u32,
     ) -> ResourceId {
         let shape = Shape::Image { format, width, height, layers: Some(layers.max(1)) };
-        self.add(Resource { name, shape, owner: Owner::Transient })
+        self.add(Resource { name, shape, owner: Owner::Transient, until: None })
     }
 
     /// Declares a transient buffer of at least 16 bytes: a buffer that small maps leave empty has to be bound all the
     /// same.
     pub fn buffer(&mut self, name: &'static str, bytes: u64) -> ResourceId {
         let shape = Shape::Buffer { bytes: bytes.max(16) };
-        self.add(Resource { name, shape, owner: Owner::Transient })
+        self.add(Resource { name, shape, owner: Owner::Transient, until: None })
     }
 
     /// Makes the content of a transient resource stay for later frames.
@@ -89,6 +91,21 @@ impl Graph {
         if let Some(resource) = self.resources.get_mut(id.index()) {
             resource.owner = Owner::Kept;
         }
+    }
+
+    /// Makes the content of a resource stay for the frames of all lights, until the meshes are other ones or elsewhere.
+    pub fn keep_until(&mut self, id: ResourceId, until: Until) {
+        self.keep(id);
+        if let Some(resource) = self.resources.get_mut(id.index()) {
+            resource.until = Some(until);
+        }
+    }
+
+    /// How long the results of a pass are valid; `None` where they depend on the light or the camera.
+    ///
+    /// What it writes for passes of its own kind alone counts for nothing.
+    pub fn until(&self, pass: &Pass) -> Option<Until> {
+        pass.writes().find_map(|id| self.resource(id).until)
     }
 
     /// Marks the passes for whose index `which` holds as not needed, for a reason.

@@ -163,6 +163,17 @@ pub enum Work {
         /// Where in it, in bytes: a multiple of 4.
         offset: u64,
     },
+    /// A compute dispatch for each blocking mesh that has its triangles in buffers: set 1 has the host's positions at
+    /// binding 0 and its indices at binding 1, and a [`MeshPush`](crate::stages::hierarchy::MeshPush) is pushed for each mesh.
+    EachMesh {
+        /// The compute shader.
+        shader: Module,
+    },
+    /// Writes the pass's push constants into the one buffer that it uses.
+    Constants {
+        /// Where in the buffer, in bytes: a multiple of 4.
+        offset: u64,
+    },
     /// A draw into attachments.
     Raster {
         /// The vertex shader.
@@ -179,11 +190,13 @@ pub enum Work {
 }
 
 impl Work {
-    /// The compute shader; `None` for a draw.
+    /// The compute shader; `None` for a draw or a write of constants.
     pub fn compute_shader(&self) -> Option<Module> {
         match *self {
-            Self::Dispatch { shader, .. } | Self::Indirect { shader, .. } => Some(shader),
-            Self::Raster { .. } => None,
+            Self::Dispatch { shader, .. }
+            | Self::Indirect { shader, .. }
+            | Self::EachMesh { shader } => Some(shader),
+            Self::Raster { .. } | Self::Constants { .. } => None,
         }
     }
 }
@@ -244,6 +257,19 @@ impl Pass {
         Self { name, uses, push, work, need: *need }
     }
 
+    /// A pass that writes `bytes` into a buffer, from `offset` on.
+    pub fn constants<T: bytemuck::Pod>(
+        name: &'static str,
+        buffer: ResourceId,
+        offset: u64,
+        bytes: &T,
+        need: &Need,
+    ) -> Self {
+        let uses = smallvec::smallvec![Use::fixed(buffer, Access::TransferWrite)];
+        let work = Work::Constants { offset };
+        Self { name, uses, push: Push::new(bytes), work, need: *need }
+    }
+
     /// Whether `other`, a pass of the same name, can be recorded with the objects that were made for this one.
     pub fn is_kind_of(&self, other: &Self) -> bool {
         self.does_work_of(other) && self.push.bytes().len() == other.push.bytes().len()
@@ -257,6 +283,7 @@ impl Pass {
                 Work::Raster { draw: Draw::Layer { layer: a, .. }, .. },
                 Work::Raster { draw: Draw::Layer { layer: b, .. }, .. },
             ) => a == b,
+            (Work::Constants { .. }, Work::Constants { .. }) => true,
             (a, b) => a == b,
         };
         self.name == other.name && self.uses == other.uses && same_work

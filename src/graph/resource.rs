@@ -65,6 +65,17 @@ pub struct Resource {
     pub shape: Shape,
     /// Who owns it.
     pub owner: Owner,
+    /// How long its content is valid where it outlasts a frame, whatever the light does.
+    pub until: Option<Until>,
+}
+
+/// How long the content of a resource that depends on the blocking meshes alone is valid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Until {
+    /// The content is valid until another list of triangles blocks.
+    Listed,
+    /// The content is valid until any of them moves.
+    Moved,
 }
 
 impl Resource {

@@ -100,6 +100,8 @@ fn work_of(graph: &Graph, work: &Work) -> String {
         Work::Indirect { arguments, .. } => {
             format!("dispatch by {}", graph.resource(*arguments).name)
         }
+        Work::EachMesh { .. } => "dispatch a mesh".into(),
+        Work::Constants { .. } => "write constants".into(),
         Work::Raster { draw: super::Draw::Layer { layer, .. }, .. } => {
             format!("draw {:?}", layer.meshes()).to_lowercase()
         }

@@ -10,3 +10,4 @@ pub mod pcss;
 pub mod ray_march;
 pub mod room;
 pub mod soft_shadow_map;
+pub mod traced;

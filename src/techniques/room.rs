@@ -4,10 +4,12 @@
 //! and never match on a technique's name.
 
 use crate::graph::{Graph, Need, ResourceId};
+use crate::frame::Space;
 use crate::knob::Tune;
 use crate::lent::MeshBounds;
 use crate::light::{Light, RectangleLight};
 use crate::stages::depth_layers::{self, DepthLayers, LightLayers, MapView, Projection, Wanted};
+use crate::stages::hierarchy::Sizes;
 use crate::stages::views::Views;
 use crate::stages::visibility::GBuffer;
 use crate::{Error, graph};
@@ -181,6 +183,8 @@ pub struct PassInputs<'a> {
     pub need: &'a Need,
     /// Whether the noise filter is needed.
     pub filter: &'a Need,
+    /// The sizes of the hierarchy of blocking triangles, and how the pixels see its space.
+    pub tree: &'a (Sizes, Space),
 }
 
 impl PassInputs<'_> {
@@ -235,6 +239,11 @@ pub trait Room: Tune + std::fmt::Debug {
     /// against [`graph::STORAGE_BYTES`].
     fn pixel_list(&self, _extent: [u32; 2]) -> Option<(u64, &'static str)> {
         None
+    }
+
+    /// Whether the technique works with the blocking triangles themselves.
+    fn reads_triangles(&self) -> bool {
+        false
     }
 
     /// Whether the passes blend into 32-bit floats, which some devices cannot.

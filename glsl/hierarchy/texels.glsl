@@ -1,0 +1,20 @@
+// Entered from hierarchy/triangles.comp, hierarchy/boxes.comp, hierarchy/nodes.comp and hierarchy/tree.glsl.
+//
+// Where the hierarchy's lists lie in images. A node is one texel, a triangle three: its corners, with w = 1, or four
+// zeros for a place without a triangle.
+
+#ifndef HIERARCHY_TEXELS_GLSL
+#define HIERARCHY_TEXELS_GLSL
+
+// The width of the images is 1 << TEXELS_BITS (src/stages/hierarchy/mod.rs).
+const uint TEXELS_BITS = 12u;
+
+ivec2 texel(uint nth)
+{
+    return ivec2(nth & (1u << TEXELS_BITS) - 1u, nth >> TEXELS_BITS);
+}
+
+// The triangles of a leaf (src/stages/hierarchy/mod.rs).
+const uint LEAF = 2u;
+
+#endif

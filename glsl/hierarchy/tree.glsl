@@ -1,0 +1,35 @@
+// Entered from traced/tiles.comp, traced/gather.comp and traced/cover.comp.
+//
+// The hierarchy as it is walked. Nodes lie in depth-first order: a walk goes to the next node where it enters a box, and
+// to the node's link where it does not. The including shader declares `nodes`, and `triangles` where it fetches those.
+
+#ifndef HIERARCHY_TREE_GLSL
+#define HIERARCHY_TREE_GLSL
+
+#include "hierarchy/texels.glsl"
+
+struct Node {
+    vec3 low;  // the box, in steps of the root's box
+    vec3 high;
+    bool leaf;
+    uint link; // the node behind the subtree, or the leaf's number
+};
+
+Node unpacked_node(uvec4 words)
+{
+    Node node;
+    node.low = vec3(words.xyz & 0xffffu);
+    node.high = vec3(words.xyz >> 16u);
+    node.leaf = (words.w & 1u << 31u) != 0u;
+    node.link = words.w & ~(1u << 31u);
+    return node;
+}
+
+// How far the furthest corner of a box lies on the inner side of a plane; below 0 where the box lies outside.
+float furthest(vec4 plane, Node node)
+{
+    vec3 corner = max(plane.xyz * node.low, plane.xyz * node.high);
+    return corner.x + corner.y + corner.z + plane.w;
+}
+
+#endif

@@ -1,0 +1,34 @@
+// Entry of the pass hierarchy.triangles (src/stages/hierarchy/mod.rs).
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "hierarchy/mesh.glsl"
+
+// Writes a mesh's triangles, in the hierarchy's space, to their places in the leaves.
+
+layout(set = 0, binding = 0, std430) readonly buffer Places { uint places[]; };
+layout(set = 0, binding = 1, rgba32f) writeonly uniform image2D triangles;
+layout(set = 0, binding = 2, std430) writeonly buffer Arrived { uint arrived[]; };
+
+#include "hierarchy/texels.glsl"
+
+void main()
+{
+    uint triangle = nth_group(gl_WorkGroupID.xy) * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
+    if (triangle >= push.padded) {
+        return;
+    }
+    // The boxes are made anew from the leaves up; there are more triangles than inner nodes.
+    arrived[push.first + triangle] = 0u;
+    vec3 corners[3];
+    bool there = triangle_at(triangle, corners);
+    uint first = 3u * places[push.first + triangle];
+    for (int i = 0; i < 3; ++i) {
+        vec4 p = vec4(corners[i], 1.0);
+        vec3 corner = vec3(dot(push.row_x, p), dot(push.row_y, p), dot(push.row_z, p));
+        there = there && is_number(corner.x) && is_number(corner.y) && is_number(corner.z);
+        corners[i] = corner;
+    }
+    for (int i = 0; i < 3; ++i) {
+        imageStore(triangles, texel(first + uint(i)), there ? vec4(corners[i], 1.0) : vec4(0.0));
+    }
+}

@@ -1,0 +1,96 @@
+// Entered from traced/tiles.comp, traced/gather.comp and traced/cover.comp.
+//
+// What all passes of the technique share: the frame's constants, its receivers, and tiles of 4x4 pixels.
+//
+// Positions are in the hierarchy's space: world axes, metres, from a point near the occluders. Light space is as in
+// common/light_space.glsl; a sun's z runs along its light from the same point, and its half-extents are tangents.
+
+#ifndef TRACED_FRAME_GLSL
+#define TRACED_FRAME_GLSL
+
+struct Frame {
+    mat4 eye_from_ndc;  // normalized device coordinates to the hierarchy's space, relative to `eye`
+    vec4 light_x;       // a point's x, y and z in light space, each as a plane
+    vec4 light_y;
+    vec4 light_z;
+    vec2 half_light;    // half the light's width and height, m; for a sun the tangents of half its angular size
+    float background;   // the depth of a pixel that shows no surface
+    float depth_step;   // how far a pixel's depth may be from the surface's: a share of it where above 0, else this
+                        // much below 0
+    vec4 eye;           // the viewer; for an orthographic camera a point of its near plane
+    vec4 towards;       // the direction towards the viewer of an orthographic camera; w is 1 for a perspective
+    ivec2 extent;       // the G-buffer's width and height
+    uint masked;        // 1 where the G-buffer has a mask of roles
+    uint sun;           // 1 for a light without a place
+    uint nodes;         // how many nodes the hierarchy has
+    uint most;          // the most leaves that a shaft may hold
+    uint capacity;      // how many leaves all lists hold together
+    uint samples;       // samples along a side of the light
+};
+
+layout(set = 0, binding = 0) uniform texture2D gbuffer_depth;
+layout(set = 0, binding = 1) uniform texture2D gbuffer_mask;
+layout(set = 0, binding = 2, std430) readonly buffer Constants { Frame frame; };
+
+// Pixels along a tile's sides.
+const int TILE_SIDE = 4;
+const int TILE_PIXELS = TILE_SIDE * TILE_SIDE;
+
+// Shafts a tile: its receivers may lie in two groups, one behind the other.
+const uint SHAFTS_A_TILE = 2u;
+
+ivec2 tiles_in(ivec2 extent)
+{
+    return (extent + TILE_SIDE - 1) / TILE_SIDE;
+}
+
+struct Receiver {
+    bool receives;
+    vec3 position; // the hierarchy's space
+    vec3 in_light; // light space
+};
+
+// The rounding of the arithmetic on positions, as a share of their size.
+const float ROUNDING = 1.0 / 4194304.0;
+
+vec3 unprojected(vec2 pixel, float depth)
+{
+    vec2 ndc = (pixel + 0.5) * 2.0 / vec2(frame.extent) - 1.0;
+    vec4 p = frame.eye_from_ndc * vec4(ndc, depth, 1.0);
+    return p.xyz / p.w;
+}
+
+vec3 in_light_space(vec3 p)
+{
+    vec4 q = vec4(p, 1.0);
+    return vec3(dot(frame.light_x, q), dot(frame.light_y, q), dot(frame.light_z, q));
+}
+
+// The receiver of a pixel, moved towards the viewer by as much as its depth and its position may be off: so it lies on
+// the viewer's side of its own surface.
+Receiver receiver_of(ivec2 pixel)
+{
+    Receiver r = Receiver(false, vec3(0.0), vec3(0.0));
+    if (any(greaterThanEqual(pixel, frame.extent))) {
+        return r;
+    }
+    float depth = texelFetch(gbuffer_depth, pixel, 0).x;
+    float role = frame.masked != 0u ? texelFetch(gbuffer_mask, pixel, 0).x : 1.0;
+    if (depth == frame.background || role <= 0.25) {
+        return r;
+    }
+    vec3 from_eye = unprojected(vec2(pixel), depth);
+    float step = frame.depth_step > 0.0 ? frame.depth_step * depth : -frame.depth_step;
+    float nearer = frame.background == 0.0 ? depth + step : depth - step;
+    vec3 moved = from_eye - unprojected(vec2(pixel), nearer);
+    vec3 towards = frame.towards.w > 0.0 ? -normalize(from_eye) : frame.towards.xyz;
+    vec3 size = abs(frame.eye.xyz) + abs(from_eye);
+    float off = 2.0 * length(moved) + 8.0 * ROUNDING * max(max(size.x, size.y), size.z);
+    r.position = frame.eye.xyz + from_eye + towards * off;
+    r.in_light = in_light_space(r.position);
+    // Behind the plane of a lamp there is nothing to hide.
+    r.receives = frame.sun != 0u || r.in_light.z > 0.0;
+    return r;
+}
+
+#endif

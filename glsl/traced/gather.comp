@@ -1,0 +1,85 @@
+// Entry of the pass traced.gather (src/techniques/traced/mod.rs).
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "traced/frame.glsl"
+#include "traced/shaft.glsl"
+#include "traced/lists.glsl"
+
+// Writes the triangles that may hide some of the light from some receiver of a shaft into the shaft's list. One
+// invocation handles one shaft.
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, binding = 3, rgba32ui) readonly uniform uimage2D nodes;
+layout(set = 0, binding = 4, std430) readonly buffer Header { vec4 root_low; vec4 root_step; };
+layout(set = 0, binding = 5, std430) readonly buffer Shafts { Shaft shafts[]; };
+layout(set = 0, binding = 6, rgba32f) readonly uniform image2D triangles;
+layout(set = 0, binding = 7, std430) readonly buffer Totals { uint shaft_count; uint dense_count; };
+layout(set = 0, binding = 8, std430) readonly buffer Listed { uvec2 listed[]; };
+layout(set = 0, binding = 9, std430) writeonly buffer Found { uint found[]; };
+layout(set = 0, binding = 10, std430) writeonly buffer Lists { uint lists[]; };
+
+// Whether a triangle may lie between a receiver of the shaft and the light: its corners are not all on the outer side of
+// one of the shaft's sides, and its own plane does not have all receivers and the whole light on one side.
+bool may_block(Shaft shaft, vec3 a, vec3 b, vec3 c)
+{
+    vec3 x = vec3(a.x, b.x, c.x);
+    vec3 y = vec3(a.y, b.y, c.y);
+    vec3 z = vec3(a.z, b.z, c.z);
+    vec3 left = x - (shaft.low.x + shaft.low.y * z);
+    vec3 bottom = y - (shaft.low.z + shaft.low.w * z);
+    vec3 right = shaft.high.x + shaft.high.y * z - x;
+    vec3 top = shaft.high.z + shaft.high.w * z - y;
+    vec3 inside = vec3(max(left.x, max(left.y, left.z)), max(bottom.x, max(bottom.y, bottom.z)),
+                       max(right.x, max(right.y, right.z)));
+    float least = min(min(inside.x, inside.y), min(inside.z, max(top.x, max(top.y, top.z))));
+    float slack = ROUNDING * (dot(abs(a), vec3(1.0)) + dot(abs(shaft.most), vec3(1.0)));
+    if (least < -slack || min(z.x, min(z.y, z.z)) > shaft.most.z) {
+        return false;
+    }
+    if (frame.sun == 0u && max(z.x, max(z.y, z.z)) < 0.0) {
+        return false;
+    }
+    vec3 normal = cross(b - a, c - a);
+    vec3 middle = 0.5 * (shaft.least + shaft.most) - a;
+    vec3 half_size = 0.5 * (shaft.most - shaft.least);
+    float height = dot(normal, middle);
+    float spread = dot(abs(normal), half_size);
+    float light = frame.sun != 0u ? -normal.z : -dot(normal, a);
+    float reach = dot(abs(normal.xy), frame.half_light);
+    bool above = height >= spread && light >= reach;
+    bool below = height <= -spread && light <= -reach;
+    return !(above || below);
+}
+
+void main()
+{
+    uint nth = nth_group(gl_WorkGroupID.xy) * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
+    if (nth >= shaft_count) {
+        return;
+    }
+    uvec2 entry = listed[nth];
+    Shaft shaft = shafts[entry.x];
+    Planes planes = planes_of(shaft, root_low.xyz, root_step.xyz);
+    uint count = 0u;
+    uint at = 0u;
+    while (at < frame.nodes) {
+        Node node = unpacked_node(imageLoad(nodes, texel(at)));
+        bool inside = meets(planes, node);
+        if (inside && node.leaf) {
+            for (uint i = 0u; i < LEAF; ++i) {
+                uint triangle = node.link * LEAF + i;
+                vec4 a = imageLoad(triangles, texel(3u * triangle));
+                vec4 b = imageLoad(triangles, texel(3u * triangle + 1u));
+                vec4 c = imageLoad(triangles, texel(3u * triangle + 2u));
+                if (a.w > 0.0 && may_block(shaft, in_light_space(a.xyz), in_light_space(b.xyz), in_light_space(c.xyz))) {
+                    lists[entry.y + count] = triangle;
+                    count += 1u;
+                }
+            }
+        }
+        at = inside || node.leaf ? at + 1u : node.link;
+    }
+    found[nth] = count;
+}

@@ -1,0 +1,265 @@
+//! The meshes whose triangles are in the hierarchy, and the space that the hierarchy is in.
+
+use super::boxes::has_triangles;
+use super::camera::Camera;
+use super::check::bad;
+use super::{Description, Frame};
+use crate::Error;
+use crate::lent::{Geometry, LightIndex, MeshBuffers, MeshInstance};
+use crate::light::Light;
+use crate::stages::hierarchy::{LEAF, MeshPush, Sizes};
+use ash::vk;
+use glam::{DMat4, DVec3, DVec4};
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+/// The most triangles and meshes that block light in any frame, for which a node has memory where a technique works
+/// with the triangles themselves: some 140 bytes a triangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Capacity {
+    /// The most triangles, 1 to 5,000,000; the number of triangles of each mesh counts as even.
+    pub triangles: u32,
+    /// The most meshes, 1 to 65,536. Meshes behind each other in the list that share their buffers count as one.
+    pub meshes: u32,
+}
+
+impl Capacity {
+    /// The largest capacity.
+    pub const MOST: Self = Self { triangles: 5_000_000, meshes: 65_536 };
+
+    /// Checks the capacity's ranges.
+    pub(super) fn check(&self) -> Result<(), Error> {
+        let Self { triangles, meshes } = *self;
+        if (1..=Self::MOST.triangles).contains(&triangles)
+            && (1..=Self::MOST.meshes).contains(&meshes)
+        {
+            return Ok(());
+        }
+        bad(format!(
+            "a capacity of {triangles} triangles in {meshes} meshes is outside 1 to 5,000,000 in 1 to 65,536"
+        ))
+    }
+}
+
+impl Default for Capacity {
+    /// 131,072 triangles in 1,024 meshes: some 18 MB.
+    fn default() -> Self {
+        Self { triangles: 1 << 17, meshes: 1 << 10 }
+    }
+}
+
+/// A blocking mesh in buffers, as the passes that read its triangles take it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct TriangleMesh {
+    pub positions: vk::Buffer,
+    /// The indices; the positions once more where there are none.
+    pub indices: vk::Buffer,
+    pub push: MeshPush,
+}
+
+/// The blocking meshes of a frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct TriangleList {
+    pub meshes: Vec<TriangleMesh>,
+    /// The origin of the hierarchy's space in world space.
+    pub origin: DVec3,
+    pub sizes: Sizes,
+    /// Differs where another list of triangles blocks.
+    pub key: u64,
+}
+
+impl TriangleList {
+    /// Lists the blocking meshes of a frame.
+    ///
+    /// # Errors
+    /// [`Error::Frame`] for meshes beyond the description's capacity, and for indices of 8 bits.
+    pub fn fill(
+        &mut self,
+        description: &Description,
+        meshes: &[MeshInstance],
+    ) -> Result<(), Error> {
+        let Capacity { triangles: capacity, meshes: most } = description.capacity;
+        self.meshes.clear();
+        let blocking = |m: &&MeshInstance| m.role.blocks() && has_triangles(m);
+        let in_buffers = |m: &MeshInstance| match m.geometry {
+            Geometry::Buffers(buffers) => Some((*m, buffers)),
+            Geometry::HostDrawn(_) => None,
+        };
+        let listed = || meshes.iter().filter(blocking).filter_map(in_buffers);
+        self.origin = middle(listed().map(|(m, _)| m));
+        let [of_meshes, key_bits] = MeshPush::key_bits(listed().count() as u32);
+        let mut hasher = DefaultHasher::new();
+        let (mut first, mut sets, mut last) = (0u64, 0u32, None);
+        for (rank, (mesh, buffers)) in listed().enumerate() {
+            buffers.hash_into(&mut hasher);
+            let one = self.mesh(&mesh, &buffers, first as u32)?;
+            let key = (rank as u32).checked_shl(u32::BITS - of_meshes).unwrap_or(0);
+            first += u64::from(one.push.padded);
+            let pair = Some((one.positions, one.indices));
+            sets += u32::from(pair != last);
+            last = pair;
+            self.meshes.push(TriangleMesh { push: MeshPush { key, key_bits, ..one.push }, ..one });
+        }
+        if first > u64::from(capacity) || sets > most {
+            return bad(format!(
+                "{first} triangles in {sets} meshes block light, and the description's capacity is {capacity} in \
+                 {most}; raise it"
+            ));
+        }
+        self.sizes = Sizes { capacity, triangles: first as u32 };
+        self.key = hasher.finish();
+        Ok(())
+    }
+
+    fn mesh(
+        &self,
+        mesh: &MeshInstance,
+        buffers: &MeshBuffers,
+        first: u32,
+    ) -> Result<TriangleMesh, Error> {
+        let (indices, offset, index_bits) = match buffers.indices {
+            None => (buffers.positions, 0, 0),
+            Some((buffer, offset, vk::IndexType::UINT16)) => (buffer, offset / 2, 16),
+            Some((buffer, offset, vk::IndexType::UINT32)) => (buffer, offset / 4, 32),
+            Some((_, _, other)) => {
+                return bad(format!(
+                    "a mesh has indices of the type {other:?}, which no shader reads; give UINT16 or UINT32"
+                ));
+            }
+        };
+        let m = mesh.world_from_mesh;
+        let row = |i: usize| {
+            let row = m.row(i);
+            DVec4::new(row.x, row.y, row.z, row.w - self.origin[i]).as_vec4().to_array()
+        };
+        let [low, high] = mesh.bounds;
+        let size = [0, 1, 2].map(|i| f64::from(high[i]) - f64::from(low[i]));
+        let count = buffers.count / 3;
+        let push = MeshPush {
+            rows: [row(0), row(1), row(2)],
+            low: [low[0], low[1], low[2], 0.0],
+            cells: MeshPush::cells_of(size),
+            first,
+            count,
+            padded: count.next_multiple_of(LEAF),
+            positions: (buffers.positions_offset / 4) as u32,
+            stride: buffers.positions_stride / 4,
+            indices: offset as u32,
+            index_bits,
+            key: 0,
+            key_bits: 0,
+        };
+        Ok(TriangleMesh { positions: buffers.positions, indices, push })
+    }
+
+    /// How the passes over pixels see the hierarchy's space.
+    pub fn space(&self, frame: &Frame, description: &Description) -> Space {
+        let camera = Camera::of(&frame.world_from_ndc);
+        let near = if frame.far_depth() == 0.0 { 1.0 } else { 0.0 };
+        let eye = camera.eye.unwrap_or_else(|| {
+            frame.world_from_ndc.project_point3(DVec3::new(0.0, 0.0, near))
+        });
+        let towards = match camera.eye {
+            Some(_) => DVec4::W,
+            // Depth grows towards the viewer where it is reversed.
+            None => (camera.direction * if near == 1.0 { 1.0 } else { -1.0 }).extend(0.0),
+        };
+        let light_from_world = frame.light.rectangle().light_from_world();
+        Space {
+            eye_from_ndc: DMat4::from_translation(-eye) * frame.world_from_ndc,
+            eye: eye - self.origin,
+            towards,
+            light_from_here: light_from_world * DMat4::from_translation(self.origin),
+            light: frame.light,
+            depth_step: depth_step(description.depth_format),
+            nodes: self.sizes.nodes(),
+        }
+    }
+}
+
+/// A camera and a light in the hierarchy's space.
+#[derive(Clone, Copy, Debug)]
+pub struct Space {
+    /// Normalized device coordinates to positions relative to [`Self::eye`].
+    pub eye_from_ndc: DMat4,
+    /// The eye; for an orthographic camera a point of its near plane.
+    pub eye: DVec3,
+    /// The direction towards an orthographic camera, w 0; (0, 0, 0, 1) for a perspective.
+    pub towards: DVec4,
+    /// The hierarchy's space to light space.
+    pub light_from_here: DMat4,
+    /// The light.
+    pub light: Light,
+    /// How far a pixel's depth may be from the surface's: a share of it where above 0, else this much below 0.
+    pub depth_step: f32,
+    /// The number of nodes.
+    pub nodes: u32,
+}
+
+impl Default for Space {
+    /// A space for passes that do not run.
+    fn default() -> Self {
+        Self {
+            eye_from_ndc: DMat4::IDENTITY,
+            eye: DVec3::ZERO,
+            towards: DVec4::W,
+            light_from_here: DMat4::IDENTITY,
+            light: crate::RectangleLight::unit().into(),
+            depth_step: 0.0,
+            nodes: 0,
+        }
+    }
+}
+
+/// A step of a depth format: a share of the depth above 0, or the negative of a step of its own.
+fn depth_step(format: vk::Format) -> f32 {
+    match format {
+        vk::Format::D16_UNORM | vk::Format::D16_UNORM_S8_UINT => -1.0 / 65535.0,
+        vk::Format::X8_D24_UNORM_PACK32 | vk::Format::D24_UNORM_S8_UINT => -1.0 / 16_777_215.0,
+        _ => 1.0 / 8_388_608.0,
+    }
+}
+
+/// The middle of the box around some meshes, in world space.
+fn middle(meshes: impl Iterator<Item = MeshInstance>) -> DVec3 {
+    let [low, high] = meshes.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], mesh| {
+        let [center, half] = super::boxes::around(&mesh);
+        [low.min(center - half), high.max(center + half)]
+    });
+    let middle = low.midpoint(high);
+    if middle.is_finite() { middle } else { DVec3::ZERO }
+}
+
+impl MeshBuffers {
+    /// Hashes which triangles the buffers hold, wherever those are.
+    fn hash_into(&self, hasher: &mut DefaultHasher) {
+        (self.positions, self.positions_offset, self.positions_stride, self.count).hash(hasher);
+        self.indices.map(|(buffer, offset, kind)| (buffer, offset, kind.as_raw())).hash(hasher);
+    }
+}
+
+/// The hierarchy of a frame: which triangles it is over, and where they are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct TreeKey {
+    /// Differs where another list of triangles blocks.
+    pub list: u64,
+    /// The revision of their places; `None` where anything may have moved.
+    pub moved: Option<Moved>,
+}
+
+/// A revision of the meshes' places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Moved {
+    /// The frame's revision of its meshes.
+    Meshes(u64),
+    /// The frame's revision of light and meshes.
+    Light(LightIndex, u64),
+}
+
+impl TreeKey {
+    /// The key of a frame's hierarchy.
+    pub fn of(list: &TriangleList, frame: &Frame) -> Self {
+        let meshes = frame.mesh_revision.map(Moved::Meshes);
+        let light = frame.revision.map(|revision| Moved::Light(frame.light_index, revision));
+        Self { list: list.key, moved: meshes.or(light) }
+    }
+}

@@ -1,0 +1,229 @@
+//! A bounding volume hierarchy over the blocking triangles, built on the device from the host's own buffers.
+//!
+//! ```text
+//!   which triangles there are ──► keys ──► sort ──► split, order       kept while the list of meshes stays
+//!                                                       │
+//!   positions, transforms ──────────► triangles ──► boxes ──► nodes    kept while no mesh moves
+//! ```
+//! Triangles are sorted by their mesh and, within it, by a Morton code of their middle in the mesh's own box. A tree over
+//! the sorted leaves splits where keys first differ (Karras 2012), so that each mesh is a subtree of its own: a mesh that
+//! moves, or whose vertices move, changes boxes and no subtree. Boxes are made anew from the leaves up whenever anything
+//! moved; the tree is right whatever moved, and only slower where triangles have moved far from their neighbours.
+//!
+//! The hierarchy's space has the world's axes and an origin near the meshes, so that 32-bit floats are precise wherever
+//! the scene is; one hierarchy serves all lights. A node is 16 bytes, with a box of 16-bit steps of the root's, and nodes
+//! lie in depth-first order: a walk needs no stack, and no path is longer than the 64 bits of two keys.
+//!
+//! **Limits.** Meshes that the host draws itself are not in it. Keys hold the number of the mesh in their first bits: the
+//! more meshes, the coarser the Morton cells of each.
+
+mod sort;
+
+use crate::graph::{Access, Graph, Need, Pass, Push, ResourceId, Until, Use, Work};
+use crate::shaders::module;
+use ash::vk;
+use bytemuck::{Pod, Zeroable};
+use smallvec::smallvec;
+
+/// The triangles of a leaf (`hierarchy/texels.glsl`).
+pub const LEAF: u32 = 2;
+/// The binary logarithm of the images' width (`hierarchy/texels.glsl`).
+const TEXELS_BITS: u32 = 12;
+/// The bits of a Morton code.
+const CODE_BITS: u32 = 30;
+/// The Morton cells along a side of a mesh's box.
+const CELLS: f64 = 1024.0;
+
+/// The push constants of the passes that read a mesh's buffers (`hierarchy/mesh.glsl`).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct MeshPush {
+    /// Mesh space to the hierarchy's space, by row.
+    pub rows: [[f32; 4]; 3],
+    /// The least corner of the mesh's box, in mesh space.
+    pub low: [f32; 4],
+    /// Morton cells a unit of mesh space.
+    pub cells: [f32; 4],
+    /// The place of the mesh's first triangle among those of all meshes.
+    pub first: u32,
+    /// How many triangles it has.
+    pub count: u32,
+    /// How many places it has: its triangles, and empty ones to fill the last leaf.
+    pub padded: u32,
+    /// Where its positions begin, in floats.
+    pub positions: u32,
+    /// Floats from one position to the next.
+    pub stride: u32,
+    /// Where its indices begin, in indices.
+    pub indices: u32,
+    /// 16 or 32; 0 without indices.
+    pub index_bits: u32,
+    /// The bits of a key that are the mesh's.
+    pub key: u32,
+    /// How many bits of a key are its triangles'.
+    pub key_bits: u32,
+}
+
+impl MeshPush {
+    /// The bits of a key that number `meshes` meshes, and those left for their triangles.
+    pub fn key_bits(meshes: u32) -> [u32; 2] {
+        let of_meshes = u32::BITS - meshes.max(1).saturating_sub(1).leading_zeros();
+        [of_meshes, (u32::BITS - of_meshes).min(CODE_BITS)]
+    }
+
+    /// Morton cells a unit of a box with these sides; none along a side of no length.
+    pub fn cells_of(size: [f64; 3]) -> [f32; 4] {
+        let along = |s: f64| if s > 0.0 { (CELLS / s).min(f64::from(f32::MAX)) as f32 } else { 0.0 };
+        [along(size[0]), along(size[1]), along(size[2]), 0.0]
+    }
+
+    /// The number of workgroups for the mesh's triangles.
+    pub fn groups(&self) -> [u32; 3] {
+        groups(self.padded)
+    }
+}
+
+/// The push constants of the passes over leaves and nodes (`hierarchy/topology.glsl`).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct LeavesPush {
+    /// The number of leaves.
+    pub leaves: u32,
+}
+
+/// The sizes of a hierarchy.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Sizes {
+    /// The most triangles that there is memory for.
+    pub capacity: u32,
+    /// The triangles of this frame's meshes, those that fill leaves included.
+    pub triangles: u32,
+}
+
+impl Sizes {
+    /// The number of leaves.
+    pub fn leaves(&self) -> u32 {
+        self.triangles / LEAF
+    }
+
+    /// The number of nodes.
+    pub fn nodes(&self) -> u32 {
+        (2 * self.leaves()).saturating_sub(1)
+    }
+}
+
+/// A hierarchy as passes read it.
+#[derive(Clone, Copy, Debug)]
+pub struct Hierarchy {
+    /// The nodes in depth-first order: R32G32B32A32_UINT, one texel each.
+    pub nodes: ResourceId,
+    /// The triangles, leaf by leaf: R32G32B32A32_SFLOAT, three texels each.
+    pub triangles: ResourceId,
+    /// The least corner of the root's box and the steps of all boxes.
+    pub header: ResourceId,
+}
+
+/// The workgroups of 64 invocations for a number of them, in rows (`common/lists.glsl`).
+pub(crate) fn groups(invocations: u32) -> [u32; 3] {
+    const A_ROW: u32 = 16384;
+    let groups = invocations.div_ceil(64).max(1);
+    [groups.min(A_ROW), groups.div_ceil(A_ROW), 1]
+}
+
+/// Adds the passes that build the hierarchy, and those that fit it to where the meshes are.
+pub(crate) fn declare(graph: &mut Graph, sizes: Sizes, need: &Need) -> Hierarchy {
+    let Sizes { capacity, .. } = sizes;
+    let (room, leaves) = (u64::from(capacity), u64::from(capacity.div_ceil(LEAF)));
+    let image = |graph: &mut Graph, name, format, texels: u32| {
+        let height = texels.div_ceil(1 << TEXELS_BITS).max(1);
+        let id = graph.image(name, format, [1 << TEXELS_BITS, height], crate::graph::Owner::Kept);
+        graph.keep_until(id, Until::Moved);
+        id
+    };
+    let triangles = image(
+        graph,
+        "hierarchy.triangles",
+        vk::Format::R32G32B32A32_SFLOAT,
+        3 * capacity.next_multiple_of(LEAF),
+    );
+    let nodes = image(
+        graph,
+        "hierarchy.nodes",
+        vk::Format::R32G32B32A32_UINT,
+        2 * capacity.div_ceil(LEAF),
+    );
+    let kept = |graph: &mut Graph, name, bytes, until| {
+        let id = graph.buffer(name, bytes);
+        graph.keep_until(id, until);
+        id
+    };
+    let header = kept(graph, "hierarchy.header", 32, Until::Moved);
+    let places = kept(graph, "hierarchy.places", 4 * room, Until::Listed);
+    let inner = kept(graph, "hierarchy.inner", 16 * leaves, Until::Listed);
+    let parents = kept(graph, "hierarchy.parents", 8 * leaves, Until::Listed);
+    let order = kept(graph, "hierarchy.order", 8 * leaves, Until::Listed);
+    let boxes = kept(graph, "hierarchy.boxes", 48 * leaves, Until::Moved);
+    let arrived = kept(graph, "hierarchy.arrived", 4 * room, Until::Moved);
+
+    let read = |binding, id| Use::bound(binding, id, Access::BufferReadCompute);
+    let write = |binding, id| Use::bound(binding, id, Access::BufferWriteCompute);
+    let sorted = sort::keys(graph, sizes, need);
+    let push = Push::new(&LeavesPush { leaves: sizes.leaves() });
+    let (of_leaves, of_nodes) = (groups(sizes.leaves()), groups(sizes.nodes()));
+    graph.push(Pass::compute(
+        "hierarchy.split",
+        module!("hierarchy/split.comp"),
+        of_leaves,
+        push,
+        smallvec![read(0, sorted), write(1, places), write(2, inner), write(3, parents)],
+        need,
+    ));
+    graph.push(Pass::compute(
+        "hierarchy.order",
+        module!("hierarchy/order.comp"),
+        of_nodes,
+        push,
+        smallvec![read(0, inner), read(1, parents), write(2, order)],
+        need,
+    ));
+    graph.push(Pass {
+        name: "hierarchy.triangles",
+        uses: smallvec![
+            read(0, places),
+            Use::bound(1, triangles, Access::ImageWrite),
+            write(2, arrived),
+        ],
+        push: Push::NONE,
+        work: Work::EachMesh { shader: module!("hierarchy/triangles.comp") },
+        need: *need,
+    });
+    graph.push(Pass::compute(
+        "hierarchy.boxes",
+        module!("hierarchy/boxes.comp"),
+        of_leaves,
+        push,
+        smallvec![
+            Use::bound(0, triangles, Access::ImageRead),
+            read(1, inner),
+            read(2, parents),
+            Use::bound(3, boxes, Access::BufferUpdate),
+            Use::bound(4, arrived, Access::BufferUpdate),
+        ],
+        need,
+    ));
+    graph.push(Pass::compute(
+        "hierarchy.nodes",
+        module!("hierarchy/nodes.comp"),
+        of_nodes,
+        push,
+        smallvec![
+            read(0, boxes),
+            read(1, inner),
+            read(2, order),
+            Use::bound(3, nodes, Access::ImageWrite),
+            write(4, header),
+        ],
+        need,
+    ));
+    Hierarchy { nodes, triangles, header }
+}

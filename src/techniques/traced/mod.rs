@@ -1,0 +1,44 @@
+//! The visible fraction from the blocking triangles themselves.
+
+pub mod passes;
+pub mod settings;
+
+pub use settings::Settings;
+
+use super::room::{HostDraws, Maps, PassInputs, Room, Shows, Takes};
+use crate::graph::{Graph, ResourceId};
+use crate::stages::hierarchy;
+
+/// The side of the maps that the technique does not have; a placeholder's.
+const NO_MAP: u32 = 16;
+
+impl Room for Settings {
+    fn takes(&self) -> Takes {
+        Takes {
+            host_draws: HostDraws::Receivers(
+                "has no triangles for the hierarchy that traced reads",
+            ),
+            lent_maps: Err("works with triangles, and does not read depth images of occluders"),
+            ..Takes::RECTANGLES
+        }
+    }
+
+    fn shows(&self) -> Shows {
+        Shows { back_side: true, fusion: true, ..Shows::SOFT }
+    }
+
+    fn maps(&self) -> Maps {
+        Maps::own_views(NO_MAP)
+    }
+
+    fn reads_triangles(&self) -> bool {
+        true
+    }
+
+    fn declare(&self, graph: &mut Graph, inputs: &PassInputs) -> Option<ResourceId> {
+        let (sizes, _) = inputs.tree;
+        let tree = hierarchy::declare(graph, *sizes, inputs.need);
+        passes::declare(graph, self, &tree, inputs);
+        None
+    }
+}

@@ -1,0 +1,213 @@
+//! The passes over tiles and pixels, and their constants.
+
+use super::Settings;
+use crate::graph::{Access, Graph, Pass, Push, ResourceId, Use, Uses, Work};
+use crate::shaders::module;
+use crate::stages::hierarchy::{Hierarchy, LEAF, groups};
+use crate::stages::visibility::grid;
+use crate::techniques::room::PassInputs;
+use bytemuck::{Pod, Zeroable};
+use smallvec::smallvec;
+
+/// The pixels along a tile's side (`traced/frame.glsl`).
+const TILE_SIDE: u32 = 4;
+/// The shafts of a tile (`traced/frame.glsl`).
+const SHAFTS_A_TILE: u32 = 2;
+/// The slots of a block (`traced/lists.glsl`).
+const BLOCK: u32 = 256;
+/// The places in the lists of triangles for each pixel of the image, on average.
+const LISTED_A_PIXEL: u32 = 8;
+
+/// The first part of the frame's constants (`traced/frame.glsl`).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct LightConstants {
+    /// Normalized device coordinates to the hierarchy's space, relative to the eye.
+    pub eye_from_ndc: [f32; 16],
+    /// Light space's x, y and z of a point of the hierarchy's space, each as a plane.
+    pub light_from_here: [[f32; 4]; 3],
+    /// Half the light's width and height, m; for a sun the tangents of half its angular size.
+    pub half_light: [f32; 2],
+    /// The depth of a pixel that shows no surface.
+    pub background: f32,
+    /// How far a pixel's depth may be from the surface's.
+    pub depth_step: f32,
+}
+
+/// The second part of the frame's constants (`traced/frame.glsl`).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct PixelConstants {
+    /// The viewer.
+    pub eye: [f32; 4],
+    /// The direction towards an orthographic camera.
+    pub towards: [f32; 4],
+    /// The G-buffer's width and height.
+    pub extent: [i32; 2],
+    /// 1 where the G-buffer has a mask of roles.
+    pub masked: u32,
+    /// 1 for a light without a place.
+    pub sun: u32,
+    /// How many nodes the hierarchy has.
+    pub nodes: u32,
+    /// The most leaves that a shaft may hold.
+    pub most: u32,
+    /// How many triangles all lists hold together.
+    pub capacity: u32,
+    /// Samples along a side of the light.
+    pub samples: u32,
+}
+
+/// The push constants of the passes that make the lists (`traced/sums.comp`).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct ListPush {
+    /// How many slots for shafts there are.
+    pub slots: u32,
+    /// How many blocks they make.
+    pub blocks: u32,
+    /// The most leaves that a shaft may hold.
+    pub most: u32,
+    /// How many triangles all lists hold together.
+    pub capacity: u32,
+}
+
+/// Adds the passes from the hierarchy to the visible fraction.
+pub(super) fn declare(
+    graph: &mut Graph,
+    settings: &Settings,
+    tree: &Hierarchy,
+    inputs: &PassInputs,
+) {
+    let PassInputs { gbuffer, need, visibility, .. } = *inputs;
+    let extent = gbuffer.extent;
+    let tiles = extent.map(|e| e.div_ceil(TILE_SIDE));
+    let slots = SHAFTS_A_TILE * tiles[0] * tiles[1];
+    let blocks = slots.div_ceil(BLOCK);
+    let capacity = LISTED_A_PIXEL * extent[0] * extent[1];
+    let push = Push::new(&ListPush { slots, blocks, most: settings.leaves, capacity });
+
+    let constants = graph.buffer("traced.constants", 192);
+    declare_constants(graph, settings, constants, capacity, inputs);
+    let of_slots = |bytes: u64| bytes * u64::from(slots);
+    let shafts = graph.buffer("traced.shafts", of_slots(64));
+    let counts = graph.buffer("traced.counts", of_slots(4));
+    let sums = graph.buffer("traced.sums", 16 * u64::from(blocks));
+    let totals = graph.buffer("traced.totals", 16);
+    let arguments = graph.buffer("traced.arguments", 48);
+    let listed = graph.buffer("traced.listed", of_slots(8));
+    let dense = graph.buffer("traced.dense", of_slots(4));
+    let found = graph.buffer("traced.found", of_slots(4));
+    let lists = graph.buffer("traced.lists", 4 * u64::from(capacity));
+
+    let read = |binding, id| Use::bound(binding, id, Access::BufferReadCompute);
+    let write = |binding, id| Use::bound(binding, id, Access::BufferWriteCompute);
+    let image = |binding, id| Use::bound(binding, id, Access::ImageRead);
+    let of_frame = || {
+        let mut uses = Uses::from_slice(&gbuffer.bound());
+        uses.push(read(2, constants));
+        uses
+    };
+    let mut uses = of_frame();
+    uses.extend([
+        image(3, tree.nodes),
+        read(4, tree.header),
+        write(5, shafts),
+        write(6, counts),
+        Use::bound(7, visibility, Access::ImageWrite),
+    ]);
+    let (name, shader) = ("traced.tiles", module!("traced/tiles.comp"));
+    graph.push(Pass::compute(name, shader, grid(tiles), Push::NONE, uses, need));
+    graph.push(Pass::compute(
+        "traced.sums",
+        module!("traced/sums.comp"),
+        groups(blocks),
+        push,
+        smallvec![read(0, counts), write(1, sums)],
+        need,
+    ));
+    graph.push(Pass::compute(
+        "traced.totals",
+        module!("traced/totals.comp"),
+        [1, 1, 1],
+        push,
+        smallvec![
+            Use::bound(0, sums, Access::BufferUpdate),
+            write(1, totals),
+            write(2, arguments),
+        ],
+        need,
+    ));
+    graph.push(Pass::compute(
+        "traced.list",
+        module!("traced/list.comp"),
+        groups(blocks),
+        push,
+        smallvec![read(0, counts), read(1, sums), write(2, listed), write(3, dense)],
+        need,
+    ));
+    let mut uses = of_frame();
+    uses.extend([
+        image(3, tree.nodes),
+        read(4, tree.header),
+        read(5, shafts),
+        image(6, tree.triangles),
+        read(7, totals),
+        read(8, listed),
+        write(9, found),
+        write(10, lists),
+        Use::fixed(arguments, Access::Indirect),
+    ]);
+    let shader = module!("traced/gather.comp");
+    let work = Work::Indirect { shader, arguments, offset: 0 };
+    graph.push(Pass { name: "traced.gather", uses, push: Push::NONE, work, need: *need });
+    let mut uses = of_frame();
+    uses.extend([
+        read(3, shafts),
+        image(4, tree.triangles),
+        read(5, totals),
+        read(6, listed),
+        read(7, found),
+        read(8, lists),
+        Use::bound(9, visibility, Access::ImageUpdate),
+        Use::fixed(arguments, Access::Indirect),
+    ]);
+    let shader = module!("traced/cover.comp");
+    let work = Work::Indirect { shader, arguments, offset: 16 };
+    graph.push(Pass { name: "traced.cover", uses, push: Push::NONE, work, need: *need });
+    let _ = (dense, LEAF);
+}
+
+/// Adds the passes that write the frame's constants.
+fn declare_constants(
+    graph: &mut Graph,
+    settings: &Settings,
+    constants: ResourceId,
+    capacity: u32,
+    inputs: &PassInputs,
+) {
+    let PassInputs { gbuffer, need, .. } = *inputs;
+    let (_, space) = inputs.tree;
+    let light = space.light.rectangle();
+    let row = |i: usize| space.light_from_here.row(i).as_vec4().to_array();
+    let first = LightConstants {
+        eye_from_ndc: space.eye_from_ndc.as_mat4().to_cols_array(),
+        light_from_here: [row(0), row(1), row(2)],
+        half_light: light.half_extents().map(|half| half as f32),
+        background: gbuffer.background,
+        depth_step: space.depth_step,
+    };
+    graph.push(Pass::constants("traced.light", constants, 0, &first, need));
+    let second = PixelConstants {
+        eye: space.eye.as_vec3().extend(0.0).to_array(),
+        towards: space.towards.as_vec4().to_array(),
+        extent: gbuffer.extent.map(|e| e as i32),
+        masked: u32::from(gbuffer.mask.is_some()),
+        sun: 0,
+        nodes: space.nodes,
+        most: settings.leaves,
+        capacity,
+        samples: 8,
+    };
+    graph.push(Pass::constants("traced.pixels", constants, 128, &second, need));
+}
