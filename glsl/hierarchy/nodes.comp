@@ -1,7 +1,7 @@
 // Entry of the pass hierarchy.nodes (src/stages/hierarchy/mod.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "hierarchy/topology.glsl"
+#include "hierarchy/pyramid.glsl"
 
 // Writes the nodes as they are walked: in depth-first order, 16 bytes each, with a box of 16-bit steps of the root's.
 
@@ -15,10 +15,44 @@ layout(set = 0, binding = 4, std430) writeonly buffer Header { vec4 root_low; ve
 const float MARGIN = 1.0 / 16.0;
 const float STEPS = 65535.0;
 
-vec3 corner(uint node, uint side)
+struct Box {
+    vec3 low;
+    vec3 high;
+};
+
+Box with_box(Box box, uint nth)
 {
-    uint at = 6u * node + 3u * side;
-    return vec3(boxes[at], boxes[at + 1u], boxes[at + 2u]);
+    uint at = 6u * nth;
+    return Box(min(box.low, vec3(boxes[at], boxes[at + 1u], boxes[at + 2u])),
+               max(box.high, vec3(boxes[at + 3u], boxes[at + 4u], boxes[at + 5u])));
+}
+
+// The box of the leaves from `first` to before `end`.
+Box box_of(uint first, uint end)
+{
+    Box box = Box(NO_LOW, NO_HIGH);
+    uint start = 0u;
+    uint count = push.leaves;
+    for (uint level = 0u; level < LEVELS && first < end; ++level) {
+        while (first < end && first % WIDE != 0u) {
+            box = with_box(box, start + first);
+            first += 1u;
+        }
+        while (first < end && (end % WIDE != 0u && end != count)) {
+            end -= 1u;
+            box = with_box(box, start + end);
+        }
+        // A level's last box may hold fewer than eight.
+        first /= WIDE;
+        end = (end + WIDE - 1u) / WIDE;
+        start += count;
+        count = (count + WIDE - 1u) / WIDE;
+        if (count == 1u && first < end) {
+            box = with_box(box, start);
+            first = end;
+        }
+    }
+    return box;
 }
 
 void main()
@@ -27,30 +61,26 @@ void main()
     if (node > 2u * (push.leaves - 1u)) {
         return;
     }
-    vec3 root = corner(0u, 0u);
+    Box root = box_of(0u, push.leaves);
+    bool is_leaf = node >= push.leaves - 1u;
+    uint leaf = node - (push.leaves - 1u);
+    uvec4 of = is_leaf ? uvec4(leaf, leaf, 0u, 0u) : inner[node];
+    Box box = box_of(of.x, of.y + 1u);
     // The least step keeps a flat root from dividing by nothing; it is far below a float's precision of the rest.
-    vec3 extent = corner(0u, 1u) - root;
+    vec3 extent = max(root.high - root.low, 0.0);
     float largest = max(max(extent.x, extent.y), max(extent.z, 1.0e-30));
     vec3 steps = max(extent, vec3(1.0e-6 * largest)) / (STEPS - 2.0);
     if (node == 0u) {
-        root_low = vec4(root - steps, 0.0);
+        root_low = vec4(root.low - steps, 0.0);
         root_step = vec4(steps, 0.0);
     }
-    vec3 low = corner(node, 0u);
-    vec3 high = corner(node, 1u);
     uvec3 a = uvec3(STEPS);
     uvec3 b = uvec3(0u);
-    if (low.x <= high.x) {
-        a = uvec3(clamp(floor((low - root) / steps + 1.0 - MARGIN), 0.0, STEPS));
-        b = uvec3(clamp(ceil((high - root) / steps + 1.0 + MARGIN), 0.0, STEPS));
+    if (box.low.x <= box.high.x) {
+        a = uvec3(clamp(floor((box.low - root.low) / steps + 1.0 - MARGIN), 0.0, STEPS));
+        b = uvec3(clamp(ceil((box.high - root.low) / steps + 1.0 + MARGIN), 0.0, STEPS));
     }
-    bool is_leaf = node >= push.leaves - 1u;
     uint place = order[node];
-    uint leaf = node - (push.leaves - 1u);
-    uint link = is_leaf ? 1u << 31u | leaf : place;
-    if (!is_leaf) {
-        uvec4 of = inner[node];
-        link = place + 2u * (of.y - of.x + 1u) - 1u;
-    }
+    uint link = is_leaf ? 1u << 31u | leaf : place + 2u * (of.y - of.x + 1u) - 1u;
     imageStore(nodes, texel(place), uvec4(a | b << 16u, link));
 }

@@ -13,6 +13,8 @@ layout(local_size_x = 64) in;
 
 layout(push_constant) uniform Push {
     uint leaves; // how many leaves there are, from 1 on
+    uint start;  // the place of a level of the pyramid, and how many boxes it has
+    uint count;
 } push;
 
 const uint NO_NODE = 0xffffffffu;

@@ -7,7 +7,6 @@
 
 layout(set = 0, binding = 0, std430) readonly buffer Places { uint places[]; };
 layout(set = 0, binding = 1, rgba32f) writeonly uniform image2D triangles;
-layout(set = 0, binding = 2, std430) writeonly buffer Arrived { uint arrived[]; };
 
 #include "hierarchy/texels.glsl"
 
@@ -17,8 +16,6 @@ void main()
     if (triangle >= push.padded) {
         return;
     }
-    // The boxes are made anew from the leaves up; there are more triangles than inner nodes.
-    arrived[push.first + triangle] = 0u;
     vec3 corners[3];
     bool there = triangle_at(triangle, corners);
     uint first = 3u * places[push.first + triangle];

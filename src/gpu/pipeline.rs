@@ -60,8 +60,8 @@ impl PassObjects {
                 (vk::ShaderStageFlags::COMPUTE, pass.push.bytes().len())
             }
             Work::EachMesh { .. } => (vk::ShaderStageFlags::COMPUTE, size_of::<MeshPush>()),
-            // A command writes them, and no shader reads them.
-            Work::Constants { .. } => return Ok(Self::default()),
+            // A command writes them into a buffer, and no shader sees them pushed.
+            Work::Constants { .. } => (vk::ShaderStageFlags::COMPUTE, 0),
             Work::Raster { draw: Draw::Layer { .. }, .. } => {
                 // Each mesh pushes its matrix; the pass's own push constants follow it.
                 (vk::ShaderStageFlags::VERTEX, pass.push.bytes().len().max(size_of::<DepthPush>()))

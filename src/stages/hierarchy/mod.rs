@@ -29,6 +29,9 @@ use smallvec::smallvec;
 pub const LEAF: u32 = 2;
 /// The binary logarithm of the images' width (`hierarchy/texels.glsl`).
 const TEXELS_BITS: u32 = 12;
+/// Boxes that one of the next level of the pyramid holds, and the most levels (`hierarchy/pyramid.glsl`).
+const WIDE: u32 = 8;
+const LEVELS: u32 = 9;
 /// The bits of a Morton code.
 const CODE_BITS: u32 = 30;
 /// The Morton cells along a side of a mesh's box.
@@ -89,6 +92,10 @@ impl MeshPush {
 pub struct LeavesPush {
     /// The number of leaves.
     pub leaves: u32,
+    /// The place of a level of the pyramid of boxes.
+    pub start: u32,
+    /// The number of boxes in that level.
+    pub count: u32,
 }
 
 /// The sizes of a hierarchy.
@@ -130,6 +137,28 @@ pub(crate) fn groups(invocations: u32) -> [u32; 3] {
     [groups.min(A_ROW), groups.div_ceil(A_ROW), 1]
 }
 
+/// Adds the passes that make the levels of the pyramid of boxes above the leaves.
+fn pyramid(graph: &mut Graph, boxes: ResourceId, sizes: Sizes, need: &Need) {
+    let most = sizes.capacity.div_ceil(LEAF);
+    let (mut start, mut count) = (0, sizes.leaves());
+    let mut in_all = most;
+    let enough = Need::No(graph.because("the level below is one box"));
+    while in_all > 1 {
+        let push = Push::new(&LeavesPush { leaves: sizes.leaves(), start, count });
+        graph.push(Pass::compute(
+            "hierarchy.pyramid",
+            module!("hierarchy/pyramid.comp"),
+            groups(count.div_ceil(WIDE)),
+            push,
+            smallvec![Use::bound(0, boxes, Access::BufferUpdate)],
+            if count > 1 || sizes.triangles == 0 { need } else { &enough },
+        ));
+        start += count;
+        count = count.div_ceil(WIDE);
+        in_all = in_all.div_ceil(WIDE);
+    }
+}
+
 /// Adds the passes that build the hierarchy, and those that fit it to where the meshes are.
 pub(crate) fn declare(graph: &mut Graph, sizes: Sizes, need: &Need) -> Hierarchy {
     let Sizes { capacity, .. } = sizes;
@@ -162,13 +191,14 @@ pub(crate) fn declare(graph: &mut Graph, sizes: Sizes, need: &Need) -> Hierarchy
     let inner = kept(graph, "hierarchy.inner", 16 * leaves, Until::Listed);
     let parents = kept(graph, "hierarchy.parents", 8 * leaves, Until::Listed);
     let order = kept(graph, "hierarchy.order", 8 * leaves, Until::Listed);
-    let boxes = kept(graph, "hierarchy.boxes", 48 * leaves, Until::Moved);
-    let arrived = kept(graph, "hierarchy.arrived", 4 * room, Until::Moved);
+    // An eighth more for the levels above the leaves, and one box a level for those that are not full.
+    let boxes_bytes = 24 * (leaves + leaves.div_ceil(7) + u64::from(LEVELS));
+    let boxes = kept(graph, "hierarchy.boxes", boxes_bytes, Until::Moved);
 
     let read = |binding, id| Use::bound(binding, id, Access::BufferReadCompute);
     let write = |binding, id| Use::bound(binding, id, Access::BufferWriteCompute);
     let sorted = sort::keys(graph, sizes, need);
-    let push = Push::new(&LeavesPush { leaves: sizes.leaves() });
+    let push = Push::new(&LeavesPush { leaves: sizes.leaves(), start: 0, count: 0 });
     let (of_leaves, of_nodes) = (groups(sizes.leaves()), groups(sizes.nodes()));
     graph.push(Pass::compute(
         "hierarchy.split",
@@ -191,7 +221,6 @@ pub(crate) fn declare(graph: &mut Graph, sizes: Sizes, need: &Need) -> Hierarchy
         uses: smallvec![
             read(0, places),
             Use::bound(1, triangles, Access::ImageWrite),
-            write(2, arrived),
         ],
         push: Push::NONE,
         work: Work::EachMesh { shader: module!("hierarchy/triangles.comp") },
@@ -202,15 +231,10 @@ pub(crate) fn declare(graph: &mut Graph, sizes: Sizes, need: &Need) -> Hierarchy
         module!("hierarchy/boxes.comp"),
         of_leaves,
         push,
-        smallvec![
-            Use::bound(0, triangles, Access::ImageRead),
-            read(1, inner),
-            read(2, parents),
-            Use::bound(3, boxes, Access::BufferUpdate),
-            Use::bound(4, arrived, Access::BufferUpdate),
-        ],
+        smallvec![Use::bound(0, triangles, Access::ImageRead), write(1, boxes)],
         need,
     ));
+    pyramid(graph, boxes, sizes, need);
     graph.push(Pass::compute(
         "hierarchy.nodes",
         module!("hierarchy/nodes.comp"),
