@@ -16,7 +16,7 @@ layout(set = 0, binding = 3, std430) readonly buffer Shafts { Shaft shafts[]; };
 layout(set = 0, binding = 4, rgba32f) readonly uniform image2D triangles;
 layout(set = 0, binding = 5, std430) readonly buffer Totals { uint shaft_count; uint dense_count; };
 layout(set = 0, binding = 6, std430) readonly buffer Listed { uvec2 listed[]; };
-layout(set = 0, binding = 7, std430) readonly buffer Found { uint found[]; };
+layout(set = 0, binding = 7, std430) readonly buffer Found { uvec4 found[]; };
 layout(set = 0, binding = 8, std430) readonly buffer Lists { uint lists[]; };
 layout(set = 0, binding = 9, r32f) writeonly uniform image2D visibility;
 
@@ -45,8 +45,17 @@ Triangle triangle_of(uint nth)
     return t;
 }
 
-// The light's samples that a triangle hides from a receiver at `p`: four rows of eight a word.
-uvec2 hidden_by(Triangle t, vec3 p)
+// The hidden samples of row j: those between the lines in their first and second components.
+uint row_within(vec3 least, vec3 least_step, vec3 most, vec3 most_step, float j, float shift)
+{
+    vec3 from = least + least_step * j;
+    vec3 to = most + most_step * j;
+    return interval(max(max(from.x, from.y), from.z), min(min(to.x, to.y), to.z), shift);
+}
+
+// The light's samples that a triangle hides from a receiver at `p`, four rows of eight a word. `towards` is where the
+// segments to the light begin, as planes through the receiver see it: at the receiver, or for a sun (0, 0, 1).
+uvec2 hidden_by(Triangle t, vec3 p, vec3 towards)
 {
     vec3 a = t.a - p;
     vec3 b = t.b - p;
@@ -56,33 +65,46 @@ uvec2 hidden_by(Triangle t, vec3 p)
     vec3 ab = cross(a, b) * side;
     vec3 bc = cross(b, c) * side;
     vec3 ca = cross(c, a) * side;
-    vec3 own = t.normal * side;
-    vec2 half_light = frame.half_light;
-    bool sun = frame.sun != 0u;
-    Bound e0 = bound_of(ab.xy, sun ? -ab.z : -dot(ab, p), half_light);
-    Bound e1 = bound_of(bc.xy, sun ? -bc.z : -dot(bc, p), half_light);
-    Bound e2 = bound_of(ca.xy, sun ? -ca.z : -dot(ca, p), half_light);
-    // A segment to a lamp ends at its plane.
-    Bound e3 = bound_of(sun ? vec2(0.0) : own.xy, sun ? 1.0 : -dot(own, t.a), half_light);
+    Line e0 = line_of(ab.xy, -dot(ab, towards));
+    Line e1 = line_of(bc.xy, -dot(bc, towards));
+    Line e2 = line_of(ca.xy, -dot(ca, towards));
     // A triangle wholly nearer to the light than the receiver is bounded on both sides; where rounding leaves a sliver
     // of it open, it has no samples.
-    bool open = max(max(e0.least.x, e1.least.x), e2.least.x) <= -FAR || min(min(e0.most.x, e1.most.x), e2.most.x) >= FAR;
+    bool open = e0.least == e1.least && e1.least == e2.least;
     bool none = abs(volume) <= t.sharp || t.nearest > p.z || (open && t.furthest < p.z);
-    uvec2 mask = uvec2(0u);
-    for (int row = 0; row < SIDE; ++row) {
-        float j = float(row);
-        float least = max(max(e0.least.x + e0.least.y * j, e1.least.x + e1.least.y * j),
-                          max(e2.least.x + e2.least.y * j, e3.least.x + e3.least.y * j));
-        float most = min(min(e0.most.x + e0.most.y * j, e1.most.x + e1.most.y * j),
-                         min(e2.most.x + e2.most.y * j, e3.most.x + e3.most.y * j));
-        uint bits = interval(least - row_offset(row), most - row_offset(row));
-        if (row < ROWS_A_WORD) {
-            mask.x |= bits << SIDE * row;
-        } else {
-            mask.y |= bits << SIDE * (row - ROWS_A_WORD);
-        }
-    }
+    vec2 l0 = least_of(e0);
+    vec2 l1 = least_of(e1);
+    vec2 l2 = least_of(e2);
+    vec2 m0 = most_of(e0);
+    vec2 m1 = most_of(e1);
+    vec2 m2 = most_of(e2);
+    vec3 l = vec3(l0.x, l1.x, l2.x);
+    vec3 ls = vec3(l0.y, l1.y, l2.y);
+    vec3 m = vec3(m0.x, m1.x, m2.x);
+    vec3 ms = vec3(m0.y, m1.y, m2.y);
+    uvec2 mask;
+    mask.x = row_within(l, ls, m, ms, 0.0, 15.0 / 16.0) | row_within(l, ls, m, ms, 1.0, 7.0 / 16.0) << 8 |
+             row_within(l, ls, m, ms, 2.0, 11.0 / 16.0) << 16 | row_within(l, ls, m, ms, 3.0, 3.0 / 16.0) << 24;
+    mask.y = row_within(l, ls, m, ms, 4.0, 13.0 / 16.0) | row_within(l, ls, m, ms, 5.0, 5.0 / 16.0) << 8 |
+             row_within(l, ls, m, ms, 6.0, 9.0 / 16.0) << 16 | row_within(l, ls, m, ms, 7.0, 1.0 / 16.0) << 24;
     return none ? uvec2(0u) : mask;
+}
+
+// The samples behind a triangle's own plane, as seen from a receiver on one side of it, where it crosses the light's.
+uvec2 behind_plane(Triangle t, vec3 p)
+{
+    float side = dot(t.normal, t.a - p) < 0.0 ? -1.0 : 1.0;
+    Line own = line_of(t.normal.xy * side, -dot(t.normal, t.a) * side);
+    vec3 l = vec3(least_of(own).x);
+    vec3 ls = vec3(least_of(own).y);
+    vec3 m = vec3(most_of(own).x);
+    vec3 ms = vec3(most_of(own).y);
+    uvec2 mask;
+    mask.x = row_within(l, ls, m, ms, 0.0, 15.0 / 16.0) | row_within(l, ls, m, ms, 1.0, 7.0 / 16.0) << 8 |
+             row_within(l, ls, m, ms, 2.0, 11.0 / 16.0) << 16 | row_within(l, ls, m, ms, 3.0, 3.0 / 16.0) << 24;
+    mask.y = row_within(l, ls, m, ms, 4.0, 13.0 / 16.0) | row_within(l, ls, m, ms, 5.0, 5.0 / 16.0) << 8 |
+             row_within(l, ls, m, ms, 6.0, 9.0 / 16.0) << 16 | row_within(l, ls, m, ms, 7.0, 1.0 / 16.0) << 24;
+    return mask;
 }
 
 void main()
@@ -109,11 +131,20 @@ void main()
     const uvec2 ALL = uvec2(0xffffffffu);
     uvec2 hidden0 = mine0 ? uvec2(0u) : ALL;
     uvec2 hidden1 = mine1 ? uvec2(0u) : ALL;
-    uint end = entry.y + found[nth];
-    for (uint i = entry.y; i < end && (hidden0 & hidden1) != ALL; ++i) {
-        Triangle t = triangle_of(lists[i]);
-        hidden0 |= hidden_by(t, r0.in_light);
-        hidden1 |= hidden_by(t, r1.in_light);
+    vec3 p0 = r0.in_light;
+    vec3 p1 = r1.in_light;
+    vec3 towards0 = frame.sun != 0u ? vec3(0.0, 0.0, 1.0) : p0;
+    vec3 towards1 = frame.sun != 0u ? vec3(0.0, 0.0, 1.0) : p1;
+    uvec4 list = found[nth];
+    for (uint i = 0u; i < list.y && (hidden0 & hidden1) != ALL; ++i) {
+        Triangle t = triangle_of(lists[list.x + i]);
+        hidden0 |= hidden_by(t, p0, towards0);
+        hidden1 |= hidden_by(t, p1, towards1);
+    }
+    for (uint i = 0u; i < list.w && (hidden0 & hidden1) != ALL; ++i) {
+        Triangle t = triangle_of(lists[list.z + i]);
+        hidden0 |= hidden_by(t, p0, towards0) & behind_plane(t, p0);
+        hidden1 |= hidden_by(t, p1, towards1) & behind_plane(t, p1);
     }
     ivec2 counts = 64 - ivec2(bitCount(hidden0.x) + bitCount(hidden0.y), bitCount(hidden1.x) + bitCount(hidden1.y));
     if (mine0) {

@@ -15,40 +15,41 @@ const int SIDE = 8;
 const int ROWS_A_WORD = 32 / SIDE;
 const int WORDS = SIDE * SIDE / 32;
 
-// The offset of the samples of a row, in 0 to 1: the eight rows have all eighths, far from those of rows nearby, so that
-// no two samples of the light lie in one column.
-float row_offset(int row)
-{
-    const int order[8] = int[8](0, 4, 2, 6, 1, 5, 3, 7);
-    return (float(order[row & 7]) + 0.5) / 8.0;
-}
-
 const float FAR = 1.0e9;
 
-// The bound of a plane on i in row j: x + y j at least where `lower`, else at most.
-struct Bound {
-    vec2 least;
-    vec2 most;
+// A line of samples: row j crosses it at x + y j.
+struct Line {
+    vec2 at;
+    bool least; // whether the samples behind it are hidden, not those before it
 };
 
-// The bound on the samples inside of the plane n of light space: those s with dot(n.xy, s.xy) + c >= 0.
-Bound bound_of(vec2 n, float c, vec2 half_light)
+// The line where the plane n of light space, dot(n.xy, s.xy) + c = 0, meets the light.
+Line line_of(vec2 n, float c)
 {
-    float x = n.x * 2.0 * half_light.x / float(SIDE);
-    float y = n.y * 2.0 * half_light.y / float(SIDE);
-    float k = c - dot(n, half_light) + 0.5 * y;
+    vec2 step = n * 2.0 * frame.half_light / float(SIDE);
+    float k = c - dot(n, frame.half_light) + 0.5 * step.y;
     // A plane along the rows bounds none of the samples of a row, or all.
-    float least = 1.0e-7 * (abs(y) * float(SIDE) + abs(k)) + 1.0e-37;
-    x = abs(x) < least ? (x < 0.0 ? -least : least) : x;
-    vec2 line = vec2(-k, -y) / x;
-    return Bound(x > 0.0 ? line : vec2(-FAR, 0.0), x > 0.0 ? vec2(FAR, 0.0) : line);
+    float least = 1.0e-7 * (abs(step.y) * float(SIDE) + abs(k)) + 1.0e-37;
+    float x = abs(step.x) < least ? (step.x < 0.0 ? -least : least) : step.x;
+    return Line(vec2(-k, -step.y) / x, x > 0.0);
 }
 
-// The mask of a row whose bits from `first` to `last` are hidden.
-uint interval(float first, float last)
+vec2 least_of(Line line)
 {
-    int from = int(clamp(ceil(first), 0.0, float(SIDE)));
-    int to = int(clamp(floor(last) + 1.0, 0.0, float(SIDE)));
+    return line.least ? line.at : vec2(-FAR, 0.0);
+}
+
+vec2 most_of(Line line)
+{
+    return line.least ? vec2(FAR, 0.0) : line.at;
+}
+
+// The mask of a row whose samples between two places are hidden; a sample at the very edge of two triangles belongs to
+// one of them. The samples of a row begin at 1 - `shift`.
+uint interval(float least, float most, float shift)
+{
+    int from = int(clamp(least + shift, 0.0, float(SIDE)));
+    int to = int(clamp(most + shift, 0.0, float(SIDE)));
     return (1u << to) - 1u & 0xffffffffu << from;
 }
 

@@ -17,8 +17,8 @@ layout(set = 0, binding = 5, std430) readonly buffer Shafts { Shaft shafts[]; };
 layout(set = 0, binding = 6, rgba32f) readonly uniform image2D triangles;
 layout(set = 0, binding = 7, std430) readonly buffer Totals { uint shaft_count; uint dense_count; };
 layout(set = 0, binding = 8, std430) readonly buffer Listed { uvec2 listed[]; };
-layout(set = 0, binding = 9, std430) writeonly buffer Found { uint found[]; };
-layout(set = 0, binding = 10, std430) writeonly buffer Lists { uint lists[]; };
+layout(set = 0, binding = 9, std430) writeonly buffer Found { uvec4 found[]; };
+layout(set = 0, binding = 10, std430) buffer Lists { uint lists[]; };
 
 // Whether a triangle may lie between a receiver of the shaft and the light: its corners are not all on the outer side of
 // one of the shaft's sides, and its own plane does not have all receivers and the whole light on one side.
@@ -62,24 +62,37 @@ void main()
     uvec2 entry = listed[nth];
     Shaft shaft = shafts[entry.x];
     Planes planes = planes_of(shaft, root_low.xyz, root_step.xyz);
-    uint count = 0u;
+    // First the leaves: a turn of a walk costs all that it may do, so that the triangles come after it.
+    uint leaves = 0u;
     uint at = 0u;
     while (at < frame.nodes) {
         Node node = unpacked_node(imageLoad(nodes, texel(at)));
         bool inside = meets(planes, node);
         if (inside && node.leaf) {
-            for (uint i = 0u; i < LEAF; ++i) {
-                uint triangle = node.link * LEAF + i;
-                vec4 a = imageLoad(triangles, texel(3u * triangle));
-                vec4 b = imageLoad(triangles, texel(3u * triangle + 1u));
-                vec4 c = imageLoad(triangles, texel(3u * triangle + 2u));
-                if (a.w > 0.0 && may_block(shaft, in_light_space(a.xyz), in_light_space(b.xyz), in_light_space(c.xyz))) {
-                    lists[entry.y + count] = triangle;
-                    count += 1u;
-                }
-            }
+            lists[entry.y + leaves] = node.link;
+            leaves += 1u;
         }
         at = inside || node.leaf ? at + 1u : node.link;
     }
-    found[nth] = count;
+    // Then their triangles, in the leaves' second half of the list's room: those that cross the light's plane from its
+    // end on backwards.
+    uint room = leaves * (LEAF + 1u);
+    uint plain = 0u;
+    uint crossing = 0u;
+    for (uint i = 0u; i < leaves * LEAF; ++i) {
+        uint triangle = lists[entry.y + i / LEAF] * LEAF + i % LEAF;
+        vec4 a = imageLoad(triangles, texel(3u * triangle));
+        vec4 b = imageLoad(triangles, texel(3u * triangle + 1u));
+        vec4 c = imageLoad(triangles, texel(3u * triangle + 2u));
+        vec3 la = in_light_space(a.xyz);
+        vec3 lb = in_light_space(b.xyz);
+        vec3 lc = in_light_space(c.xyz);
+        bool crosses = frame.sun == 0u && min(la.z, min(lb.z, lc.z)) < 0.0;
+        if (a.w > 0.0 && may_block(shaft, la, lb, lc)) {
+            lists[entry.y + (crosses ? room - 1u - crossing : leaves + plain)] = triangle;
+            plain += crosses ? 0u : 1u;
+            crossing += crosses ? 1u : 0u;
+        }
+    }
+    found[nth] = uvec4(entry.y + leaves, plain, entry.y + room - crossing, crossing);
 }

@@ -23,10 +23,10 @@ bool is_dense(uint count, uint most)
     return count > most + 1u;
 }
 
-// The places of a shaft's triangles in the lists.
+// The places of a shaft's leaves and their triangles in the lists.
 uint room_of(uint count)
 {
-    return (count - 1u) * LEAF;
+    return (count - 1u) * (LEAF + 1u);
 }
 
 #endif

@@ -16,7 +16,7 @@ const SHAFTS_A_TILE: u32 = 2;
 /// The slots of a block (`traced/lists.glsl`).
 const BLOCK: u32 = 256;
 /// The places in the lists of triangles for each pixel of the image, on average.
-const LISTED_A_PIXEL: u32 = 8;
+const LISTED_A_PIXEL: u32 = 16;
 
 /// The first part of the frame's constants (`traced/frame.glsl`).
 #[repr(C)]
@@ -97,7 +97,7 @@ pub(super) fn declare(
     let arguments = graph.buffer("traced.arguments", 48);
     let listed = graph.buffer("traced.listed", of_slots(8));
     let dense = graph.buffer("traced.dense", of_slots(4));
-    let found = graph.buffer("traced.found", of_slots(4));
+    let found = graph.buffer("traced.found", of_slots(16));
     let lists = graph.buffer("traced.lists", 4 * u64::from(capacity));
 
     let read = |binding, id| Use::bound(binding, id, Access::BufferReadCompute);
