@@ -25,7 +25,7 @@ struct Frame {
     uint nodes;         // how many nodes the hierarchy has
     uint most;          // the most leaves that a shaft may hold
     uint capacity;      // how many leaves all lists hold together
-    uint samples;       // samples along a side of the light
+    uint samples;       // rays that a pixel of a dense shaft sends
 };
 
 layout(set = 0, binding = 0) uniform texture2D gbuffer_depth;

@@ -3,7 +3,7 @@
 use super::Settings;
 use crate::graph::{Access, Graph, Pass, Push, ResourceId, Use, Uses, Work};
 use crate::shaders::module;
-use crate::stages::hierarchy::{Hierarchy, LEAF, groups};
+use crate::stages::hierarchy::{Hierarchy, groups};
 use crate::stages::visibility::grid;
 use crate::techniques::room::PassInputs;
 use bytemuck::{Pod, Zeroable};
@@ -54,7 +54,7 @@ pub struct PixelConstants {
     pub most: u32,
     /// How many triangles all lists hold together.
     pub capacity: u32,
-    /// Samples along a side of the light.
+    /// How many rays a pixel of a dense shaft sends.
     pub samples: u32,
 }
 
@@ -175,7 +175,20 @@ pub(super) fn declare(
     let shader = module!("traced/cover.comp");
     let work = Work::Indirect { shader, arguments, offset: 16 };
     graph.push(Pass { name: "traced.cover", uses, push: Push::NONE, work, need: *need });
-    let _ = (dense, LEAF);
+    let mut uses = of_frame();
+    uses.extend([
+        image(3, tree.nodes),
+        read(4, tree.header),
+        read(5, shafts),
+        image(6, tree.triangles),
+        read(7, totals),
+        read(8, dense),
+        Use::bound(9, visibility, Access::ImageUpdate),
+        Use::fixed(arguments, Access::Indirect),
+    ]);
+    let shader = module!("traced/rays.comp");
+    let work = Work::Indirect { shader, arguments, offset: 32 };
+    graph.push(Pass { name: "traced.rays", uses, push: Push::NONE, work, need: *need });
 }
 
 /// Adds the passes that write the frame's constants.
@@ -207,7 +220,7 @@ fn declare_constants(
         nodes: space.nodes,
         most: settings.leaves,
         capacity,
-        samples: 8,
+        samples: settings.rays,
     };
     graph.push(Pass::constants("traced.pixels", constants, 128, &second, need));
 }

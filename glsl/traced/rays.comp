@@ -1,0 +1,67 @@
+// Entry of the pass traced.rays (src/techniques/traced/passes.rs).
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "traced/frame.glsl"
+#include "traced/shaft.glsl"
+#include "traced/lists.glsl"
+
+// Works off the shafts that hold too many triangles: each of their pixels sends rays to samples of the light. One
+// workgroup handles one shaft, an invocation one of its pixels.
+
+layout(local_size_x = 16) in;
+
+layout(set = 0, binding = 3, rgba32ui) readonly uniform uimage2D nodes;
+layout(set = 0, binding = 4, std430) readonly buffer Header { vec4 root_low; vec4 root_step; };
+layout(set = 0, binding = 5, std430) readonly buffer Shafts { Shaft shafts[]; };
+layout(set = 0, binding = 6, rgba32f) readonly uniform image2D triangles;
+layout(set = 0, binding = 7, std430) readonly buffer Totals { uint shaft_count; uint dense_count; };
+layout(set = 0, binding = 8, std430) readonly buffer Dense { uint dense[]; };
+layout(set = 0, binding = 9, r32f) writeonly uniform image2D visibility;
+
+#include "hierarchy/segment.glsl"
+
+// The turns of all loops of an invocation: some drivers end loops without a word after 65,535 of them.
+const int MOST_TURNS = 60000;
+
+// The nth of 64 samples of the light, each coordinate from -1 to 1: the same rows as in traced/cover.comp, in an order in
+// which any first few are spread over the light.
+vec2 sample_at(int n)
+{
+    const int order[8] = int[8](0, 4, 2, 6, 1, 5, 3, 7);
+    int row = order[n & 7];
+    int column = order[n >> 3 & 7] + order[row] & 7;
+    float offset = (float(order[row]) + 0.5) / 8.0;
+    return vec2(float(column) + offset, float(row) + 0.5) / 4.0 - 1.0;
+}
+
+void main()
+{
+    uint nth = nth_group(gl_WorkGroupID.xy);
+    uint slot = 0u;
+    uint evens = (dense_count + 1u) / 2u;
+    // As in traced/cover.comp, even places come first.
+    slot = nth < dense_count ? dense[nth < evens ? 2u * nth : 2u * (nth - evens) + 1u] : 0u;
+    int lane = int(gl_LocalInvocationID.x);
+    bool mine = nth < dense_count && (shafts[slot].pixels >> lane & 1u) != 0u;
+    int tile = int(slot / SHAFTS_A_TILE);
+    int row = tiles_in(frame.extent).x;
+    ivec2 pixel = ivec2(tile % row, tile / row) * TILE_SIDE + ivec2(lane % TILE_SIDE, lane / TILE_SIDE);
+    if (!mine) {
+        return;
+    }
+    Receiver r = receiver_of(pixel);
+    int turns = MOST_TURNS;
+    int sent = 0;
+    int seen = 0;
+    while (sent < int(frame.samples) && turns > 0) {
+        vec2 at = sample_at(sent) * frame.half_light;
+        vec3 in_light = frame.sun != 0u ? vec3(at, -1.0) : vec3(at, 0.0) - r.in_light;
+        vec3 along = in_light.x * frame.light_x.xyz + in_light.y * frame.light_y.xyz + in_light.z * frame.light_z.xyz;
+        Segment s = segment_of(r.position, along, frame.sun == 0u, root_low.xyz, root_step.xyz);
+        bool hit = blocked(s, frame.nodes, turns);
+        sent += 1;
+        seen += hit ? 0 : 1;
+    }
+    imageStore(visibility, pixel, vec4(float(seen) / float(max(sent, 1))));
+}
