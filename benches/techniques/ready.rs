@@ -50,7 +50,7 @@ impl Ready {
     ) -> Self {
         let keep = |i: &Instance| i.role != Role::Occluder;
         let mut stage = Stage::new(device, scene, view, extent, technique(words), keep).unwrap();
-        let light = scene.light(None).unwrap().light;
+        let light = *scene.light(None).unwrap().light.rectangle();
         let plan = stage.plan(&light, None).unwrap();
         stage.run(&plan).unwrap();
         Self { stage, plan, light }

@@ -249,7 +249,7 @@ fn wrong_scenes_are_one_sentence() {
     line["extras"]["height"] = json!(0);
     let scene = write(&there, &triangle(&json!([mesh, line])), good);
     let named = ["--technique", "soft-shadow-map"];
-    refuse("line", &scene, &named, "the light is a line, and soft-shadow-map needs an area");
+    refuse("line", &scene, &named, "the light is a line, and soft-shadow-map takes no lines");
     let out = folder("line_hard");
     let output = run(&scene, &out, &["--size", "32x32", "--technique", "hard"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -263,7 +263,7 @@ fn wrong_scenes_are_one_sentence() {
         "polygon",
         &scene,
         &named,
-        "the light is a polygon, and soft-shadow-map knows rectangles alone",
+        "the light is a polygon, and soft-shadow-map takes no polygons",
     );
     for options in [&["--technique", "many-lights"][..], &[]] {
         let out = folder("polygon_many");

@@ -125,11 +125,12 @@ fn a_scene_far_from_the_origin_looks_the_same() {
     for instance in &mut far.instances {
         instance.world_from_mesh = DMat4::from_translation(offset) * instance.world_from_mesh;
     }
-    let l = near.light(None).unwrap().light;
+    let l = *near.light(None).unwrap().light.rectangle();
     let [a, b] = l.half_extents();
     let frame = l.world_from_light();
     let (x, y) = (frame.x_axis.truncate() * a, frame.y_axis.truncate() * b);
-    far.lights[0].light = antumbra::RectangleLight::new(l.center() + offset, x, -y).unwrap();
+    let moved = antumbra::RectangleLight::new(l.center() + offset, x, -y).unwrap();
+    far.lights[0].light = moved.into();
     for words in ["receivers=pixels map=128", "receivers=map map=128 receiver_map=128"] {
         let here = Setup::ground(&near, 2.5, 96);
         let mut there = Setup::ground(&far, 2.5, 96);

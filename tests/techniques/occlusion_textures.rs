@@ -142,7 +142,7 @@ fn errors_are_what_they_were_measured_to_be() {
 
 /// The view of a scene and its occluders' triangles in light space.
 fn in_light_space(scene: &Scene, map: u32) -> (MapView, Vec<[DVec3; 3]>) {
-    let light = scene.light(None).unwrap().light;
+    let light = *scene.light(None).unwrap().light.rectangle();
     let to_light = light.light_from_world();
     let occluders = || scene.instances.iter().filter(|i| i.role.blocks());
     let boxes: Vec<_> =

@@ -29,8 +29,7 @@ fn scene_of(quads: &[([DVec3; 4], Role)], light: Option<RectangleLight>) -> Scen
     }
     scene.lights.extend(light.map(|light| AreaLight {
         name: "light".into(),
-        light,
-        outline: Vec::new(),
+        light: light.into(),
         color: [1.0; 3],
         intensity: 1.0,
     }));

@@ -21,7 +21,7 @@ impl Bunny {
     pub fn new() -> Self {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
         let scene = from_gltf(&root.join("bunny.glb")).unwrap();
-        let light = scene.lights[0].light;
+        let light = *scene.lights[0].light.rectangle();
         let mut random = Random(61);
         // The part of the ground that its shadow is on.
         let ground = (0..POINTS / 2).map(|_| Receiver {
