@@ -4,7 +4,7 @@ use super::*;
 use antumbra::{RectangleLight, Shape};
 
 /// The light of a node with these members beside its extras.
-fn light(node: Value, extras: Value) -> Result<antumbra::scene::AreaLight, String> {
+pub fn light(node: Value, extras: Value) -> Result<antumbra::scene::AreaLight, String> {
     let mut lamp = node;
     lamp["name"] = json!("lamp");
     lamp["extras"] = json!({"area_light": "rectangle", "width": 2.0, "height": 1});
