@@ -22,6 +22,10 @@ pub struct Light {
 
 /// The form of a light within its rectangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a light is a plain value, which is copied a few times a frame"
+)]
 enum Form {
     /// The rectangle itself, or its line where it has no height.
     Rectangle,

@@ -104,7 +104,7 @@ fn what_takes_no_lines_says_so() {
     let line = metre_line().into();
     for technique in Technique::all().iter().filter(|t| !t.room().takes().shapes.hold(&line)) {
         let mut stage = setup.stage(&device, &format!("technique={technique}"));
-        let sentence = stage.plan(&setup.light(), None).map(|_| ()).unwrap_err().to_string();
+        let sentence = stage.plan(setup.light(), None).map(|_| ()).unwrap_err().to_string();
         assert!(sentence.contains("the light is a line"), "{sentence}");
     }
 }

@@ -329,7 +329,7 @@ fn the_work_does_not_grow_with_the_light() {
         let scene = normalized("bunny", side);
         let setup = Setup::ground(&scene, 2.2, 32);
         let mut stage = setup.stage(&device, "technique=occlusion-textures");
-        let plan = stage.plan(&setup.light(), None).unwrap();
+        let plan = stage.plan(setup.light(), None).unwrap();
         let plan = plan.plan();
         let passes = plan.steps.iter().map(|s| &plan.graph.passes()[s.pass]);
         passes.map(|p| format!("{} {:?}", p.name, p.work)).collect::<Vec<_>>()

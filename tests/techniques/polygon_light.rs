@@ -39,7 +39,7 @@ fn many_lights_see_the_polygon() {
         assert!(error < most && as_measured(error, MEASURED), "{name}: {error} %");
 
         // The truth can tell the polygon from its rectangle, and from its mirror image.
-        let plan = stage.plan(&setup.light(), None).unwrap();
+        let plan = stage.plan(setup.light(), None).unwrap();
         stage.run(&plan).unwrap();
         let whole = percent(&truth, &stage.visibility().unwrap());
         let mirrored: Vec<_> = corners.iter().map(|&[x, z]| [-x, z]).collect();

@@ -19,7 +19,7 @@ pub enum Runner<'a> {
     /// The node, its stage and its frame.
     Node { stage: Box<Stage>, plan: Box<FramePlan> },
     /// Rays by the processor.
-    Rays { tracer: &'a Tracer, receivers: &'a [Receiver], light: Light, sampling: Sampling },
+    Rays { tracer: &'a Tracer, receivers: &'a [Receiver], light: Box<Light>, sampling: Sampling },
     /// Rays of the fragments as they are drawn, by the maps of the stage within.
     Forward(Box<Forward>),
     /// The paper's scheme ends with its map. Its image is that of blending, whose sums are the same
@@ -55,7 +55,7 @@ impl<'a> Runner<'a> {
             Some(Method::Rays(rays)) => {
                 let sampling =
                     truth::sampling(Sampling::one_grid(rays.isqrt(), TRACER_SEED), receivers)?;
-                Some(Self::Rays { tracer, receivers, light: lit?, sampling })
+                Some(Self::Rays { tracer, receivers, light: Box::new(lit?), sampling })
             }
             Some(Method::Readback(side)) => {
                 let words = "soft-shadow-map receivers=map accumulate=blend sides=one";
@@ -69,7 +69,7 @@ impl<'a> Runner<'a> {
             }
             Some(Method::Node(settings)) => {
                 let mut stage = stage(*settings)?;
-                let plan = stage.plan(&lit?, ready.window)?;
+                let plan = stage.plan(lit?, ready.window)?;
                 Some(Self::Node { stage, plan: Box::new(plan) })
             }
             Some(Method::Forward(settings)) => {
@@ -106,7 +106,7 @@ impl<'a> Runner<'a> {
             }
             Self::Rays { tracer, receivers, light, sampling } => {
                 let started = Instant::now();
-                let traced = tracer.visible_fractions(*light, receivers, sampling)?;
+                let traced = tracer.visible_fractions(**light, receivers, sampling)?;
                 let frame = started.elapsed();
                 let times = FrameTimes { frame, record: Duration::ZERO, passes: Vec::new() };
                 Ok((times, Some(traced.visible)))

@@ -67,7 +67,7 @@ pub fn truth(
         }
         Against::Traced => {
             let sampling = sampling(Sampling::new(rays, SEED), receivers)?;
-            Ok(tracer.visible_fractions(&light, receivers, &sampling)?)
+            Ok(tracer.visible_fractions(light, receivers, &sampling)?)
         }
     }
 }

@@ -49,7 +49,7 @@ impl Bunny {
     pub fn traced(&self, rays: u32) -> Vec<Traced> {
         let tracer = Tracer::new(&self.scene).unwrap();
         let sampling = |seed| Sampling::new(rays, seed).unwrap();
-        let of = |seed| tracer.visible_fractions(&self.light, &self.receivers, &sampling(seed));
+        let of = |seed| tracer.visible_fractions(self.light, &self.receivers, &sampling(seed));
         (0..SEEDS).map(|seed| of(seed).unwrap()).collect()
     }
 }
