@@ -100,7 +100,7 @@ pub use lent::{
     BorderBarriers, Geometry, HostImage, LightIndex, MeshBounds, MeshBuffers, MeshInstance,
     OccluderMaps, Role, Slot, TechniqueIndex, Visibility,
 };
-pub use light::{Light, RectangleLight};
+pub use light::{Light, RectangleLight, Shape};
 pub use node::{LayerPass, PassTime, ShadowNode, VisibilityImage};
 pub use plain::{Matrix, Vector};
 pub use technique::{Technique, settings};

@@ -1,4 +1,4 @@
-//! The rectangle light, and the light space that every technique works in.
+//! Lights of every shape, and the light space that every technique works in.
 
 use crate::Error;
 use crate::plain::Vector;
@@ -7,13 +7,16 @@ use glam::{DMat3, DMat4, DVec2, DVec3};
 pub(crate) mod outline;
 mod shape;
 
-pub use shape::Light;
+pub use shape::{Light, Shape};
 
 /// The largest cosine of the angle between two half-axes that count as perpendicular.
 const MAX_SKEW: f64 = 1e-4;
 
 /// The distance of a sun, in radii of the sphere that it lights.
 const SUN_DISTANCE: f64 = 1000.0;
+
+/// The lengths in metres whose squares, and the ratios of these, single precision holds.
+pub(crate) const LENGTHS: std::ops::RangeInclusive<f64> = 1e-15..=1e15;
 
 /// The largest angular size of a sun, radians.
 const MAX_ANGULAR_SIZE: f64 = 1.0;
@@ -139,7 +142,7 @@ impl RectangleLight {
 
     /// Whether the light is a segment without height.
     pub fn is_line(&self) -> bool {
-        self.half_extents[1] == 0.0
+        self.half_extents[1] == 0.0 && self.half_extents[0] > 0.0
     }
 
     /// A sun: a light of an angular size, so far away that its rays are all but parallel.

@@ -35,7 +35,7 @@ pub fn forward(device: &HeadlessDevice, scale: &Scale, table: &mut Table) {
             let settings = technique(&format!("ray-march map=512 rays={rays} filter=off"));
             let keep = |_: &Instance| true;
             let mut stage = Stage::new(device, &scene, &view, EXTENT, settings, keep).unwrap();
-            let plan = stage.plan(&light, None).unwrap();
+            let plan = stage.plan(light, None).unwrap();
             let mut forward = Forward::new(device, stage, plan, &scene, keep).unwrap();
             let mut drawn = Vec::new();
             let mut parts: [Vec<f64>; 3] = Default::default();

@@ -43,7 +43,7 @@ fn pruned(_: &HeadlessDevice, scale: &Scale, table: &mut Table) {
             stage.configure_with(technique_of(case.words).unwrap(), |d| d.omit = omit).unwrap();
             stage
         });
-        let plans = stages.each_mut().map(|stage| stage.plan(&light, None).unwrap());
+        let plans = stages.each_mut().map(|stage| stage.plan(light, None).unwrap());
         let mut times: [Vec<FrameTimes>; 2] = Default::default();
         // The first frame compiles what the driver compiles.
         for round in 0..=scale.rounds {

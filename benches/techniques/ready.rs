@@ -50,8 +50,8 @@ impl Ready {
     ) -> Self {
         let keep = |i: &Instance| i.role != Role::Occluder;
         let mut stage = Stage::new(device, scene, view, extent, technique(words), keep).unwrap();
-        let light = scene.light(None).unwrap().light;
-        let plan = stage.plan(&light, None).unwrap();
+        let light = *scene.light(None).unwrap().light.rectangle();
+        let plan = stage.plan(light, None).unwrap();
         stage.run(&plan).unwrap();
         Self { stage, plan, light }
     }
@@ -79,7 +79,7 @@ impl Ready {
     /// Microseconds that planning the frame once takes.
     pub fn plan_us(&mut self) -> f64 {
         let started = std::time::Instant::now();
-        let plan = self.stage.plan(&self.light, None).unwrap();
+        let plan = self.stage.plan(self.light, None).unwrap();
         let us = started.elapsed().as_secs_f64() * 1e6;
         drop(plan);
         us
@@ -111,7 +111,7 @@ impl Ready {
         let receivers = receivers(self.stage.gbuffer()).unwrap();
         let sampling = Sampling::new(rays, 1).unwrap();
         let tracer = Tracer::new(scene).unwrap();
-        let traced = tracer.visible_fractions(&self.light, &receivers, &sampling).unwrap();
+        let traced = tracer.visible_fractions(self.light, &receivers, &sampling).unwrap();
         (traced.visible, traced.noise)
     }
 }

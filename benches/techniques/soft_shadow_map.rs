@@ -78,7 +78,7 @@ fn gather_and_readback(device: &HeadlessDevice, scale: &Scale, table: &mut Table
     table.head("L|N|gather ms|readback ms|depth|rectangles|blend|MB moved|ratio");
     for light in [0.1, 0.4, 1.0] {
         let scene = scene("spheres", light);
-        let lamp = scene.light(None).unwrap().light;
+        let lamp = *scene.light(None).unwrap().light.rectangle();
         for &n in &scale.sides[1..] {
             let words = format!("receivers=map sides=one map={n} receiver_map={n}");
             let mut gather = ready(device, &scene, 32, &words);

@@ -73,7 +73,7 @@ impl World {
     /// The light at a time; with `to_the_sky` it shines at the sky, where it can move there.
     pub fn light(&self, seconds: f64, to_the_sky: bool) -> Outcome<Light> {
         match &self.fixed {
-            Some((light, _)) => Ok(light.shape()?),
+            Some((light, _)) => Ok(light.light),
             None => Ok(light(seconds, to_the_sky)?.into()),
         }
     }

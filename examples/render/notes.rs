@@ -1,10 +1,10 @@
 //! Notes on a run that goes well: facts that the picture may not show.
 
 use crate::options::Options;
-use antumbra::FramePlan;
 use antumbra::auto::{Budget, Choice};
 use antumbra::effects::{Effect, Outcome};
 use antumbra::scene::{AreaLight, Scene};
+use antumbra::{FramePlan, Shape};
 
 /// One line each, for standard error.
 pub fn of(
@@ -93,10 +93,13 @@ fn others(options: &Options, scene: &Scene, light: &AreaLight) -> Option<String>
 fn unshadowed(light: &AreaLight, plan: &FramePlan) -> Option<String> {
     let shadow = plan.verdicts().of(Effect::Shadow).outcome;
     let [x, y, z] = light.light.emission().to_array().map(|c| (c * 100.0).round() / 100.0 + 0.0);
+    let whither = match light.light.shape() {
+        Shape::Sphere { .. } | Shape::Capsule { .. } | Shape::Point => "to all sides".into(),
+        _ => format!("along its node's -Z, here towards ({x}, {y}, {z})"),
+    };
     (shadow == Outcome::LeftOut).then(|| {
         format!(
-            "nothing is shadowed: no occluder lies between the light {} and a receiver; it shines along its node's \
-             -Z, here towards ({x}, {y}, {z})",
+            "nothing is shadowed: no occluder lies between the light {} and a receiver; it shines {whither}",
             light.name
         )
     })

@@ -152,7 +152,7 @@ pub fn cases() -> Vec<Case> {
     let near = || over_ground(0.01, [(sheet(1.0), up(0.02))]);
     let short = RectangleLight::line(DVec3::Y * 4.0, DVec3::X * 0.005, DVec3::NEG_Y).unwrap();
     let mut lined = near();
-    lined.lights[0].light = short;
+    lined.lights[0].light = short.into();
     let apart = over_ground(
         0.4,
         [(sheet(0.4), DVec3::new(-0.6, 2.0, 0.0)), (sheet(0.4), DVec3::new(0.6, 2.0, 0.0))],

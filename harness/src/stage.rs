@@ -11,8 +11,8 @@ use antumbra::node::PlanObject;
 use antumbra::scene::{AreaLight, Instance, Scene};
 use antumbra::stages::visibility;
 use antumbra::{
-    Description, Error, Frame, FramePlan, FramePlans, Host, LightIndex, MeshInstance,
-    RectangleLight, ShadowNode, Slot, Technique, Visibility, VisibilityImage,
+    Description, Error, Frame, FramePlan, FramePlans, Host, Light, LightIndex, MeshInstance,
+    ShadowNode, Slot, Technique, Visibility, VisibilityImage,
 };
 use std::sync::PoisonError;
 use std::time::{Duration, Instant};
@@ -158,19 +158,19 @@ impl Stage {
         self.node.as_mut().ok_or_else(|| Error::Frame("the stage has no node".into()))
     }
 
-    /// Plans a frame under the light's whole rectangle; `window` fixes the occluder map's tangents.
+    /// Plans a frame under a light; `window` fixes the occluder map's tangents.
     ///
     /// # Errors
     /// See [`ShadowNode::plan`].
     pub fn plan(
         &mut self,
-        light: &RectangleLight,
+        light: impl Into<Light>,
         window: Option<[[f64; 2]; 2]>,
     ) -> Result<FramePlan, Error> {
         self.plan_with(light, |frame| frame.window = window)
     }
 
-    /// Plans a frame under a scene's light: its polygon, where it has one.
+    /// Plans a frame under a scene's light.
     ///
     /// # Errors
     /// See [`ShadowNode::plan`].
@@ -179,8 +179,7 @@ impl Stage {
         light: &AreaLight,
         window: Option<[[f64; 2]; 2]>,
     ) -> Result<FramePlan, Error> {
-        let shape = light.shape()?;
-        self.plan_with(shape.rectangle(), |frame| (frame.light, frame.window) = (shape, window))
+        self.plan(light.light, window)
     }
 
     /// Plans a frame that `change` has changed.
@@ -189,7 +188,7 @@ impl Stage {
     /// See [`ShadowNode::plan`].
     pub fn plan_with<'f>(
         &'f mut self,
-        light: &RectangleLight,
+        light: impl Into<Light>,
         change: impl FnOnce(&mut Frame<'f>),
     ) -> Result<FramePlan, Error> {
         let mut frame = self.frame(light);
@@ -205,26 +204,26 @@ impl Stage {
     /// See [`ShadowNode::plan_all`].
     pub fn plan_all_with<'f>(
         &'f mut self,
-        lights: &[RectangleLight],
+        lights: &[impl Into<Light> + Copy],
         change: impl Fn(usize, &mut Frame<'f>),
         plans: &mut FramePlans,
     ) -> Result<(), Error> {
-        let mut frames: Vec<_> = lights.iter().map(|light| self.frame(light)).collect();
+        let mut frames: Vec<_> = lights.iter().map(|&light| self.frame(light)).collect();
         frames.iter_mut().enumerate().for_each(|(place, frame)| change(place, frame));
         let node =
             self.node.as_ref().ok_or_else(|| Error::Frame("the stage has no node".into()))?;
         node.plan_all(&frames, plans)
     }
 
-    /// A frame under the light's whole rectangle.
-    fn frame(&self, light: &RectangleLight) -> Frame<'_> {
+    /// A frame under a light.
+    fn frame(&self, light: impl Into<Light>) -> Frame<'_> {
         let world_from_ndc = self.view.clip_from_world.inverse();
         let depth = self.gbuffer.depth_for_node();
         Frame {
             background: Some(0.0),
             mask: Some(self.gbuffer.mask_for_node()),
             visibility: Visibility::Own { before: RESULT, after: RESULT },
-            ..Frame::new(Slot(0), *light, world_from_ndc, &self.instances, depth)
+            ..Frame::new(Slot(0), light, world_from_ndc, &self.instances, depth)
         }
     }
 
@@ -241,7 +240,7 @@ impl Stage {
     /// # Errors
     /// See [`Auto::choose`].
     pub fn choose(&mut self, auto: &mut Auto, light: &AreaLight) -> Result<Choice, Error> {
-        let frame = Frame { light: light.shape()?, ..self.frame(&light.light) };
+        let frame = self.frame(light.light);
         let node =
             self.node.as_ref().ok_or_else(|| Error::Frame("the stage has no node".into()))?;
         auto.choose(node.description(), &frame)

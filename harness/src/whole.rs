@@ -1,5 +1,6 @@
 //! Opens files of any content: each must give a whole scene or an error of one sentence.
 
+use antumbra::Shape;
 use antumbra::glam::DVec3;
 use antumbra::scene::{AreaLight, Camera, Scene, from_gltf_bytes};
 use std::path::Path;
@@ -68,11 +69,12 @@ pub fn check(scene: &Scene) {
 }
 
 fn check_light(light: &AreaLight) {
-    assert!(light.light.world_from_light().is_finite());
-    let half = light.light.half_extents();
-    assert!(half[0] > 0.0 && half[1] >= 0.0, "{half:?}");
+    let rectangle = light.light.rectangle();
+    assert!(rectangle.world_from_light().is_finite());
+    let half = rectangle.half_extents();
+    assert!(half[0] > 0.0 && half[1] >= 0.0 || light.light.shape() == Shape::Point, "{half:?}");
     assert!(light.color.iter().chain([&light.intensity]).all(|c| c.is_finite() && *c >= 0.0));
-    let Some(corners) = light.outline() else { return };
+    let Some(corners) = light.light.outline() else { return };
     assert!((3..=16).contains(&corners.len()));
     // As far outside as f32 puts what is on the edge.
     let inside = |p: &[f64; 2]| (0..2).all(|i| p[i].abs() <= half[i] * (1.0 + 1e-6));

@@ -2,15 +2,34 @@
 
 use super::boxes::Boxes;
 use super::{Description, Frame};
-use crate::Error;
+use crate::light::{LENGTHS, Light, Shape};
 use crate::stages::depth_layers::LightBox;
-use crate::techniques::room::{HostDraws, Room, Takes};
-
-/// The lengths in metres whose squares, and the ratios of these, single precision holds.
-const LENGTHS: std::ops::RangeInclusive<f64> = 1e-15..=1e15;
+use crate::techniques::room::{HostDraws, Room, Shapes, Takes};
+use crate::{Error, Technique};
 
 pub(super) fn bad<T>(what: impl Into<String>) -> Result<T, Error> {
     Err(Error::Frame(what.into()))
+}
+
+/// Checks that a technique accepts a light's shape. The sentence names those that do.
+///
+/// # Errors
+/// [`Error::Frame`] for a light that it does not accept.
+fn check_shape(light: &Light, technique: &str, takes: &Takes) -> Result<(), Error> {
+    if takes.shapes.hold(light) {
+        return Ok(());
+    }
+    let takes_some = |shapes: Shapes| shapes != Shapes::ALL && shapes.hold(light);
+    let all = Technique::all();
+    let others = all.iter().filter(|other| takes_some(other.room().takes().shapes));
+    let mut others: String = others.map(|other| format!("{}, ", other.name())).collect();
+    if !others.is_empty() {
+        others.push_str("or ");
+    }
+    let shape = light.shape().name();
+    bad(format!(
+        "the light is a {shape}, and {technique} takes no {shape}s; choose {others}traced, which takes every shape"
+    ))
 }
 
 impl Frame<'_> {
@@ -45,22 +64,13 @@ impl Frame<'_> {
                 self.light_index.0, description.lights
             ));
         }
-        if self.light.rectangle().is_line() && !takes.line {
-            return bad(format!(
-                "the light is a line, and {technique} needs an area; choose linear-light, many-lights or \
-                 hard, or give the light a height"
-            ));
-        }
+        check_shape(&self.light, technique, takes)?;
         let [width, height] = self.light.rectangle().half_extents().map(|half| 2.0 * half);
-        if !LENGTHS.contains(&width) || !(height == 0.0 || LENGTHS.contains(&height)) {
+        let is_point = self.light.shape() == Shape::Point;
+        let is_length = |side: f64| LENGTHS.contains(&side);
+        if !is_point && (!is_length(width) || !(height == 0.0 || is_length(height))) {
             return bad(format!(
                 "the light is {width:e} by {height:e} m; a side must be from 1e-15 to 1e15 m, so scale the scene"
-            ));
-        }
-        if self.light.outline().is_some() && !takes.outline {
-            return bad(format!(
-                "the light is a polygon, and {technique} knows rectangles alone; choose linear-light or \
-                 many-lights, or give its rectangle"
             ));
         }
         // A determinant that overflows or underflows says nothing about the matrix, which is refused too.

@@ -316,7 +316,7 @@ impl Fit {
     fn make_views(&self, room: &dyn Room, frame: &Frame) -> Result<Views, Error> {
         room.views(&ViewsSeen {
             light: frame.light.rectangle(),
-            outline: frame.light.outline(),
+            shape: frame.light.shape(),
             occluders: &self.occluders.bounds,
             receivers: &self.receivers.bounds,
             centre: self.centre.as_ref().unwrap_or(&PLACEHOLDER),

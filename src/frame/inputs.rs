@@ -10,7 +10,7 @@ use super::{Description, Frame};
 use crate::Error;
 use crate::effects::{Camera, Situation, Verdicts};
 use crate::stages::views::Views;
-use crate::techniques::room::{Maps, Takes};
+use crate::techniques::room::{Maps, Shapes, Takes};
 
 /// The inputs of a frame's passes, and the verdict on each effect.
 ///
@@ -96,14 +96,15 @@ impl SituationCache {
         mesh_boxes: &mut MeshBoxes,
     ) -> Result<Option<Situation>, Error> {
         // What the technique accepts is checked once it is chosen.
-        let takes = Takes { line: true, outline: true, ..Takes::RECTANGLES };
+        let shapes = Shapes::LINES.and(Shapes::POLYGONS);
+        let takes = Takes { shapes, ..Takes::RECTANGLES };
+        frame.check_numbers(description, ANY, &takes)?;
         let side = match frame.occluder_maps {
             Some(_) => description.technique.map(),
             None => SITUATION_MAP,
         };
         let request = FitRequest { technique: None, takes, maps: Maps::front(side) };
         let frame = Frame { light: (*frame.light.rectangle()).into(), ..*frame };
-        frame.check_numbers(description, ANY, &takes)?;
         self.fit.update(description, &request, &frame, mesh_boxes)?;
         Ok(situation_seen(&self.fit, &frame, description.extent))
     }

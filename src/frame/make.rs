@@ -54,7 +54,7 @@ struct Shape {
 /// Plans one frame: fits the maps, decides what runs, derives the barriers. Pure: no Vulkan calls.
 ///
 /// # Errors
-/// [`Error::Frame`] for numbers that are not finite, a line or an outline that the technique does not accept, an image of
+/// [`Error::Frame`] for numbers that are not finite, a light of a shape that the technique does not accept, an image of
 /// another size, format, usage or layout than the description and the passes need, images or strides that the description
 /// does not have, a reach that is not above 0, or a light, a technique or a frame slot beyond those of the description.
 pub fn plan(description: &Description, limits: Limits, frame: &Frame) -> Result<FramePlan, Error> {

@@ -12,7 +12,7 @@
 //! arguments give the same bits.
 
 use super::{AreaLight, Mesh, Role, Scene};
-use crate::{Error, RectangleLight};
+use crate::{Error, Light, RectangleLight};
 use glam::{DMat4, DQuat, DVec3};
 use std::f64::consts::{PI, TAU};
 
@@ -64,25 +64,24 @@ pub fn line_light(length: f64, turn: f64) -> Result<RectangleLight, Error> {
     RectangleLight::line(LIGHT_CENTER, half, DVec3::NEG_Y)
 }
 
-/// A polygon light at (0, 4, 0), facing straight down, and its outline in light space: `corners` are 3 to 16
-/// points along x and z, in metres from there, whichever way they run. For
-/// [`Scene::with_outline`] of a scene under the light.
+/// A polygon light at (0, 4, 0), facing straight down: `corners` are 3 to 16 points along x and z, in metres from there,
+/// whichever way they run.
 ///
 /// # Errors
-/// See [`RectangleLight::around`].
-pub fn polygon_light(corners: &[[f64; 2]]) -> Result<(RectangleLight, Vec<[f64; 2]>), Error> {
+/// See [`Light::polygon`].
+pub fn polygon_light(corners: &[[f64; 2]]) -> Result<Light, Error> {
     let mut placed: Vec<DVec3> =
         corners.iter().map(|&[x, z]| LIGHT_CENTER + DVec3::new(x, 0.0, z)).collect();
-    let found = RectangleLight::around(&placed)?;
-    if found.0.emission().y < 0.0 {
-        return Ok(found);
+    let light = Light::polygon(&placed)?;
+    if light.emission().y < 0.0 {
+        return Ok(light);
     }
     placed.reverse();
-    RectangleLight::around(&placed)
+    Light::polygon(&placed)
 }
 
 /// A square card of side 1 at y = 2, parallel to the ground, front side up, double-sided.
-pub fn card(light: RectangleLight) -> Scene {
+pub fn card(light: impl Into<Light>) -> Scene {
     let mut scene = stage(light);
     let world_from_card = DMat4::from_translation(OBJECT_CENTER);
     scene.add("card", double_sided(quad(1.0, 1.0)), world_from_card, Role::Occluder);
@@ -90,7 +89,7 @@ pub fn card(light: RectangleLight) -> Scene {
 }
 
 /// A box of 0.4 × 1 × 0.4 standing on the ground.
-pub fn tall_box(light: RectangleLight) -> Scene {
+pub fn tall_box(light: impl Into<Light>) -> Scene {
     let mut scene = stage(light);
     let size = DVec3::new(0.4, 1.0, 0.4);
     let world_from_box = DMat4::from_translation(DVec3::Y * 0.5 * size.y);
@@ -100,7 +99,7 @@ pub fn tall_box(light: RectangleLight) -> Scene {
 
 /// Three double-sided square cards of side 0.6 at y = 1.5, 2 and 2.5, each hiding part of the next,
 /// 1 × 1 × 0.8 together: what is in front decides little, what lies behind it much.
-pub fn stacked_cards(light: RectangleLight) -> Scene {
+pub fn stacked_cards(light: impl Into<Light>) -> Scene {
     let mut scene = stage(light);
     for (i, step) in [-1.0, 0.0, 1.0].into_iter().enumerate() {
         let center = OBJECT_CENTER + DVec3::new(0.2, 0.5, -0.1) * step;
@@ -116,7 +115,7 @@ pub fn stacked_cards(light: RectangleLight) -> Scene {
 
 /// `count` boxes side by side, each 1 long, 0.005 thick and as wide as the gap to the next, 1 × 1
 /// together round (0, 2, 0): thin occluders, and many rims of the light at once. At least one box.
-pub fn slats(light: RectangleLight, count: u32) -> Scene {
+pub fn slats(light: impl Into<Light>, count: u32) -> Scene {
     let mut scene = stage(light);
     let count = count.max(1);
     // `count` slats and the gaps between them, all as wide, make 1.
@@ -133,7 +132,8 @@ pub fn slats(light: RectangleLight, count: u32) -> Scene {
 /// `leaves` double-sided diamonds of two triangles, each about 0.08 × 0.04, turned and strewn at
 /// random in a ball, 1 across together, round (0, 2, 0): noise to every method that assumes
 /// surfaces. Each `seed` is a plant of its own; a few hundred leaves make a dense one.
-pub fn foliage(light: RectangleLight, leaves: u32, seed: u32) -> Scene {
+pub fn foliage(light: impl Into<Light>, leaves: u32, seed: u32) -> Scene {
+    let light = light.into();
     let mut mesh = double_sided(Mesh::default());
     for leaf in 0..leaves {
         let random = |k: u32| unit_hash(seed, leaf, k);
@@ -154,7 +154,7 @@ pub fn foliage(light: RectangleLight, leaves: u32, seed: u32) -> Scene {
 
 /// A box of side 0.5 resting on the ground at x = −0.5, and a sphere of radius 0.25 touching it at
 /// x = 0.5: occluders at no distance from what they shadow.
-pub fn contact(light: RectangleLight) -> Scene {
+pub fn contact(light: impl Into<Light>) -> Scene {
     let mut scene = stage(light);
     let world_from_box = DMat4::from_translation(DVec3::new(-0.5, 0.25, 0.0));
     scene.add("box", cuboid(DVec3::splat(0.5)), world_from_box, Role::Occluder);
@@ -165,7 +165,7 @@ pub fn contact(light: RectangleLight) -> Scene {
 
 /// Five spheres of radius 0.2, 0.6 apart along x, centred at y = 0.2 (on the ground), 0.7, 1.2, 1.7
 /// and 2.2 in mixed order: every sharpness of penumbra in one image.
-pub fn spheres(light: RectangleLight) -> Scene {
+pub fn spheres(light: impl Into<Light>) -> Scene {
     let mut scene = stage(light);
     let heights = [1.2, 0.2, 2.2, 0.7, 1.7];
     for (i, y) in (0_u32..).zip(heights) {
@@ -186,7 +186,7 @@ pub fn spheres(light: RectangleLight) -> Scene {
 ///
 /// # Errors
 /// [`Error::Scene`] where nothing in `object` blocks light, or what does has no extent.
-pub fn normalized(object: &Scene, light: RectangleLight) -> Result<Scene, Error> {
+pub fn normalized(object: &Scene, light: impl Into<Light>) -> Result<Scene, Error> {
     let bounds = object
         .bounds(|i| i.role.blocks())
         .ok_or_else(|| Error::Scene("nothing in the scene blocks light".into()))?;
@@ -220,25 +220,15 @@ impl Scene {
         }
         self
     }
-
-    /// The scene with its first light cut to a polygon, as the field [`AreaLight::outline`](field@AreaLight::outline)
-    /// has it.
-    pub fn with_outline(mut self, outline: Vec<[f64; 2]>) -> Self {
-        if let Some(light) = self.lights.first_mut() {
-            light.outline = outline;
-        }
-        self
-    }
 }
 
 /// The ground and the light alone: all of it is lit.
-pub fn stage(light: RectangleLight) -> Scene {
+pub fn stage(light: impl Into<Light>) -> Scene {
     let mut scene = Scene::default();
     scene.add("ground", ground(GROUND_SIDE), DMat4::IDENTITY, Role::Receiver);
     scene.lights.push(AreaLight {
         name: "light".into(),
-        light,
-        outline: Vec::new(),
+        light: light.into(),
         color: [1.0; 3],
         intensity: 1.0,
     });

@@ -8,7 +8,7 @@ pub use crate::lent::Role;
 
 use crate::error::quoted;
 use crate::lent::MeshBounds;
-use crate::{Error, Light, RectangleLight};
+use crate::{Error, Light};
 use glam::{DMat3, DMat4, DVec3};
 
 mod framing;
@@ -79,38 +79,17 @@ impl Instance {
     }
 }
 
-/// A rectangle or polygon light placed in the world.
+/// A light placed in the world.
 #[derive(Clone, Debug)]
 pub struct AreaLight {
     /// The node's name, or `node N` where it has none.
     pub name: String,
-    /// Centre and half-axes.
-    pub light: RectangleLight,
-    /// The corners of its polygon, as [`Light::with_outline`](crate::Light::with_outline) has them; none: the whole
-    /// rectangle.
-    pub outline: Vec<[f64; 2]>,
+    /// Shape, size and place.
+    pub light: Light,
     /// Linear RGB, 1 each by default.
     pub color: [f32; 3],
     /// A factor on the color, 1 by default.
     pub intensity: f32,
-}
-
-impl AreaLight {
-    /// The corners of the light's polygon; `None` where the light is its whole rectangle.
-    pub fn outline(&self) -> Option<&[[f64; 2]]> {
-        (!self.outline.is_empty()).then_some(self.outline.as_slice())
-    }
-
-    /// The light as a node takes it.
-    ///
-    /// # Errors
-    /// [`Error::Light`] for an outline that [`Light::with_outline`](crate::Light::with_outline) refuses.
-    pub fn shape(&self) -> Result<Light, Error> {
-        match self.outline() {
-            Some(corners) => Light::with_outline(self.light, corners),
-            None => Ok(self.light.into()),
-        }
-    }
 }
 
 /// A perspective camera.
@@ -214,8 +193,8 @@ impl Scene {
         let Some(first) = self.lights.first() else {
             return Err(Error::Scene(
                 "the scene has no area light; give a node the extras \"area_light\": \"rectangle\", \
-                 \"width\" and \"height\", \"area_light\": \"polygon\" and \"corners\", or \"area_light\": \"sun\" and \
-                 \"angular_size\""
+                 \"width\" and \"height\", \"disk\" or \"sphere\" and \"radius\", \"capsule\", \"radius\" and \
+                 \"length\", \"polygon\" and \"corners\", or \"sun\" and \"angular_size\""
                     .into(),
             ));
         };

@@ -7,7 +7,7 @@ use crate::graph::{Graph, Need, ResourceId};
 use crate::frame::Space;
 use crate::knob::Tune;
 use crate::lent::MeshBounds;
-use crate::light::{Light, RectangleLight};
+use crate::light::{Light, RectangleLight, Shape};
 use crate::stages::depth_layers::{self, DepthLayers, LightLayers, MapView, Projection, Wanted};
 use crate::stages::hierarchy::Sizes;
 use crate::stages::views::Views;
@@ -18,10 +18,8 @@ use glam::DMat4;
 /// The inputs that a technique accepts with these settings, beyond a rectangle and meshes in buffers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Takes {
-    /// Whether the light may be a line, without a height.
-    pub line: bool,
-    /// Whether the light may have a polygon as its outline.
-    pub outline: bool,
+    /// The shapes that the light may have.
+    pub shapes: Shapes,
     /// Which meshes the host may draw with its own pipelines.
     pub host_draws: HostDraws,
     /// Whether the host may lend its own depth images of the occluders; the error is the reason why not.
@@ -31,14 +29,55 @@ pub struct Takes {
 }
 
 impl Takes {
-    /// The capabilities of a technique for rectangles alone, with any occluders that the host has.
+    /// The capabilities of a technique for rectangles and suns alone, with any occluders that the host has.
     pub const RECTANGLES: Self = Self {
-        line: false,
-        outline: false,
+        shapes: Shapes::RECTANGLES,
         host_draws: HostDraws::Any,
         lent_maps: Ok(()),
         texture: false,
     };
+}
+
+/// A set of shapes of lights. Rectangles and suns are in each, for every technique takes these.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shapes(u8);
+
+impl Shapes {
+    /// Rectangles and suns alone.
+    pub const RECTANGLES: Self = Self(0);
+    /// Lines, beside rectangles and suns, as in all of the following.
+    pub const LINES: Self = Self(1);
+    /// Polygons.
+    pub const POLYGONS: Self = Self(1 << 1);
+    /// Discs.
+    pub const DISCS: Self = Self(1 << 2);
+    /// Spheres.
+    pub const SPHERES: Self = Self(1 << 3);
+    /// Capsules.
+    pub const CAPSULES: Self = Self(1 << 4);
+    /// Points.
+    pub const POINTS: Self = Self(1 << 5);
+    /// Every shape.
+    pub const ALL: Self = Self((1 << 6) - 1);
+
+    /// The shapes of both sets.
+    pub const fn and(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Whether a light's shape is in the set.
+    pub fn hold(self, light: &Light) -> bool {
+        let one = match light.shape() {
+            Shape::Rectangle | Shape::Sun { .. } => Self::RECTANGLES,
+            Shape::Line => Self::LINES,
+            Shape::Polygon(_) => Self::POLYGONS,
+            Shape::Disc { .. } => Self::DISCS,
+            Shape::Sphere { .. } => Self::SPHERES,
+            Shape::Capsule { .. } => Self::CAPSULES,
+            Shape::Point => Self::POINTS,
+        };
+        self.and(one) == self
+    }
 }
 
 /// Which of a host's own draws a technique can use.
@@ -136,10 +175,10 @@ impl Maps {
 /// The scene as a technique's views are fitted to it.
 #[derive(Clone, Copy, Debug)]
 pub struct Seen<'a> {
-    /// The light.
+    /// The light's rectangle.
     pub light: &'a RectangleLight,
-    /// The light's outline, metres from its centre, where it is a polygon.
-    pub outline: Option<&'a [[f64; 2]]>,
+    /// The light's shape.
+    pub shape: Shape<'a>,
     /// The occluders' boxes with their transforms to world space.
     pub occluders: &'a [(MeshBounds, DMat4)],
     /// The receivers' boxes with their transforms to world space.

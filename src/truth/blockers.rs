@@ -4,7 +4,7 @@
 //! relative to the scene's centre, so a scene far from the world's origin loses nothing.
 
 use crate::scene::{Instance, Scene};
-use crate::{Error, RectangleLight};
+use crate::{Error, Light, Shape};
 use glam::DVec3;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
@@ -35,7 +35,7 @@ pub(super) struct Blockers<T> {
     /// World space; everything below is relative to it.
     pub(super) origin: DVec3,
     /// The largest coordinate of any instance or light, relative to `origin`.
-    extent: f64,
+    pub(super) extent: f64,
     pub(super) triangles: Vec<T>,
     pub(super) tree: Option<Bvh2>,
 }
@@ -132,12 +132,22 @@ impl<const N: usize> Region<N> {
     }
 }
 
-fn light_corners(light: &RectangleLight) -> [DVec3; 4] {
-    let [width, height] = light.half_extents();
-    [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)].map(|(x, y)| {
-        let from_center = DVec3::new(x * width, y * height, 0.0);
-        light.center() + light.world_from_light().transform_vector3(from_center)
-    })
+/// The corners of a box around a light, flat where the light is; none of a sun, which is nowhere.
+fn light_corners(light: &Light) -> Vec<DVec3> {
+    let thickness = match light.shape() {
+        Shape::Sun { .. } => return Vec::new(),
+        Shape::Sphere { radius } | Shape::Capsule { radius, .. } => radius,
+        _ => 0.0,
+    };
+    let frame = light.rectangle().world_from_light();
+    let [width, height] = light.rectangle().half_extents();
+    let corner = |signs: [f64; 3]| {
+        let from_center = DVec3::from_array(signs) * DVec3::new(width, height, thickness);
+        light.center() + frame.transform_vector3(from_center)
+    };
+    let ends = [-1.0, 1.0];
+    let signs = ends.into_iter().flat_map(|x| ends.into_iter().map(move |y| (x, y)));
+    signs.flat_map(|(x, y)| ends.map(|z| corner([x, y, z]))).collect()
 }
 
 fn bounds([a, b, c]: &[DVec3; 3], pad: f64) -> Aabb {

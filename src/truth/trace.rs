@@ -6,15 +6,17 @@
 
 use super::blockers::{Blockers, F32_ROUNDING, PAD_ROUNDINGS};
 use crate::scene::Scene;
-use crate::{Error, RectangleLight};
+use crate::{Error, Light, Shape};
 use glam::DVec3;
 use obvhs::ray::Ray;
 use rayon::prelude::*;
 
 mod sampling;
 pub use sampling::Sampling;
+use sampling::Stream;
 pub(super) use sampling::check_position_error;
-use sampling::{LightFrame, Stream};
+mod target;
+use target::LightFrame;
 
 /// A point whose visible fraction of the light is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,19 +71,24 @@ impl Tracer {
     }
 
     /// The distance that a receiver is moved off its surface along its normal, in metres, before its rays
-    /// start; rays also end this far before the light's plane.
+    /// start; rays also end this far before the light.
     ///
     /// It is derived: four times the sum of the error that f32 gives a position whose coordinates
     /// are as large as the scene's and of what `sampling` says of these positions
     /// ([`Sampling::with_position_error`]); about 2 µm a metre of the scene's extent. Rays that
     /// leave below the surface then hit it: where the surface blocks light, the part of the light
     /// under its horizon is hidden, as it should be; where it is only a receiver, it is not.
-    pub fn offset(&self, light: &RectangleLight, position: DVec3, sampling: &Sampling) -> f64 {
-        self.blockers.offset(light.center(), position, sampling.position_error())
+    pub fn offset(&self, light: impl Into<Light>, position: DVec3, sampling: &Sampling) -> f64 {
+        let light = light.into();
+        // A sun has no position, which could be the largest coordinate.
+        let is_sun = matches!(light.shape(), Shape::Sun { .. });
+        let far = if is_sun { position } else { light.center() };
+        self.blockers.offset(far, position, sampling.position_error())
     }
 
     /// The visible fraction from one receiver: the share of stratified points on the light from
-    /// which no blocking triangle crosses the segment to the receiver.
+    /// which no blocking triangle crosses the segment to the receiver. The table in [`crate::truth`] says which points
+    /// a light of any shape has.
     ///
     /// `stream` picks the random numbers, with the sampling's seed: receivers of one image take
     /// their index, so that their errors are independent.
@@ -90,7 +97,23 @@ impl Tracer {
     /// [`Error::Frame`] where the position or normal is not finite.
     pub fn visible_fraction(
         &self,
-        light: &RectangleLight,
+        light: impl Into<Light>,
+        receiver: &Receiver,
+        sampling: &Sampling,
+        stream: u64,
+    ) -> Result<Estimate, Error> {
+        let light = light.into();
+        self.of_receiver(&light, &self.frame(&light), receiver, sampling, stream)
+    }
+
+    fn frame(&self, light: &Light) -> LightFrame {
+        LightFrame::of(light, self.blockers.origin, self.blockers.extent)
+    }
+
+    fn of_receiver(
+        &self,
+        light: &Light,
+        frame: &LightFrame,
         receiver: &Receiver,
         sampling: &Sampling,
         stream: u64,
@@ -105,23 +128,21 @@ impl Tracer {
         let Some(normal) = receiver.normal.try_normalize() else { return Ok(unshadowed) };
         let offset = self.offset(light, receiver.position, sampling);
         let from = receiver.position - self.blockers.origin + normal * offset;
-        let frame = LightFrame::of(light, self.blockers.origin);
-        let distance = frame.distance(from);
-        if distance <= offset {
-            return Ok(unshadowed);
-        }
-        // The segment ends where it comes within `offset` of the light's plane.
-        let end = 1.0 - offset / distance;
+        let Some(target) = frame.target(from, offset) else { return Ok(unshadowed) };
         let mut random = Stream::new(sampling.seed(), stream);
         let mut last_hit = None;
+        let rays = target.rays(sampling.side());
         let mut grid = || {
-            let seen = frame
+            let seen = target
                 .strata(sampling.side(), &mut random)
-                .filter(|&to| !self.blocked(from, (to - from) * end, &mut last_hit))
+                .filter(|&to| !self.blocked(from, (to - from) * target.end, &mut last_hit))
                 .count();
-            seen as f64 / f64::from(sampling.side()).powi(2)
+            seen as f64 / f64::from(rays)
         };
         let a = grid();
+        if light.shape() == Shape::Point {
+            return Ok(Estimate { visible: a, half_difference: 0.0 });
+        }
         if sampling.grids() == 1 {
             return Ok(Estimate { visible: a, half_difference: f64::NAN });
         }
@@ -137,14 +158,17 @@ impl Tracer {
     /// [`Error::Frame`] where a position or normal is not finite.
     pub fn visible_fractions(
         &self,
-        light: &RectangleLight,
+        light: impl Into<Light>,
         receivers: &[Receiver],
         sampling: &Sampling,
     ) -> Result<Traced, Error> {
+        let light = light.into();
+        let frame = self.frame(&light);
+        let is_point = light.shape() == Shape::Point;
         let estimates = receivers
             .par_iter()
             .enumerate()
-            .map(|(i, receiver)| self.visible_fraction(light, receiver, sampling, i as u64))
+            .map(|(i, receiver)| self.of_receiver(&light, &frame, receiver, sampling, i as u64))
             .collect::<Result<Vec<_>, _>>()?;
         // Summed in order: a parallel sum would depend on how the work was split.
         let (mut squares, mut penumbra) = (0.0, 0_u32);
@@ -154,13 +178,13 @@ impl Tracer {
         }
         Ok(Traced {
             visible: estimates.iter().map(|e| e.visible as f32).collect(),
-            noise: if sampling.grids() == 1 {
+            noise: if sampling.grids() == 1 && !is_point {
                 f64::NAN
             } else {
                 (squares / f64::from(penumbra.max(1))).sqrt()
             },
             penumbra: penumbra as usize,
-            rays: receivers.len() as u64 * sampling.rays(),
+            rays: receivers.len() as u64 * if is_point { 1 } else { sampling.rays() },
         })
     }
 

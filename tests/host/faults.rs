@@ -205,7 +205,7 @@ fn a_device_that_is_lost_while_it_works() {
     let device = TestDevice::through(FAULTY);
     let mut bench = Bench::new(&device).unwrap();
     let light = bench.scene.lights[0].light;
-    let plan = bench.stage.plan(&light, None).unwrap();
+    let plan = bench.stage.plan(light, None).unwrap();
     for call in ["begin_command_buffer", "end_command_buffer", "queue_submit", "wait_for_fences"] {
         tables::fail_next(call, LOST);
         let error = bench.stage.run(&plan).unwrap_err();

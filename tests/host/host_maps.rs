@@ -88,7 +88,7 @@ fn camera(view: &MapView, (a, b): (f64, f64), convention: &Convention) -> DMat4 
 }
 
 fn own_layers(stage: &mut Stage, setup: &Setup) -> (Vec<f32>, [Vec<f32>; 2]) {
-    let plan = stage.plan(&setup.light(), None).unwrap();
+    let plan = stage.plan(setup.light(), None).unwrap();
     stage.run(&plan).unwrap();
     let layer =
         |stage: &mut Stage, name| stage.inspect::<f32>(&plan, name).map(|(texels, _)| texels);
@@ -132,7 +132,7 @@ fn compare(scene: &Scene, words: &str, bounds: [f64; 4]) {
         stage
             .configure_with(settings(&words), |d| d.occluder_maps = Some(convention.format))
             .unwrap();
-        let plan = stage.plan_with(&light, |f| f.occluder_maps = Some(maps)).unwrap();
+        let plan = stage.plan_with(light, |f| f.occluder_maps = Some(maps)).unwrap();
         stage.run(&plan).unwrap();
         let (mean, most) = difference(&own, &stage.visibility().unwrap());
         println!("{words}: {}: mean {mean:.1e}, most {most:.1e}", convention.name);

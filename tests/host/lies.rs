@@ -49,10 +49,10 @@ fn a_depth_image_that_was_not_created_to_be_sampled() {
     let lent = depth.lend(Scope::DEPTH_DRAWN, Scope::DEPTH_DRAWN);
     let light = scene().lights[0].light;
     // Said as it is, the plan is refused.
-    let refused = stage.plan_with(&light, |frame| frame.depth = lent).unwrap_err();
+    let refused = stage.plan_with(light, |frame| frame.depth = lent).unwrap_err();
     assert!(refused.to_string().contains("created without SAMPLED"), "{refused}");
     let lie = HostImage { usage: usage | vk::ImageUsageFlags::SAMPLED, ..lent };
-    let plan = stage.plan_with(&light, |frame| frame.depth = lie).unwrap();
+    let plan = stage.plan_with(light, |frame| frame.depth = lie).unwrap();
     record(&device, &mut stage, &plan);
     says(&device, "VUID-VkWriteDescriptorSet-descriptorType-00337");
 }
@@ -68,7 +68,7 @@ fn positions_that_are_no_vertex_buffer() {
         buffers.positions = buffer.raw();
     }
     let light = scene().lights[0].light;
-    let plan = stage.plan_with(&light, |frame| frame.meshes = &meshes).unwrap();
+    let plan = stage.plan_with(light, |frame| frame.meshes = &meshes).unwrap();
     record(&device, &mut stage, &plan);
     says(&device, "VUID-vkCmdBindVertexBuffers-pBuffers-00627");
 }
@@ -81,7 +81,7 @@ fn an_image_that_is_in_another_layout() {
     let layout = vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL;
     assert_ne!(depth.before.layout, layout);
     let lie = HostImage { before: depth.before.in_layout(layout), ..depth };
-    let plan = stage.plan_with(&light, |frame| frame.depth = lie).unwrap();
+    let plan = stage.plan_with(light, |frame| frame.depth = lie).unwrap();
     // Layouts are followed from submit to submit.
     stage.run(&plan).unwrap();
     says(&device, "layout");

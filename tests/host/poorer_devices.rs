@@ -39,7 +39,7 @@ fn stage(device: &TestDevice, scene: &Scene, words: &str) -> Result<Stage, Error
 
 /// A frame's visible fractions, and whether it was timed.
 fn image(stage: &mut Stage) -> (Vec<f32>, bool) {
-    let plan = stage.plan(&light(), None).unwrap();
+    let plan = stage.plan(light(), None).unwrap();
     let times = stage.run(&plan).unwrap();
     let image = stage.visibility().unwrap();
     assert!(image.iter().all(|v| (0.0..=1.0).contains(v)) && image.iter().any(|v| *v < 1.0));

@@ -249,7 +249,7 @@ fn wrong_scenes_are_one_sentence() {
     line["extras"]["height"] = json!(0);
     let scene = write(&there, &triangle(&json!([mesh, line])), good);
     let named = ["--technique", "soft-shadow-map"];
-    refuse("line", &scene, &named, "the light is a line, and soft-shadow-map needs an area");
+    refuse("line", &scene, &named, "the light is a line, and soft-shadow-map takes no lines");
     let out = folder("line_hard");
     let output = run(&scene, &out, &["--size", "32x32", "--technique", "hard"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -263,7 +263,7 @@ fn wrong_scenes_are_one_sentence() {
         "polygon",
         &scene,
         &named,
-        "the light is a polygon, and soft-shadow-map knows rectangles alone",
+        "the light is a polygon, and soft-shadow-map takes no polygons",
     );
     for options in [&["--technique", "many-lights"][..], &[]] {
         let out = folder("polygon_many");
@@ -296,6 +296,40 @@ fn wrong_scenes_are_one_sentence() {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     assert_eq!(files(&out), FILES);
     fs::remove_dir_all(out).unwrap();
+    fs::remove_dir_all(there).unwrap();
+}
+
+/// Any scene's lights load; a technique that does not take one says so, and another renders it.
+#[test]
+fn lights_of_every_shape_are_rendered_or_one_sentence() {
+    let there = folder("shapes");
+    let good = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+    for (extras, shape, renders) in [
+        (json!({ "area_light": "disk", "radius": 0.5 }), "disc", "many-lights"),
+        (json!({ "area_light": "sphere", "radius": 0.5 }), "sphere", ""),
+        (json!({ "area_light": "capsule", "radius": 0.5, "length": 1 }), "capsule", ""),
+        (json!({ "area_light": "rectangle", "width": 0, "height": 0 }), "point", ""),
+        (json!({ "area_light": "sun", "angular_size": 0.01 }), "sun", "soft-shadow-map"),
+    ] {
+        let lamp = json!({
+            "name": "lamp", "translation": [0, 3, 0],
+            "rotation": [-0.707_106_77, 0, 0, 0.707_106_77], "extras": extras,
+        });
+        let scene = write(&there, &triangle(&json!([{ "name": "floor", "mesh": 0 }, lamp])), good);
+        for technique in ["auto", "soft-shadow-map", "many-lights", "linear-light"] {
+            let options = ["--size", "32x32", "--technique", technique];
+            if shape == "sun" || technique == renders {
+                let out = folder("shape");
+                let output = run(&scene, &out, &options);
+                assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+                assert_eq!(files(&out), FILES);
+                fs::remove_dir_all(out).unwrap();
+            } else {
+                let sentence = format!("the light is a {shape}, and {technique} takes no {shape}s");
+                refuse(shape, &scene, &options, &sentence);
+            }
+        }
+    }
     fs::remove_dir_all(there).unwrap();
 }
 

@@ -88,7 +88,7 @@ fn lit_where_nothing_blocks(words: &str, stage: &mut Stage) {
     for (name, scene, runs) in cases {
         let setup = Setup::ground(scene, 3.0, 96);
         stage.show(scene, &setup.view, |i| i.role != Role::Occluder).unwrap();
-        let plan = stage.plan(&setup.light(), None).unwrap();
+        let plan = stage.plan(setup.light(), None).unwrap();
         let ran: Vec<_> =
             plan.plan().steps.iter().map(|s| plan.plan().graph.passes()[s.pass].name).collect();
         assert_eq!(ran, runs, "{name}, {words}: nothing is drawn");
@@ -125,11 +125,12 @@ fn a_scene_far_from_the_origin_looks_the_same() {
     for instance in &mut far.instances {
         instance.world_from_mesh = DMat4::from_translation(offset) * instance.world_from_mesh;
     }
-    let l = near.light(None).unwrap().light;
+    let l = *near.light(None).unwrap().light.rectangle();
     let [a, b] = l.half_extents();
     let frame = l.world_from_light();
     let (x, y) = (frame.x_axis.truncate() * a, frame.y_axis.truncate() * b);
-    far.lights[0].light = antumbra::RectangleLight::new(l.center() + offset, x, -y).unwrap();
+    let moved = antumbra::RectangleLight::new(l.center() + offset, x, -y).unwrap();
+    far.lights[0].light = moved.into();
     for words in ["receivers=pixels map=128", "receivers=map map=128 receiver_map=128"] {
         let here = Setup::ground(&near, 2.5, 96);
         let mut there = Setup::ground(&far, 2.5, 96);
@@ -153,7 +154,7 @@ fn the_largest_map_works() {
     let setup = Setup::ground(&scene, 0.1, 24);
     let image = |side: u32| {
         let mut stage = setup.stage(&device, &format!("receivers=pixels sides=one map={side}"));
-        let plan = stage.plan(&setup.light(), None).unwrap();
+        let plan = stage.plan(setup.light(), None).unwrap();
         for resource in plan.plan().graph.resources() {
             if let antumbra::graph::Shape::Buffer { bytes } = resource.shape {
                 assert!(bytes <= 1 << 27, "{}: {bytes} bytes", resource.name);
@@ -206,7 +207,7 @@ fn recording_allocates_nothing_and_makes_no_object() {
     let setup = Setup::ground(&scene, 2.5, 64);
     for words in WAYS {
         let mut stage: Stage = setup.stage(&device, words);
-        let plan = stage.plan(&setup.light(), None).unwrap();
+        let plan = stage.plan(setup.light(), None).unwrap();
         stage.run(&plan).unwrap();
         let objects = stage.node().unwrap().object_count();
         let mut counted = 0;
@@ -233,15 +234,15 @@ fn bad_frames_are_refused_before_anything_is_recorded() {
     let scene = spheres();
     let setup = Setup::ground(&scene, 2.5, 64);
     let mut stage = setup.stage(&device, "map=32");
-    let plan = stage.plan(&setup.light(), None).unwrap();
+    let plan = stage.plan(setup.light(), None).unwrap();
     // A window the wrong way round.
-    let error = stage.plan(&setup.light(), Some([[1.0; 2], [-1.0; 2]])).unwrap_err().to_string();
+    let error = stage.plan(setup.light(), Some([[1.0; 2], [-1.0; 2]])).unwrap_err().to_string();
     assert!(error.contains("least first"), "{error}");
     // A plan of other settings.
     stage.configure(settings("receivers=map map=32")).unwrap();
     let error = stage.run(&plan).unwrap_err().to_string();
     assert!(error.contains("plan the frame again"), "{error}");
-    let good = stage.plan(&setup.light(), None).unwrap();
+    let good = stage.plan(setup.light(), None).unwrap();
     stage.run(&good).unwrap();
 }
 

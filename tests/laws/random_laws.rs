@@ -55,7 +55,7 @@ fn judge<S: Strategy>(
             let case = pixels(&value);
             rig.look(case);
             for (index, settings) in settings.iter().enumerate() {
-                if case.lamp.line && !settings.room().takes().line {
+                if !settings.room().takes().shapes.hold(&case.lamp.light().into()) {
                     continue;
                 }
                 let shots = shots(&rig, index, &value);

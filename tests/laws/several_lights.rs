@@ -48,7 +48,7 @@ fn configure(stage: &mut Stage, lights: u32, words: &[&str]) -> Result<(), Error
 
 /// The plan of one of the lights.
 fn plan(stage: &mut Stage, index: u32, change: impl FnOnce(&mut Frame)) -> FramePlan {
-    let planned = stage.plan_with(&light(shift(index), false), |frame| {
+    let planned = stage.plan_with(light(shift(index), false), |frame| {
         frame.light_index = LightIndex(index);
         change(frame);
     });
@@ -141,7 +141,7 @@ fn lights_planned_together_are_lights_planned_alone() {
             aside(frame, camera);
         };
         together.plan_all_with(&[0, 1, 2, 3].map(lamp), change, &mut plans).unwrap();
-        let alone = |i: u32| apart.plan_with(&lamp(i), |f| change(i as usize, f)).unwrap();
+        let alone = |i: u32| apart.plan_with(lamp(i), |f| change(i as usize, f)).unwrap();
         let alone: Vec<_> = (0..4).map(alone).collect();
         assert_eq!(steps(plans.all()), steps(&alone), "moment {nth}");
         assert_eq!(nth == 2, steps(&alone) == [0; 4], "moment {nth} alone is idle");
@@ -161,7 +161,7 @@ fn what_reaches_nothing_costs_nothing_behind_the_first_frame() {
     let frame = |node: &mut Stage, lights: u32| -> Vec<FramePlan> {
         let of = |index: u32| {
             let reaches = index.is_multiple_of(4);
-            let planned = node.plan_with(&light(shift(index / 4), !reaches), |frame| {
+            let planned = node.plan_with(light(shift(index / 4), !reaches), |frame| {
                 frame.light_index = LightIndex(index);
             });
             planned.unwrap()
@@ -293,7 +293,7 @@ fn images_are_handed_from_light_to_light() {
     let plans: Vec<_> = lights
         .into_iter()
         .map(|(index, away)| {
-            let planned = node.plan_with(&light(shift(index), away), |frame| {
+            let planned = node.plan_with(light(shift(index), away), |frame| {
                 frame.light_index = LightIndex(index);
                 let found = depth.unwrap_or(frame.depth);
                 // Last it goes back into the layout that it came in.
@@ -317,7 +317,7 @@ fn what_does_not_exist_is_refused() {
     let scene = cards();
     let mut node = stage(&device, &scene, 2, &["map=32"]);
     let sentence = |node: &mut Stage, light_index, technique_index| {
-        let planned = node.plan_with(&light(0.0, false), |frame| {
+        let planned = node.plan_with(light(0.0, false), |frame| {
             (frame.light_index, frame.technique_index) = (light_index, technique_index);
         });
         planned.unwrap_err().to_string()

@@ -253,7 +253,7 @@ impl<'d> Engine<'d> {
         let (lamp, technique_index, _) = self.lamps[light];
         let world_from_ndc = self.case.clip_from_world.inverse();
         let Self { stage, instances, gbuffer, .. } = self;
-        let planned = stage.plan_with(&lamp.light(), |frame| {
+        let planned = stage.plan_with(lamp.light(), |frame| {
             frame.light_index = LightIndex(light as u32);
             frame.technique_index = TechniqueIndex(technique_index);
             frame.meshes = instances;

@@ -171,15 +171,15 @@ fn line_lights_are_turned_about_the_vertical_and_bad_ones_refused() {
 fn polygon_lights_shine_down_whichever_way_their_corners_run() {
     let mut corners = [[0.0, 0.0], [1.0, 0.0], [0.2, 0.7]];
     for _ in 0..2 {
-        let (light, outline) = polygon_light(&corners).unwrap();
+        let light = polygon_light(&corners).unwrap();
         assert!((light.emission() - DVec3::NEG_Y).length() < 1e-12);
-        for &[x, y] in &outline {
-            let there = light.world_from_light().transform_point3(DVec3::new(x, y, 0.0));
+        for &[x, y] in light.outline().unwrap() {
+            let there =
+                light.rectangle().world_from_light().transform_point3(DVec3::new(x, y, 0.0));
             let near = |&[x, z]: &[f64; 2]| there.distance(DVec3::new(x, 4.0, z)) < 1e-12;
             assert!(corners.iter().any(near), "{there}");
         }
-        let scene = card(light).with_outline(outline.clone());
-        assert_eq!(scene.lights[0].outline(), Some(&outline[..]));
+        assert_eq!(card(light).lights[0].light, light);
         corners.reverse();
     }
     assert!(polygon_light(&corners[..2]).is_err());

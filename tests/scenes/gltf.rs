@@ -4,6 +4,7 @@ mod features;
 mod lights;
 mod models;
 mod refusals;
+mod round_lights;
 mod sizes;
 
 use antumbra::Error;

@@ -1,6 +1,6 @@
-//! Where a rectangle, a line and a sun lie and shine, and the lights that are refused.
+//! Where lights of each shape lie and shine, and those that are refused.
 
-use antumbra::RectangleLight;
+use antumbra::{Light, RectangleLight, Shape};
 use glam::{DMat3, DMat4, DVec3};
 
 fn axes(light: &RectangleLight) -> DMat3 {
@@ -116,4 +116,81 @@ fn bad_lights_are_refused_with_a_sentence() {
     assert!(make(DVec3::ZERO, DVec3::Y).to_string().contains("above 0"));
     assert!(make(DVec3::X, DVec3::X).to_string().contains("perpendicular"));
     assert!(make(DVec3::NAN, DVec3::Y).to_string().contains("finite"));
+}
+
+#[test]
+fn a_light_knows_its_shape_and_a_rectangle_around_it() {
+    let at = DVec3::new(5.0, -1.0, 2.0);
+    let half = |light: &Light| light.rectangle().half_extents();
+    for emission in [DVec3::NEG_Y * 7.0, DVec3::new(1.0, -2.0, 0.5), DVec3::Z * 1e-3] {
+        let disc = Light::disc(at, emission, 0.3).unwrap();
+        assert_eq!((disc.shape(), half(&disc)), (Shape::Disc { radius: 0.3 }, [0.3; 2]));
+        assert!(disc.center() == at && disc.is_one_sided());
+        assert!((disc.emission() - emission.normalize()).length() < 1e-12);
+        assert!((axes(disc.rectangle()).determinant() - 1.0).abs() < 1e-12);
+
+        let capsule = Light::capsule(at, emission, 0.3).unwrap();
+        let half_length = emission.length();
+        assert_eq!(capsule.shape(), Shape::Capsule { half_length, radius: 0.3 });
+        assert_eq!(half(&capsule), [half_length + 0.3, 0.3]);
+        assert!(capsule.center() == at && !capsule.is_one_sided());
+        let frame = axes(capsule.rectangle());
+        assert!((frame.x_axis - emission.normalize()).length() < 1e-12);
+        assert!((frame.determinant() - 1.0).abs() < 1e-12);
+
+        // Techniques that know rectangles alone see the one that they always saw.
+        let sun = Light::sun(emission, 0.0093, at, 3.0).unwrap();
+        assert_eq!(sun.shape(), Shape::Sun { angular_size: 0.0093 });
+        assert_eq!(*sun.rectangle(), RectangleLight::sun(emission, 0.0093, at, 3.0).unwrap());
+        assert!(!sun.is_one_sided());
+    }
+    let sphere = Light::sphere([5.0, -1.0, 2.0], 0.3).unwrap();
+    assert_eq!((sphere.shape(), half(&sphere)), (Shape::Sphere { radius: 0.3 }, [0.3; 2]));
+    let point = Light::point([5.0f32, -1.0, 2.0]).unwrap();
+    assert_eq!((point.shape(), half(&point)), (Shape::Point, [0.0; 2]));
+    assert!(!point.rectangle().is_line(), "a point has no length either");
+    assert!(sphere.center() == at && point.center() == at);
+    assert!(!sphere.is_one_sided() && !point.is_one_sided());
+    let ball = Light::capsule(at, DVec3::ZERO, 0.3).unwrap();
+    assert_eq!(ball.shape(), Shape::Capsule { half_length: 0.0, radius: 0.3 });
+
+    let rectangle = Light::from(ceiling());
+    assert_eq!((rectangle.shape(), *rectangle.rectangle()), (Shape::Rectangle, ceiling()));
+    let line = Light::from(RectangleLight::line(at, DVec3::X, DVec3::Y).unwrap());
+    assert!(line.shape() == Shape::Line && line.is_one_sided() && rectangle.is_one_sided());
+    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let polygon = Light::polygon(&corners).unwrap();
+    assert!(matches!(polygon.shape(), Shape::Polygon(corners) if corners.len() == 3));
+    assert!(polygon.is_one_sided() && polygon.shape().name() == "polygon");
+}
+
+#[test]
+fn lights_of_no_size_or_no_place_are_refused_with_a_sentence() {
+    let refused = |light: Result<Light, antumbra::Error>, part: &str| {
+        let sentence = light.unwrap_err().to_string();
+        assert!(sentence.starts_with("the light cannot be used: "), "{sentence}");
+        assert!(sentence.contains(part), "{sentence}");
+    };
+    let (zero, down) = (DVec3::ZERO, DVec3::NEG_Y);
+    for radius in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-16, 1e15] {
+        let part = "it must be above 0, and twice that from 1e-15 to 1e15 m";
+        refused(Light::disc(zero, down, radius), part);
+        refused(Light::sphere(zero, radius), part);
+        refused(Light::capsule(zero, DVec3::X, radius), part);
+    }
+    assert!(Light::sphere(zero, 1e-15).is_ok() && Light::sphere(zero, 5e14).is_ok());
+    for place in [DVec3::NAN, DVec3::X * f64::INFINITY] {
+        refused(Light::disc(place, down, 1.0), "position");
+        refused(Light::sphere(place, 1.0), "position");
+        refused(Light::capsule(place, DVec3::X, 1.0), "position");
+        refused(Light::point(place), "position");
+        refused(Light::disc(zero, place, 1.0), "emission");
+        refused(Light::capsule(zero, place, 1.0), "axis");
+        refused(Light::sun(down, 0.1, place, 1.0), "finite");
+        refused(Light::sun(place, 0.1, zero, 1.0), "finite");
+    }
+    refused(Light::disc(zero, zero, 1.0), "have a length");
+    refused(Light::capsule(zero, DVec3::X * 1e15, 1.0), "at most 1e15 m");
+    refused(Light::sun(down, 1.1, zero, 1.0), "angular size");
+    refused(Light::sun(down, 0.1, zero, 0.0), "radius");
 }

@@ -6,4 +6,5 @@ mod metrics;
 mod polygon_light;
 mod random;
 mod segment;
+mod shapes;
 mod trace;

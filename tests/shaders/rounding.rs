@@ -81,7 +81,7 @@ impl Sums {
             "receivers=map sides=one map={map} receiver_map={receiver_map} accumulate={accumulate}"
         );
         let mut stage = setup.stage(device, &words);
-        let plan = stage.plan(&setup.light(), Some(case.window())).unwrap();
+        let plan = stage.plan(setup.light(), Some(case.window())).unwrap();
         stage.run(&plan).unwrap();
         let (depth, _) = stage.inspect::<f32>(&plan, "depth_layers.front_depth").unwrap();
         let (stored, _) = stage.inspect::<f32>(&plan, "depth_layers.receiver_depth").unwrap();

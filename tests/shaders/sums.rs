@@ -59,7 +59,7 @@ fn grid_of(plan: &FramePlan, accumulate: &str) -> Grid {
 /// The largest |error| over the checked texels, relative to a sum above 1, and the largest sum; of the
 /// front map, or of the back map by pairs.
 fn worst_error(stage: &mut Stage, setup: &Setup, accumulate: &str, pairs: bool) -> (f64, f64) {
-    let plan = stage.plan(&setup.light(), None).unwrap();
+    let plan = stage.plan(setup.light(), None).unwrap();
     stage.run(&plan).unwrap();
     let (depth, [side, _]) = stage.inspect::<f32>(&plan, "depth_layers.front_depth").unwrap();
     let (receivers, [receiver_side, _]) =
@@ -193,7 +193,7 @@ fn rectangles_of_the_processor_give_the_same_sums() {
                 "receivers=map sides=one accumulate=blend map={map} receiver_map={receiver_map}"
             );
             let mut stage = setup.stage(&device, &words);
-            let plan = stage.plan(&setup.light(), None).unwrap();
+            let plan = stage.plan(setup.light(), None).unwrap();
             stage.run(&plan).unwrap();
             let (blended, _) = stage.inspect::<f32>(&plan, "soft_shadow_map.front_map").unwrap();
             let mut scheme = ReadbackScheme::new(&device, &scene, map, receiver_map).unwrap();

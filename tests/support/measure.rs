@@ -70,9 +70,9 @@ impl<'a> Setup<'a> {
         Self { scene, view, extent: [side; 2], window: None, occluders_seen: false }
     }
 
-    /// The scene's first light.
+    /// The rectangle of the scene's first light.
     pub fn light(&self) -> RectangleLight {
-        self.scene.light(None).unwrap().light
+        *self.scene.light(None).unwrap().light.rectangle()
     }
 
     /// A stage with a node of these settings.
@@ -138,7 +138,8 @@ impl<'a> Setup<'a> {
             let visible = exact.visible_fractions(&light, &receivers).unwrap();
             return (visible.iter().map(|&v| v as f32).collect(), 0.0);
         }
-        if let Some(outline) = self.scene.light(None).unwrap().outline() {
+        let whole = self.scene.light(None).unwrap().light;
+        if let Some(outline) = whole.outline() {
             let frame = light.world_from_light();
             let place = |&[x, y]: &[f64; 2]| frame.transform_point3(DVec3::new(x, y, 0.0));
             let polygon =
@@ -148,7 +149,7 @@ impl<'a> Setup<'a> {
         }
         let tracer = Tracer::new(self.scene).unwrap();
         let sampling = Sampling::new(rays, 1).unwrap();
-        let traced = tracer.visible_fractions(&light, &receivers, &sampling).unwrap();
+        let traced = tracer.visible_fractions(whole, &receivers, &sampling).unwrap();
         (traced.visible, traced.noise)
     }
 }
@@ -183,9 +184,10 @@ pub fn metre_line() -> RectangleLight {
 /// If the model has no light.
 pub fn bunny_under_a_line() -> Scene {
     let mut scene = model("bunny");
-    let light = &mut scene.lights[0].light;
+    let light = *scene.lights[0].light.rectangle();
     let half = light.world_from_light().transform_vector3(DVec3::X * 0.5);
-    *light = RectangleLight::line(light.center(), half, light.emission()).unwrap();
+    let line = RectangleLight::line(light.center(), half, light.emission()).unwrap();
+    scene.lights[0].light = line.into();
     scene
 }
 

@@ -147,7 +147,7 @@ impl Rig {
         let mut images = Vec::with_capacity(shots.len());
         for batch in shots.chunks(BATCH as usize) {
             let plan = |(light, shot): (u32, &Shot)| {
-                let planned = self.stage.plan_with(&shot.lamp.light(), |frame| {
+                let planned = self.stage.plan_with(shot.lamp.light(), |frame| {
                     frame.light_index = LightIndex(light);
                     frame.technique_index = TechniqueIndex(shot.settings as u32);
                     frame.meshes = &shot.meshes;

@@ -14,7 +14,7 @@ fn seen(scene: &Scene) -> Setup<'_> {
 /// The images of both.
 fn images(device: &HeadlessDevice, setup: &Setup, words: &str) -> [Vec<f32>; 2] {
     let mut stage = setup.stage(device, words);
-    let plan = stage.plan(&setup.light(), setup.window).unwrap();
+    let plan = stage.plan(setup.light(), setup.window).unwrap();
     let keep = |i: &Instance| setup.occluders_seen || i.role != Role::Occluder;
     let mut forward = Forward::new(device, stage, plan, setup.scene, keep).unwrap();
     forward.run().unwrap();
@@ -121,13 +121,13 @@ fn what_forward_evaluation_cannot_do_is_refused() {
         ["technique=ray-march layers=3", "technique=ray-march search=linear", "technique=pcss"]
     {
         let mut stage = setup.stage(&device, words);
-        let plan = stage.plan(&setup.light(), None).unwrap();
+        let plan = stage.plan(setup.light(), None).unwrap();
         let made = Forward::new(&device, stage, plan, &spheres, |_| true);
         let problem = made.err().unwrap().to_string();
         assert!(problem.contains("search=hierarchical"), "{words}: {problem}");
     }
     let words = "technique=ray-march";
-    let plan = setup.stage(&device, words).plan(&setup.light(), None).unwrap();
+    let plan = setup.stage(&device, words).plan(setup.light(), None).unwrap();
     let made = Forward::new(&device, setup.stage(&device, words), plan, &spheres, |_| true);
     assert!(made.is_err(), "another node's plan");
 }

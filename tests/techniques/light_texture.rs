@@ -148,6 +148,6 @@ fn what_cannot_be_weighed_is_refused() {
     assert!(refused(depth).contains("holds no color"));
     let mut stage = stage(&device, &setup, "technique=ray-march", true);
     let missing = |frame: &mut Frame| frame.light_texture = None;
-    let problem: Error = stage.plan_with(&setup.light(), missing).unwrap_err();
+    let problem: Error = stage.plan_with(setup.light(), missing).unwrap_err();
     assert!(problem.to_string().contains("a light texture must be lent"), "{problem}");
 }

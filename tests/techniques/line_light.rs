@@ -97,13 +97,14 @@ fn a_hard_shadow_is_that_of_a_rectangle() {
 
 /// A device's node refuses a line where the plan on the host does.
 #[test]
-fn what_needs_an_area_says_so() {
+fn what_takes_no_lines_says_so() {
     let device = device();
     let scene = generate::card(metre_line());
     let setup = Setup::ground(&scene, 2.2, 32);
-    for technique in Technique::all().iter().filter(|t| !t.room().takes().line) {
+    let line = metre_line().into();
+    for technique in Technique::all().iter().filter(|t| !t.room().takes().shapes.hold(&line)) {
         let mut stage = setup.stage(&device, &format!("technique={technique}"));
-        let sentence = stage.plan(&setup.light(), None).map(|_| ()).unwrap_err().to_string();
+        let sentence = stage.plan(setup.light(), None).map(|_| ()).unwrap_err().to_string();
         assert!(sentence.contains("the light is a line"), "{sentence}");
     }
 }

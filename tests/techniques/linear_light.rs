@@ -204,7 +204,7 @@ fn narrow_rectangles_are_one_line() {
         let setup = Setup::ground(&scene, 2.2, 96);
         let mut stage =
             setup.stage(&device, "technique=linear-light samples=2 lines=16 error=0.02");
-        let plan = stage.plan(&setup.light(), None).unwrap();
+        let plan = stage.plan(setup.light(), None).unwrap();
         let runs = plan.plan().runs();
         let lines = runs.iter().find(|r| r.pass.name == "linear_light.spread").unwrap().times;
         let error = percent(&setup.closed_form_of_card(&stage), &setup.visibility(&mut stage));

@@ -5,6 +5,7 @@
 
 mod accuracy;
 mod baseline;
+mod disc_light;
 mod forward;
 mod light_texture;
 mod line_light;

@@ -142,7 +142,7 @@ fn errors_are_what_they_were_measured_to_be() {
 
 /// The view of a scene and its occluders' triangles in light space.
 fn in_light_space(scene: &Scene, map: u32) -> (MapView, Vec<[DVec3; 3]>) {
-    let light = scene.light(None).unwrap().light;
+    let light = *scene.light(None).unwrap().light.rectangle();
     let to_light = light.light_from_world();
     let occluders = || scene.instances.iter().filter(|i| i.role.blocks());
     let boxes: Vec<_> =
@@ -329,7 +329,7 @@ fn the_work_does_not_grow_with_the_light() {
         let scene = normalized("bunny", side);
         let setup = Setup::ground(&scene, 2.2, 32);
         let mut stage = setup.stage(&device, "technique=occlusion-textures");
-        let plan = stage.plan(&setup.light(), None).unwrap();
+        let plan = stage.plan(setup.light(), None).unwrap();
         let plan = plan.plan();
         let passes = plan.steps.iter().map(|s| &plan.graph.passes()[s.pass]);
         passes.map(|p| format!("{} {:?}", p.name, p.work)).collect::<Vec<_>>()

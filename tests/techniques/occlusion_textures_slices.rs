@@ -23,7 +23,7 @@ fn largest(a: &[f32], b: &[f32]) -> f32 {
 fn placement(device: &HeadlessDevice, scene: &Scene, words: &str) -> (Vec<usize>, Vec<[f32; 3]>) {
     let setup = Setup::ground(scene, 1.0, 8);
     let mut stage = setup.stage(device, &format!("technique=occlusion-textures {words}"));
-    let plan = stage.plan(&setup.light(), None).unwrap();
+    let plan = stage.plan(setup.light(), None).unwrap();
     stage.run(&plan).unwrap();
     let name = "occlusion_textures.placement";
     let (texels, _) = stage.inspect::<[f32; 4]>(&plan, name).unwrap();
@@ -95,7 +95,7 @@ fn a_table_of_the_largest_map_is_exact() {
     let setup = Setup::ground(&scene, 1.0, 8);
     let words = "technique=occlusion-textures map=4096 slices=4 combine=product";
     let mut stage = setup.stage(&device, words);
-    let plan = stage.plan(&setup.light(), None).unwrap();
+    let plan = stage.plan(setup.light(), None).unwrap();
     stage.run(&plan).unwrap();
     let (mask, [width, height]) = stage.inspect::<u32>(&plan, "occlusion_textures.mask").unwrap();
     assert_eq!([width, height], [4096; 2]);
@@ -139,7 +139,7 @@ fn flicker(device: &HeadlessDevice, words: &str, tilt: f64) -> f32 {
         let between = meshes.last_mut().unwrap();
         between.world_from_mesh = down * between.world_from_mesh;
         let meshes = &*meshes.leak();
-        let plan = stage.plan_with(&setup.light(), |frame| frame.meshes = meshes).unwrap();
+        let plan = stage.plan_with(setup.light(), |frame| frame.meshes = meshes).unwrap();
         stage.run(&plan).unwrap();
         let now = stage.visibility().unwrap();
         worst = worst.max(before.map_or(0.0, |b| largest(&b, &now)));

@@ -24,7 +24,7 @@ fn every_scene_runs_what_it_calls_for_and_what_is_left_out_costs_no_more_than_wa
         let light = setup.light();
         let image = |stage: &mut Stage, omit| {
             stage.configure_with(settings(case.words), |d| d.omit = omit).unwrap();
-            let plan = stage.plan(&light, None).unwrap();
+            let plan = stage.plan(light, None).unwrap();
             stage.run(&plan).unwrap();
             (plan, stage.visibility().unwrap())
         };
@@ -33,7 +33,7 @@ fn every_scene_runs_what_it_calls_for_and_what_is_left_out_costs_no_more_than_wa
         stage.configure(settings("technique=hard map=16")).unwrap();
         let other =
             RectangleLight::sun(DVec3::new(1.0, -0.7, 0.3), 0.01, DVec3::ZERO, 4.0).unwrap();
-        let plan = stage.plan(&other, None).unwrap();
+        let plan = stage.plan(other, None).unwrap();
         stage.run(&plan).unwrap();
         let (plan, pruned) = image(&mut stage, Omit::default());
         let runs: Vec<_> = plan.plan().runs().iter().map(|r| r.pass.name).collect();

@@ -1,7 +1,7 @@
 //! Lights of a polygonal outline: what takes them, and how far from the exact truth it is.
 
-use antumbra::Technique;
 use antumbra::scene::{Scene, generate};
+use antumbra::{Light, Technique};
 use antumbra_tests::device;
 use antumbra_tests::measure::{Setup, as_measured, percent, summary};
 
@@ -11,8 +11,7 @@ const L: &[[f64; 2]] =
     &[[-0.5, -0.5], [0.5, -0.5], [0.5, -0.2], [-0.1, -0.2], [-0.1, 0.5], [-0.5, 0.5]];
 
 fn card(corners: &[[f64; 2]]) -> Scene {
-    let (light, outline) = generate::polygon_light(corners).unwrap();
-    generate::card(light).with_outline(outline)
+    generate::card(generate::polygon_light(corners).unwrap())
 }
 
 /// Many lights under a polygon err as under a rectangle, by the cells that an edge of a shadow cuts and by
@@ -40,7 +39,7 @@ fn many_lights_see_the_polygon() {
         assert!(error < most && as_measured(error, MEASURED), "{name}: {error} %");
 
         // The truth can tell the polygon from its rectangle, and from its mirror image.
-        let plan = stage.plan(&setup.light(), None).unwrap();
+        let plan = stage.plan(setup.light(), None).unwrap();
         stage.run(&plan).unwrap();
         let whole = percent(&truth, &stage.visibility().unwrap());
         let mirrored: Vec<_> = corners.iter().map(|&[x, z]| [-x, z]).collect();
@@ -63,9 +62,10 @@ const MOST: [f64; 2] = [0.6, 0.6];
 #[test]
 fn an_outline_of_the_whole_rectangle_changes_nothing() {
     let device = device();
-    let scene = generate::card(generate::rectangle_light(1.0, 0.5, 0.0).unwrap());
-    let outlined =
-        scene.clone().with_outline(vec![[-0.5, -0.25], [0.5, -0.25], [0.5, 0.25], [-0.5, 0.25]]);
+    let light = generate::rectangle_light(1.0, 0.5, 0.0).unwrap();
+    let corners = [[-0.5, -0.25], [0.5, -0.25], [0.5, 0.25], [-0.5, 0.25]];
+    let scene = generate::card(light);
+    let outlined = generate::card(Light::with_outline(light, &corners).unwrap());
     let [whole, outlined] = [&scene, &outlined].map(|scene| {
         let setup = Setup::ground(scene, 2.2, 96);
         setup.visibility(&mut setup.stage(&device, "technique=many-lights samples=64"))
@@ -81,11 +81,12 @@ fn what_knows_rectangles_alone_says_so() {
     let scene = card(TRIANGLE);
     let setup = Setup::ground(&scene, 2.2, 32);
     let light = scene.light(None).unwrap();
-    for technique in Technique::all().iter().filter(|t| !t.room().takes().outline) {
+    for technique in Technique::all().iter().filter(|t| !t.room().takes().shapes.hold(&light.light))
+    {
         let name = technique.name();
         let mut stage = setup.stage(&device, &format!("technique={name}"));
         let sentence = stage.plan_under(light, None).map(|_| ()).unwrap_err().to_string();
-        let start = format!("the light is a polygon, and {name} knows rectangles alone; choose ");
+        let start = format!("the light is a polygon, and {name} takes no polygons; choose ");
         assert!(sentence.starts_with(&start), "{sentence}");
     }
 }

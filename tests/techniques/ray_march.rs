@@ -72,7 +72,7 @@ fn a_list_of_two_rows_of_workgroups_is_worked_at_whole() {
     let setup = Setup::ground(&tall_box, 3.5, 1040);
     let words = "technique=ray-march map=32 rays=1 filter=off";
     let mut stage = setup.stage(&device, &format!("{words} classify=off"));
-    let plan = stage.plan(&setup.light(), None).unwrap();
+    let plan = stage.plan(setup.light(), None).unwrap();
     stage.run(&plan).unwrap();
     let groups: Vec<u32> = stage.inspect_buffer(&plan, "ray_march.arguments").unwrap();
     assert_eq!(groups[..3], [16384, 2, 1], "64 pixels each, 16384 a row");
@@ -126,7 +126,7 @@ fn one_ray_is_right_in_the_mean() {
         );
         let mut stage = setup.stage(&device, &words);
         for noise in 0..256 {
-            let plan = stage.plan_with(&setup.light(), |frame| frame.noise = noise).unwrap();
+            let plan = stage.plan_with(setup.light(), |frame| frame.noise = noise).unwrap();
             stage.run(&plan).unwrap();
             let one = stage.visibility().unwrap();
             sum.iter_mut().zip(&one).for_each(|(s, v)| *s += f64::from(*v) / 256.0);

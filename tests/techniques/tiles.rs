@@ -22,7 +22,7 @@ struct Listed {
 
 fn listed(device: &HeadlessDevice, setup: &Setup, words: &str) -> Listed {
     let mut stage = setup.stage(device, words);
-    let plan = stage.plan(&setup.light(), setup.window).unwrap();
+    let plan = stage.plan(setup.light(), setup.window).unwrap();
     stage.run(&plan).unwrap();
     let list: Vec<u32> = stage.inspect_buffer(&plan, "visibility.tile_list").unwrap();
     let groups: Vec<u32> = stage.inspect_buffer(&plan, "visibility.tile_arguments").unwrap();
@@ -44,7 +44,7 @@ fn framed(scene: &Scene) -> Setup<'_> {
 fn same_image(device: &HeadlessDevice, setup: &Setup, words: &str, what: &str) -> (usize, usize) {
     let with = listed(device, setup, words);
     let mut stage = setup.stage(device, &format!("{words} classify=off"));
-    let plan = stage.plan(&setup.light(), setup.window).unwrap();
+    let plan = stage.plan(setup.light(), setup.window).unwrap();
     stage.run(&plan).unwrap();
     let without = stage.visibility().unwrap();
     let pairs = with.image.iter().zip(&without);

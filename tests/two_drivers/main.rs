@@ -30,7 +30,7 @@ fn open(driver: &str) -> Result<HeadlessDevice, antumbra::Error> {
 
 fn draw(device: &HeadlessDevice, setup: &Setup) -> Drawn {
     let mut stage = setup.stage(device, &format!("technique=ray-march layers=2 map={MAP}"));
-    let plan = stage.plan(&setup.light(), None).unwrap();
+    let plan = stage.plan(setup.light(), None).unwrap();
     stage.run(&plan).unwrap();
     let layers = ["depth_layers.front_depth", "depth_layers.back_depth"]
         .map(|name| stage.inspect::<f32>(&plan, name).unwrap().0);
@@ -68,7 +68,7 @@ fn computed(device: &HeadlessDevice, setup: &Setup, drawn: &Drawn, words: &str) 
         .configure_with(settings(&words), |d| d.occluder_maps = Some(vk::Format::D32_SFLOAT))
         .unwrap();
     let plan = stage
-        .plan_with(&light, |f| {
+        .plan_with(light, |f| {
             f.occluder_maps = Some(maps);
             f.depth = pixels.lend(read, read);
         })

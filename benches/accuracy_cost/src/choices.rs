@@ -158,7 +158,7 @@ pub fn situation(device: &HeadlessDevice, group: &Group) -> Result<Situation, Pr
     let keep = |i: &Instance| ready.keeps(i);
     let mut stage = Stage::new(device, &ready.scene, &ready.view, group.extent, settings, keep)?;
     let light = ready.scene.light(None)?.light;
-    let plan = stage.plan(&light, ready.window)?;
+    let plan = stage.plan(light, ready.window)?;
     let situation = plan.verdicts().situation().copied();
     situation.ok_or_else(|| format!("{}: nothing can be shadowed", group.key()).into())
 }

@@ -85,7 +85,7 @@ impl Bench<'_> {
         let truth = truth::truth(&ready.scene, &tracer, &receivers, against, rays)?;
         say("errors");
         let seen = ready.occluders_seen.then(|| Seen::of(&pixels, &light)).transpose()?;
-        let sides = light.light.half_extents().map(|h| 2.0 * h);
+        let sides = light.light.rectangle().half_extents().map(|h| 2.0 * h);
         let triangles = ready.scene.triangles();
         if let Some(seen) = &seen
             && candidates.iter().any(|c| c.entry.shown)

@@ -7,7 +7,7 @@ use crate::techniques::Method;
 use crate::truth;
 use antumbra::scene::Instance;
 use antumbra::truth::{Receiver, Sampling, Tracer};
-use antumbra::{FramePlan, RectangleLight};
+use antumbra::{FramePlan, Light, RectangleLight};
 use antumbra_harness::{Forward, FrameTimes, HeadlessDevice, ReadbackScheme, Stage};
 use std::time::{Duration, Instant};
 
@@ -19,12 +19,7 @@ pub enum Runner<'a> {
     /// The node, its stage and its frame.
     Node { stage: Box<Stage>, plan: Box<FramePlan> },
     /// Rays by the processor.
-    Rays {
-        tracer: &'a Tracer,
-        receivers: &'a [Receiver],
-        light: RectangleLight,
-        sampling: Sampling,
-    },
+    Rays { tracer: &'a Tracer, receivers: &'a [Receiver], light: Box<Light>, sampling: Sampling },
     /// Rays of the fragments as they are drawn, by the maps of the stage within.
     Forward(Box<Forward>),
     /// The paper's scheme ends with its map. Its image is that of blending, whose sums are the same
@@ -47,17 +42,20 @@ impl<'a> Runner<'a> {
         group: &Group,
         entry: &Entry,
         method: Result<Option<Method>, Problem>,
-        light: &RectangleLight,
+        light: &Light,
         (tracer, receivers): (&'a Tracer, &'a [Receiver]),
     ) -> Result<Option<Self>, Problem> {
-        let lit = scaled(light, entry.light_scale);
+        let lit = match entry.light_scale {
+            1.0 => Ok(*light),
+            by => scaled(light.rectangle(), by).map(Light::from),
+        };
         let stage = |settings| ready.stage(device, group.extent, settings).map(Box::new);
         Ok(match method? {
             None => None,
             Some(Method::Rays(rays)) => {
                 let sampling =
                     truth::sampling(Sampling::one_grid(rays.isqrt(), TRACER_SEED), receivers)?;
-                Some(Self::Rays { tracer, receivers, light: lit?, sampling })
+                Some(Self::Rays { tracer, receivers, light: Box::new(lit?), sampling })
             }
             Some(Method::Readback(side)) => {
                 let words = "soft-shadow-map receivers=map accumulate=blend sides=one";
@@ -66,12 +64,12 @@ impl<'a> Runner<'a> {
                 let plan = stage.plan(light, ready.window)?;
                 let scheme = Box::new(ReadbackScheme::new(device, &ready.scene, side, side)?);
                 stage.run(&plan)?;
-                let (light, window, plan) = (lit?, ready.window, Box::new(plan));
+                let (light, window, plan) = (*lit?.rectangle(), ready.window, Box::new(plan));
                 Some(Self::Readback { scheme, light, window, stage, plan })
             }
             Some(Method::Node(settings)) => {
                 let mut stage = stage(*settings)?;
-                let plan = stage.plan(&lit?, ready.window)?;
+                let plan = stage.plan(lit?, ready.window)?;
                 Some(Self::Node { stage, plan: Box::new(plan) })
             }
             Some(Method::Forward(settings)) => {
@@ -108,7 +106,7 @@ impl<'a> Runner<'a> {
             }
             Self::Rays { tracer, receivers, light, sampling } => {
                 let started = Instant::now();
-                let traced = tracer.visible_fractions(light, receivers, sampling)?;
+                let traced = tracer.visible_fractions(**light, receivers, sampling)?;
                 let frame = started.elapsed();
                 let times = FrameTimes { frame, record: Duration::ZERO, passes: Vec::new() };
                 Ok((times, Some(traced.visible)))

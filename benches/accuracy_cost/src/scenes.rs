@@ -3,9 +3,9 @@
 use crate::Problem;
 use crate::hills::hills;
 use crate::options::Options;
-use antumbra::RectangleLight;
 use antumbra::scene::generate::{self, GROUND_SIDE, cuboid};
 use antumbra::scene::{Camera, Role, Scene, from_gltf};
+use antumbra::{RectangleLight, Shape};
 use antumbra_harness::ply::ply;
 use glam::{DMat4, DVec3};
 use std::ffi::OsStr;
@@ -107,17 +107,19 @@ impl SceneSpec {
             Source::Committed(name) => {
                 let mut scene = committed(name)?;
                 let light = scene.lights.first_mut().ok_or("the file has no light")?;
-                light.light = scaled(&light.light, SCALES[index])?;
+                light.light = scaled(light.light.rectangle(), SCALES[index])?.into();
                 Ok(scene)
             }
             Source::File(path) => {
                 let scene = from_gltf(path)?;
                 let problem = Problem::of(path.display());
                 let light = scene.light(None).map_err(Problem::of(path.display()))?;
-                if light.outline().is_some() {
-                    return Err(problem(
-                        "its light is a polygon, which most of what is compared does not take; give it a rectangle",
-                    ));
+                let shape = light.light.shape();
+                if !matches!(shape, Shape::Rectangle | Shape::Line | Shape::Sun { .. }) {
+                    return Err(Problem::of(path.display())(format!(
+                        "its light is a {}, which most of what is compared does not take; give it a rectangle",
+                        shape.name()
+                    )));
                 }
                 if scene.triangles() == 0 {
                     return Err(problem(
@@ -247,7 +249,7 @@ mod tests {
     fn the_cubes_top_hides_less_than_half_of_the_light_from_below() {
         let scene = elongated_cube(square(1.0).unwrap());
         let bounds = scene.bounds(|i| i.role.blocks()).unwrap();
-        let light = scene.light(None).unwrap().light;
+        let light = *scene.light(None).unwrap().light.rectangle();
         let height = light.center().y;
         let share = |y: f64| {
             let side = bounds.size().x * height / y;
@@ -262,7 +264,7 @@ mod tests {
             let mut last = 0.0;
             for light in spec.lights() {
                 let scene = spec.load(light).unwrap();
-                let [a, b] = scene.light(None).unwrap().light.half_extents();
+                let [a, b] = scene.light(None).unwrap().light.rectangle().half_extents();
                 assert!(a * b > last, "{} {light}", spec.name);
                 last = a * b;
                 assert!(scene.instances.iter().any(|i| i.role.blocks()));
@@ -274,7 +276,7 @@ mod tests {
     #[test]
     fn a_scaled_light_keeps_its_place_and_side() {
         let scene = committed("bunny").unwrap();
-        let light = scene.light(None).unwrap().light;
+        let light = *scene.light(None).unwrap().light.rectangle();
         let twice = scaled(&light, 2.0).unwrap();
         assert!((twice.emission() - light.emission()).length() < 1e-12);
         for (twice, once) in twice.half_extents().iter().zip(light.half_extents()) {

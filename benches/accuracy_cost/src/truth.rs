@@ -60,14 +60,14 @@ pub fn truth(
             let card = card_corners(scene)?;
             let seen = |r: &Receiver| match r.normal == DVec3::ZERO {
                 true => 1.0,
-                false => visible_fraction_of_quad(&light, card, r.position) as f32,
+                false => visible_fraction_of_quad(light.rectangle(), card, r.position) as f32,
             };
             let visible = receivers.par_iter().map(seen).collect();
             Ok(Traced { visible, noise: 0.0, penumbra: 0, rays: 0 })
         }
         Against::Traced => {
             let sampling = sampling(Sampling::new(rays, SEED), receivers)?;
-            Ok(tracer.visible_fractions(&light, receivers, &sampling)?)
+            Ok(tracer.visible_fractions(light, receivers, &sampling)?)
         }
     }
 }

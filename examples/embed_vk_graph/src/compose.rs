@@ -22,7 +22,7 @@ struct Push {
 
 impl Push {
     fn new(shot: &Shot) -> Self {
-        let light = &shot.light.light;
+        let light = shot.light.light.rectangle();
         let [a, b] = light.half_extents();
         let peak = shot.light.color.into_iter().fold(1e-6, f32::max);
         let [red, green, blue] = shot.light.color.map(|c| c / peak * shot.exposure);

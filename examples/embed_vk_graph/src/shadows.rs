@@ -66,7 +66,7 @@ impl Shadows {
             mask: Some(lend(&shot.targets.mask)?),
             visibility: Visibility::Lent(lend(&shot.targets.visibility)?),
             border_barriers: BorderBarriers::Host,
-            ..Frame::new(shot.slot, shot.light.shape()?, shot.world_from_ndc, &meshes, depth)
+            ..Frame::new(shot.slot, shot.light.light, shot.world_from_ndc, &meshes, depth)
         };
         Ok(self.node.plan(&frame)?)
     }

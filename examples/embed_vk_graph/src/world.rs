@@ -42,7 +42,7 @@ impl World {
 
     /// The radiance at which white paper amid the occluders, facing the light, is just white.
     pub fn exposure(&self) -> f32 {
-        let [a, b] = self.light.light.half_extents();
+        let [a, b] = self.light.light.rectangle().half_extents();
         let center = self.scene.bounds(|i| i.role.blocks()).map(|b| b.center());
         let r2 = center.map_or(1.0, |c| c.distance_squared(self.light.light.center()));
         (r2 / (4.0 * a * b)) as f32

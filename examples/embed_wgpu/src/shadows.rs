@@ -72,7 +72,7 @@ impl Shadows {
                 clip_from_world: maps.clip_from_world,
             }),
             border_barriers: BorderBarriers::Host,
-            ..Frame::new(slot, seen.world.light.shape()?, seen.view.world_from_ndc(), meshes, depth)
+            ..Frame::new(slot, seen.world.light.light, seen.view.world_from_ndc(), meshes, depth)
         })
     }
 

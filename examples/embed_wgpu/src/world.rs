@@ -24,9 +24,9 @@ impl World {
         Ok(Self { scene, light })
     }
 
-    /// The light's shape and place.
+    /// The light's rectangle, which stands for it in the picture.
     pub fn rectangle(&self) -> &RectangleLight {
-        &self.light.light
+        self.light.light.rectangle()
     }
 
     /// The light's radiance in red, green and blue, chosen so that white paper in the middle of the occluders would be

@@ -3,7 +3,7 @@
 use super::*;
 use crate::lent::*;
 
-/// Techniques that need both half-extents of a light refuse a line; the others plan a whole frame.
+/// A technique that takes no lines refuses one; the others plan a whole frame.
 #[test]
 fn a_line_is_refused_by_what_needs_an_area() {
     let meshes = meshes();
@@ -15,7 +15,9 @@ fn a_line_is_refused_by_what_needs_an_area() {
             assert!(ran(&planned.unwrap()).len() > 1, "{name}");
         } else {
             let sentence = planned.unwrap_err().to_string();
-            let start = format!("the light is a line, and {name} needs an area; choose ");
+            let start = format!(
+                "the light is a line, and {name} takes no lines; choose hard, many-lights, "
+            );
             assert!(sentence.starts_with(&start), "{sentence}");
         }
     }
@@ -50,7 +52,7 @@ fn lengths_that_single_precision_does_not_hold_are_refused() {
     assert!(sentence.starts_with("mesh 1 blocks up to"), "{sentence}");
 }
 
-/// Two techniques accept an outline; the others name those two.
+/// Two techniques take a polygon; the others name those two.
 #[test]
 fn an_outline_is_refused_by_what_knows_rectangles_alone() {
     let meshes = meshes();
@@ -63,9 +65,47 @@ fn an_outline_is_refused_by_what_knows_rectangles_alone() {
             assert!(ran(&planned.unwrap()).len() > 1, "{name}");
         } else {
             let sentence = planned.unwrap_err().to_string();
-            let start =
-                format!("the light is a polygon, and {name} knows rectangles alone; choose ");
+            let start = format!(
+                "the light is a polygon, and {name} takes no polygons; choose many-lights, linear-light, or traced"
+            );
             assert!(sentence.starts_with(&start), "{sentence}");
+        }
+    }
+}
+
+/// No technique takes every shape but the one that the sentence names; many-lights takes discs. A sun is refused by none.
+#[test]
+fn shapes_are_refused_by_what_does_not_take_them() {
+    let meshes = meshes();
+    let lights = [
+        Light::disc(DVec3::Y * 4.0, DVec3::NEG_Y, 0.3),
+        Light::sphere(DVec3::Y * 4.0, 0.3),
+        Light::capsule(DVec3::Y * 4.0, DVec3::X, 0.1),
+        Light::point(DVec3::Y * 4.0),
+        Light::sun(DVec3::NEG_Y, 0.01, DVec3::ZERO, 5.0),
+    ];
+    let names = ["disc", "sphere", "capsule", "point", "sun"];
+    for (light, shape) in lights.into_iter().zip(names) {
+        let light = light.unwrap();
+        assert_eq!(light.shape().name(), shape);
+        let refused = |name: &str| {
+            let d = of_technique(name);
+            let planned = plan(&d, Limits::default(), &Frame { light, ..frame(&meshes) });
+            planned.map(|plan| assert!(ran(&plan).len() > 1, "{name}")).map_err(|e| e.to_string())
+        };
+        for name in Technique::NAMES {
+            let taken = shape == "sun" || (shape == "disc" && *name == "many-lights");
+            let others = if shape == "disc" { "many-lights, or " } else { "" };
+            let sentence = format!(
+                "the light is a {shape}, and {name} takes no {shape}s; choose {others}traced, which takes every shape"
+            );
+            assert_eq!(refused(name), if taken { Ok(()) } else { Err(sentence) });
+        }
+        let looked = situation(&description(&[]), &Frame { light, ..frame(&meshes) });
+        let start = format!("the light is a {shape}, and auto takes no {shape}s; choose ");
+        match looked {
+            Ok(_) => assert_eq!(shape, "sun"),
+            Err(e) => assert!(e.to_string().starts_with(&start), "{e}"),
         }
     }
 }

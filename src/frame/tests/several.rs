@@ -117,9 +117,8 @@ fn every_bad_number_of_lights_or_techniques_is_one_sentence() {
     let small = Description { other_techniques: vec![small], ..d.clone() };
     assert!(small.check().unwrap_err().to_string().contains("1 to 4096"));
     let line = generate::line_light(1.0, 0.3).unwrap();
-    assert!(
-        refuse(&d, Frame { light: line.into(), ..f }).contains("soft-shadow-map needs an area")
-    );
+    let sentence = refuse(&d, Frame { light: line.into(), ..f });
+    assert!(sentence.contains("soft-shadow-map takes no lines"), "{sentence}");
     make(&d, &Frame { light: line.into(), technique_index: TechniqueIndex(1), ..f });
 }
 

@@ -1,18 +1,31 @@
 //! Area lights and shadow roles, read from the extras of nodes.
 //!
 //! glTF 2.0 has no area light; extras are what Blender writes a node's custom properties to.
+//!
+//! | `area_light` | other keys, in metres of the node's space | light |
+//! |---|---|---|
+//! | `rectangle` | `width`, `height` | the node's XY plane, along its −Z; one side of 0: a line; both: a point |
+//! | `polygon` | `corners` | as a rectangle |
+//! | `disk` | `radius` | as a rectangle |
+//! | `sphere` | `radius` | to all sides |
+//! | `capsule` | `radius`, `length` between the centres of its caps, along the node's X | to all sides |
+//! | `sun` | `angular_size`, radians | along the node's −Z, from infinitely far away |
 
 use super::json::Root;
 use super::{MAX_COORDINATE, Problem, nodes};
 use crate::error::quoted;
 use crate::scene::{AreaLight, Bounds, Role};
-use crate::{Error, RectangleLight};
+use crate::{Error, Light, RectangleLight};
 use glam::{DMat4, DVec3};
 use serde_json::Value;
 
 /// The shortest and longest side of a light in the world, in metres: techniques divide by its area,
 /// in f32 on the GPU, and multiply by it.
 const SIDES: [f64; 2] = [1e-6, 1e6];
+
+/// The largest difference of a node's scales along its axes, relative to them, and the largest cosine of the angles
+/// between these axes, for a light that must stay round: files write both as f32.
+const UNEVEN: f64 = 1e-4;
 
 /// The node's `shadow_role`, or [`Role::Both`].
 pub(super) fn role(extras: &Value) -> Result<Role, Problem> {
@@ -22,8 +35,8 @@ pub(super) fn role(extras: &Value) -> Result<Role, Problem> {
     })
 }
 
-/// The node's area light, if it has one: its rectangle carried into the world. A sun is as far from `all`, the
-/// box of what casts shadows, as it has to be.
+/// The node's area light, if it has one: its shape carried into the world. A sun shines on `all`, the box of
+/// what casts shadows.
 pub(super) fn light(
     root: &Root,
     node: usize,
@@ -34,40 +47,51 @@ pub(super) fn light(
     let Some(kind) = extras.get("area_light") else { return Ok(None) };
     let sentence = |problem: Problem| format!("{}: {problem}", nodes::label(root, node));
     let light = match kind.as_str() {
-        Some("rectangle") => rectangle(extras, world).map(|light| (light, Vec::new())),
+        Some("rectangle") => rectangle(extras, world),
         Some("polygon") => polygon(extras, world),
-        Some("sun") => sun(extras, world, all).map(|light| (light, Vec::new())),
+        Some("disk") => disk(extras, world),
+        Some("sphere") => sphere(extras, world),
+        Some("capsule") => capsule(extras, world),
+        Some("sun") => sun(extras, world, all),
         _ => Err(format!(
-            "its area_light is {}; write \"rectangle\", \"polygon\" or \"sun\"",
+            "its area_light is {}; write \"rectangle\", \"polygon\", \"disk\", \"sphere\", \"capsule\" or \"sun\"",
             shown(kind)
         )),
     };
-    let (light, outline) = light.map_err(sentence)?;
+    let light = light.map_err(sentence)?;
     let color = color(extras).map_err(sentence)?;
     let intensity = match extras.get("intensity") {
         Some(value) => brightness(value, "intensity").map_err(sentence)?,
         None => 1.0,
     };
-    Ok(Some(AreaLight { name: nodes::name(root, node), light, outline, color, intensity }))
+    Ok(Some(AreaLight { name: nodes::name(root, node), light, color, intensity }))
 }
 
-/// A rectangle in the node's X and Y, or of a side of 0 a line along the other.
-fn rectangle(extras: &Value, world: &DMat4) -> Result<RectangleLight, Problem> {
-    let (width, height) = (side(extras, "width")?, side(extras, "height")?);
+/// Where the node stands.
+fn center(world: &DMat4) -> Result<DVec3, Problem> {
     let center = world.w_axis.truncate();
-    if center.abs().max_element() > MAX_COORDINATE {
-        return Err(format!("it lies further than {MAX_COORDINATE:e} m from the origin"));
+    if center.abs().max_element() <= MAX_COORDINATE {
+        return Ok(center);
     }
+    Err(format!("it lies further than {MAX_COORDINATE:e} m from the origin"))
+}
+
+/// What a light refuses, as the end of a sentence that names the node.
+fn unusable(error: Error) -> Problem {
+    match error {
+        Error::Light(problem) => format!("its light cannot be used: {problem}"),
+        other => other.to_string(),
+    }
+}
+
+/// A rectangle in the node's X and Y, or of a side of 0 a line along the other, or of two a point.
+fn rectangle(extras: &Value, world: &DMat4) -> Result<Light, Problem> {
+    let (width, height) = (side(extras, "width")?, side(extras, "height")?);
+    let center = center(world)?;
     let half_u = world.x_axis.truncate() * (0.5 * width);
     let half_v = world.y_axis.truncate() * (0.5 * height);
     let light = match (width == 0.0, height == 0.0) {
-        (true, true) => {
-            return Err(
-                "its width 0 and height 0 are a point, which has no soft shadow; give it a \
-                        width"
-                    .into(),
-            );
-        }
+        (true, true) => return Light::point(center).map_err(unusable),
         (false, true) => line(center, in_range("width", half_u)?, world),
         (true, false) => line(center, in_range("height", half_v)?, world),
         (false, false) => {
@@ -77,13 +101,58 @@ fn rectangle(extras: &Value, world: &DMat4) -> Result<RectangleLight, Problem> {
             RectangleLight::new(center, half_u, if turned { -half_v } else { half_v })
         }
     };
-    light.map_err(|e| match e {
-        Error::Light(problem) => format!(
-            "its light cannot be used: {problem}; a node above it with a rotation and an uneven \
-             scale may skew it"
-        ),
-        other => other.to_string(),
-    })
+    let skewed = "a node above it with a rotation and an uneven scale may skew it";
+    light.map(Light::from).map_err(|e| format!("{}; {skewed}", unusable(e)))
+}
+
+/// A disk about the node's origin in its X and Y.
+fn disk(extras: &Value, world: &DMat4) -> Result<Light, Problem> {
+    let (center, radius) = (center(world)?, radius(extras, world)?);
+    Light::disc(center, emission(world), radius).map_err(unusable)
+}
+
+/// A sphere about the node's origin.
+fn sphere(extras: &Value, world: &DMat4) -> Result<Light, Problem> {
+    Light::sphere(center(world)?, radius(extras, world)?).map_err(unusable)
+}
+
+/// A capsule about the node's origin, along its X.
+fn capsule(extras: &Value, world: &DMat4) -> Result<Light, Problem> {
+    let (center, radius) = (center(world)?, radius(extras, world)?);
+    let half_axis = world.x_axis.truncate() * (0.5 * side(extras, "length")?);
+    let whole = 2.0 * (half_axis.length() + radius);
+    if whole > SIDES[1] {
+        return Err(format!(
+            "its length with its caps and the node's scale is {whole} m; it must be at most {:e} m",
+            SIDES[1]
+        ));
+    }
+    Light::capsule(center, half_axis, radius).map_err(unusable)
+}
+
+/// The radius in the world, if the node scales all axes alike and the diameter there is a light's side.
+fn radius(extras: &Value, world: &DMat4) -> Result<f64, Problem> {
+    let radius = side(extras, "radius")?;
+    let [x, y, z] = [world.x_axis, world.y_axis, world.z_axis].map(|axis| axis.truncate());
+    let scale = x.length();
+    let differs = |axis: DVec3| (axis.length() - scale).abs() > UNEVEN * scale;
+    let leans = |a: DVec3, b: DVec3| a.dot(b).abs() > UNEVEN * scale * scale;
+    if differs(y) || differs(z) || leans(x, y) || leans(y, z) || leans(z, x) {
+        return Err(format!(
+            "its light is round, and the node's scale is {}, {} and {} along its axes, or skews them; scale all alike",
+            scale,
+            y.length(),
+            z.length()
+        ));
+    }
+    let diameter = 2.0 * radius * scale;
+    if (SIDES[0]..=SIDES[1]).contains(&diameter) {
+        return Ok(radius * scale);
+    }
+    Err(format!(
+        "twice its radius with the node's scale is {diameter} m; it must be from {:e} to {:e} m",
+        SIDES[0], SIDES[1]
+    ))
 }
 
 /// Along the node's −Z, as a rectangle, whatever the node mirrors.
@@ -98,8 +167,8 @@ fn emission(world: &DMat4) -> DVec3 {
     if z == DVec3::ZERO { y.cross(x) } else { -z }
 }
 
-/// A polygon in the node's X and Y, whichever way its corners run, and its corners in light space.
-fn polygon(extras: &Value, world: &DMat4) -> Result<(RectangleLight, Vec<[f64; 2]>), Problem> {
+/// A polygon in the node's X and Y, whichever way its corners run.
+fn polygon(extras: &Value, world: &DMat4) -> Result<Light, Problem> {
     let mut corners = corners(extras)?
         .into_iter()
         .map(|[x, y]| world.transform_point3(DVec3::new(x, y, 0.0)))
@@ -107,18 +176,13 @@ fn polygon(extras: &Value, world: &DMat4) -> Result<(RectangleLight, Vec<[f64; 2
     if !corners.iter().all(|corner| corner.abs().max_element() <= MAX_COORDINATE) {
         return Err(format!("it lies further than {MAX_COORDINATE:e} m from the origin"));
     }
-    let around = |corners: &[DVec3]| match RectangleLight::around(corners) {
-        Ok(light) => Ok(light),
-        Err(Error::Light(problem)) => Err(format!("its light cannot be used: {problem}")),
-        Err(other) => Err(other.to_string()),
-    };
-    let mut found = around(&corners)?;
+    let mut light = Light::polygon(&corners).map_err(unusable)?;
     // The side from which they run counter-clockwise is the one that shines.
-    if found.0.emission().dot(emission(world)) < 0.0 {
+    if light.emission().dot(emission(world)) < 0.0 {
         corners.reverse();
-        found = around(&corners)?;
+        light = Light::polygon(&corners).map_err(unusable)?;
     }
-    let sides = found.0.half_extents().map(|half| 2.0 * half);
+    let sides = light.rectangle().half_extents().map(|half| 2.0 * half);
     if let Some(side) = sides.into_iter().find(|side| !(SIDES[0]..=SIDES[1]).contains(side)) {
         return Err(format!(
             "a side of the rectangle around its corners, with the node's scale, is {side} m; it must be \
@@ -126,7 +190,7 @@ fn polygon(extras: &Value, world: &DMat4) -> Result<(RectangleLight, Vec<[f64; 2
             SIDES[0], SIDES[1]
         ));
     }
-    Ok(found)
+    Ok(light)
 }
 
 /// The corners in the node's space; the light checks their number.
@@ -163,7 +227,7 @@ fn in_range(what: &str, half: DVec3) -> Result<DVec3, Problem> {
     ))
 }
 
-fn sun(extras: &Value, world: &DMat4, all: &Bounds) -> Result<RectangleLight, Problem> {
+fn sun(extras: &Value, world: &DMat4, all: &Bounds) -> Result<Light, Problem> {
     let lacking = "its area_light has no angular_size; give it one in radians, as in \"angular_size\": 0.0093";
     let value = extras.get("angular_size").ok_or(lacking)?;
     let size = value.as_f64().ok_or_else(|| {
@@ -172,10 +236,7 @@ fn sun(extras: &Value, world: &DMat4, all: &Bounds) -> Result<RectangleLight, Pr
     // Only the direction of the transform counts for a sun, not its scale.
     let emission = -world.z_axis.truncate();
     let radius = (0.5 * all.size().length()).max(SIDES[0]);
-    RectangleLight::sun(emission, size, all.center(), radius).map_err(|e| match e {
-        Error::Light(problem) => format!("its light cannot be used: {problem}"),
-        other => other.to_string(),
-    })
+    Light::sun(emission, size, all.center(), radius).map_err(unusable)
 }
 
 fn side(extras: &Value, key: &str) -> Result<f64, Problem> {

@@ -12,13 +12,13 @@ pub mod settings;
 pub use settings::Settings;
 
 use super::common::one_map;
-use super::room::{Maps, PassInputs, Room, Shows, Takes};
+use super::room::{Maps, PassInputs, Room, Shapes, Shows, Takes};
 use crate::graph::{Graph, Need, ResourceId};
 use crate::shaders::module;
 
 impl Room for Settings {
     fn takes(&self) -> Takes {
-        Takes { line: true, ..Takes::RECTANGLES }
+        Takes { shapes: Shapes::LINES, ..Takes::RECTANGLES }
     }
 
     fn shows(&self) -> Shows {

@@ -73,7 +73,7 @@ pub use view::lines;
 use self::view::is_taller;
 
 use self::passes::declare;
-use super::room::{HostDraws, Maps, PassInputs, Room, Seen, Shows, Takes};
+use super::room::{HostDraws, Maps, PassInputs, Room, Seen, Shapes, Shows, Takes};
 use crate::Error;
 use crate::graph::{Graph, ResourceId};
 use crate::light::Light;
@@ -83,8 +83,7 @@ use crate::stages::views::{Line, Views};
 impl Room for Settings {
     fn takes(&self) -> Takes {
         Takes {
-            line: true,
-            outline: true,
+            shapes: Shapes::LINES.and(Shapes::POLYGONS),
             // Only the device knows a sample's place on the line.
             host_draws: HostDraws::None("does not know where linear-light puts its samples"),
             lent_maps: Err(
@@ -127,10 +126,10 @@ impl Room for Settings {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::RectangleLight;
     use crate::lent::MeshBounds;
     use crate::stages::depth_layers::{Eye, MapView};
     use crate::techniques::room::Seen;
+    use crate::{RectangleLight, Shape};
     use glam::{DMat4, DVec3};
 
     /// The sizes that the shaders declare agree with those of the passes.
@@ -155,7 +154,7 @@ mod tests {
             let settings = Settings { map: 64, lines: lines_of, error: 0.0, ..Settings::default() };
             let seen = Seen {
                 light: &light,
-                outline: Some(&outline),
+                shape: Shape::Polygon(&outline),
                 occluders: &[(card, DMat4::from_translation(DVec3::Y * 2.0))],
                 receivers: &[(ground, DMat4::IDENTITY)],
                 centre: &MapView {

@@ -5,7 +5,7 @@ use super::settings::Settings;
 use crate::stages::depth_layers::{fit_occluders, tangents_of};
 use crate::stages::views::Line;
 use crate::techniques::room::Seen;
-use crate::{Error, RectangleLight};
+use crate::{Error, RectangleLight, Shape};
 use glam::DVec2;
 
 /// How much longer a side must be to count as the longer one, as a share: more than the rounding of equal sides, or the
@@ -32,7 +32,10 @@ struct Segment {
 pub fn lines(settings: &Settings, seen: &Seen) -> Result<Vec<Line>, Error> {
     let [a, b] = seen.light.half_extents();
     let rectangle = [[-a, -b], [a, -b], [a, b], [-a, b]];
-    let corners = seen.outline.unwrap_or(&rectangle);
+    let corners = match seen.shape {
+        Shape::Polygon(corners) => corners,
+        _ => &rectangle,
+    };
     let too_many = |count: usize| Error::Setting {
         key: "lines".into(),
         problem: format!(

@@ -24,12 +24,13 @@
 mod places;
 pub mod settings;
 
-pub use places::{places, places_within};
+pub use places::{places, places_on_disc, places_within};
 pub use settings::Settings;
 
-use super::room::{Maps, PassInputs, Room, Seen, Shows, Takes};
+use super::room::{Maps, PassInputs, Room, Seen, Shapes, Shows, Takes};
 use crate::Error;
 use crate::graph::{Access, Graph, Layer, Owner, Pass, Push, ResourceId, Use};
+use crate::light::Shape;
 use crate::shaders::module;
 use crate::stages::depth_layers::{self, MapView};
 use crate::stages::views::{LightPoint, Views};
@@ -41,8 +42,7 @@ use smallvec::smallvec;
 impl Room for Settings {
     fn takes(&self) -> Takes {
         Takes {
-            line: true,
-            outline: true,
+            shapes: Shapes::LINES.and(Shapes::POLYGONS).and(Shapes::DISCS),
             lent_maps: Err(
                 "sees the occluders from points all over the light, and occluder maps from its centre alone",
             ),
@@ -119,11 +119,12 @@ pub struct Average {
 /// The points of a frame, each with a map of `side` texels fitted to the occluders. A point that sees none of them
 /// gets a view in which nothing is visible.
 fn points(settings: &Settings, seen: &Seen) -> Vec<LightPoint> {
-    let Seen { light, outline, occluders, centre, .. } = *seen;
+    let Seen { light, shape, occluders, centre, .. } = *seen;
     let Settings { samples, seed, .. } = *settings;
-    let places = match outline {
-        Some(corners) => places_within(corners, samples, seed),
-        None => places(light.half_extents(), samples, seed),
+    let places = match shape {
+        Shape::Polygon(corners) => places_within(corners, samples, seed),
+        Shape::Disc { radius } => places_on_disc(radius, samples, seed),
+        _ => places(light.half_extents(), samples, seed),
     };
     places
         .into_iter()

@@ -8,6 +8,8 @@
 //!    └──────┴───────┘     ‾‾‾‾‾‾‾‾
 //! ```
 
+use std::f64::consts::FRAC_PI_4;
+
 /// Uniform in [0, 1): the finalizer of MurmurHash3 over seed, point and axis.
 fn uniform(seed: u32, point: u32, axis: u32) -> f64 {
     let mut h = (seed.wrapping_mul(0x9e37_79b9) ^ (2 * point + axis)).wrapping_mul(0xcc9e_2d51);
@@ -51,6 +53,20 @@ pub fn places(half: [f64; 2], n: u32, seed: u32) -> Vec<[f64; 2]> {
             [(2.0 * across - 1.0) * half[0], (2.0 * down - 1.0) * half[1]]
         })
         .collect()
+}
+
+/// The places of n points, one in each of n parts of equal area, on a disc of this radius; metres from its centre. They
+/// are those of [`places`] on the square around it, moved by the map that keeps areas and brings the square's rim to
+/// the disc's (Shirley and Chiu 1997).
+pub fn places_on_disc(radius: f64, n: u32, seed: u32) -> Vec<[f64; 2]> {
+    let onto_disc = |[x, y]: [f64; 2]| {
+        // The square's quarter that the point lies in, by the axis that it is furthest along.
+        let (far, near) = if x.abs() > y.abs() { (x, y) } else { (y, x) };
+        let angle = if far == 0.0 { 0.0 } else { FRAC_PI_4 * near / far };
+        let (across, along) = (far * angle.sin(), far * angle.cos());
+        if x.abs() > y.abs() { [along, across] } else { [across, along] }
+    };
+    places([radius; 2], n, seed).into_iter().map(onto_disc).collect()
 }
 
 /// The places of n points on a light with this outline: a simple polygon, counter-clockwise, x and y in metres from the

@@ -1,4 +1,4 @@
-//! Points are spread evenly, over rectangles, lines and outlines.
+//! Points are spread evenly, over rectangles, lines, discs and outlines.
 
 // A test may panic: that is how it fails.
 #![allow(clippy::unwrap_used)]
@@ -32,6 +32,33 @@ fn points_are_spread_evenly_for_any_number_and_shape() {
     }
     assert_eq!(places([0.5, 0.2], 1, 0), [[0.0, 0.0]], "without a seed the centre");
     assert_ne!(places([0.5, 0.2], 9, 1), places([0.5, 0.2], 9, 2));
+}
+
+/// A disc has as many points in any half plane, but for the cells along its edge, as it has area there.
+#[test]
+fn points_are_spread_evenly_over_a_disc() {
+    for n in [1_u32, 7, 64, 1000, 4096] {
+        let points = places_on_disc(2.0, n, 3);
+        assert_eq!(points.len(), n as usize);
+        assert!(points.iter().all(|[x, y]| x.hypot(*y) <= 2.0));
+        let root = f64::from(n).sqrt();
+        for turn in [0.0_f64, 0.6, 1.9, 4.0] {
+            let (sin, cos) = turn.sin_cos();
+            for c in [-0.8_f64, -0.3, 0.0, 0.5] {
+                let within = points.iter().filter(|[x, y]| x * cos + y * sin <= 2.0 * c).count();
+                let share = 1.0 - (c.acos() - c * (1.0 - c * c).sqrt()) / std::f64::consts::PI;
+                // A bent edge crosses up to twice as many cells as a straight one.
+                let allowed = (2.0 * root + 2.0) / f64::from(n);
+                let found = within as f64 / f64::from(n);
+                assert!((found - share).abs() <= allowed, "{n} {turn} {c}: {found}, not {share}");
+            }
+        }
+        // Rings of one area have as many points.
+        let inner = points.iter().filter(|[x, y]| x.hypot(*y) <= 2.0 * 0.5_f64.sqrt()).count();
+        let share = inner as f64 / f64::from(n);
+        assert!((share - 0.5).abs() <= (4.0 * root + 4.0) / f64::from(n), "{n}: {share}");
+    }
+    assert_eq!(places_on_disc(2.0, 1, 0), [[0.0, 0.0]], "without a seed the centre");
 }
 
 /// An L, a triangle with its point to the side, a comb with three teeth, and a slanted sliver.

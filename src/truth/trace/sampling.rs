@@ -1,7 +1,6 @@
-//! The points on the light that rays are traced to.
+//! The number of rays, and their random numbers.
 
-use crate::{Error, RectangleLight};
-use glam::DVec3;
+use crate::Error;
 
 /// The most rays a receiver may ask for.
 const MAX_RAYS: u32 = 1 << 20;
@@ -13,8 +12,9 @@ const MAX_RAYS: u32 = 1 << 20;
 /// noise without bias, which one grid cannot. Only strata that a shadow's edge crosses have any
 /// noise, each at most ¼ in variance, and there are of the order n of them: n for one straight
 /// edge along the strata, at most 4n for any convex outline. So the standard error is at most
-/// n^(−3/2) / √8 and n^(−3/2) / √2 for those, and falls as rays^(−3/4). On a line, where the strata of a
-/// column coincide, each end of a shadow is noisy in n of them: n^(−3/2) / √8 for one, √k times that for k.
+/// n^(−3/2) / √8 and n^(−3/2) / √2 for those, and falls as rays^(−3/4). Other shapes are cut by a map of the square that
+/// keeps areas, which bends edges: of the same order. A line is cut into n² parts, of which each end of a shadow crosses
+/// one: n^(−2) / √8 for one end, √k times that for k. A point is one ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampling {
     side: u32,
@@ -104,50 +104,6 @@ pub(in crate::truth) fn check_position_error(metres: f64) -> Result<(), Error> {
     })
 }
 
-/// The light relative to an origin: f64 dot products, no matrix that holds a far translation.
-pub(super) struct LightFrame {
-    corner: DVec3,
-    /// The sides, as vectors from corner to corner.
-    sides: [DVec3; 2],
-    emission: DVec3,
-}
-
-impl LightFrame {
-    pub(super) fn of(light: &RectangleLight, origin: DVec3) -> Self {
-        let axes = light.world_from_light();
-        let [width, height] = light.half_extents();
-        let sides = [
-            axes.transform_vector3(DVec3::new(2.0 * width, 0.0, 0.0)),
-            axes.transform_vector3(DVec3::new(0.0, 2.0 * height, 0.0)),
-        ];
-        let corner = light.center() - origin - (sides[0] + sides[1]) / 2.0;
-        Self { corner, sides, emission: light.emission() }
-    }
-
-    /// Distance along the light's normal from its plane.
-    pub(super) fn distance(&self, point: DVec3) -> f64 {
-        (point - self.corner).dot(self.emission)
-    }
-
-    /// A random point in each of side × side strata.
-    pub(super) fn strata<'a>(
-        &'a self,
-        side: u32,
-        random: &'a mut Stream,
-    ) -> impl Iterator<Item = DVec3> + 'a {
-        let width = 1.0 / f64::from(side);
-        let cells = (0..side).flat_map(move |row| (0..side).map(move |column| (column, row)));
-        cells.map(move |(column, row)| {
-            let [s, t] = random.next_pair();
-            self.at((f64::from(column) + s) * width, (f64::from(row) + t) * width)
-        })
-    }
-
-    fn at(&self, s: f64, t: f64) -> DVec3 {
-        self.corner + self.sides[0] * s + self.sides[1] * t
-    }
-}
-
 /// Random numbers by SplitMix64 (Steele, Lea and Flood 2014).
 pub(super) struct Stream(u64);
 
@@ -161,7 +117,7 @@ impl Stream {
     }
 
     /// Two uniform numbers in [0, 1), of 32 bits each.
-    fn next_pair(&mut self) -> [f64; 2] {
+    pub(super) fn next_pair(&mut self) -> [f64; 2] {
         self.0 = self.0.wrapping_add(GAMMA);
         let bits = mix(self.0);
         [bits as u32, (bits >> 32) as u32].map(|half| f64::from(half) / 4_294_967_296.0)

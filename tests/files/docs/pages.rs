@@ -164,7 +164,7 @@ fn the_readmes_light_is_one() {
     });
     let scene = scene.to_string();
     let scene = from_gltf_bytes(scene.as_bytes(), Path::new("README.md")).unwrap();
-    let light = scene.light(Some("lamp")).unwrap().light;
+    let light = *scene.light(Some("lamp")).unwrap().light.rectangle();
     assert!(light.emission().abs_diff_eq(DVec3::NEG_Y, 1e-6), "{}", light.emission());
     assert!(light.center().abs_diff_eq(DVec3::Y * 3.0, 1e-6), "{}", light.center());
     let [a, b] = light.half_extents();

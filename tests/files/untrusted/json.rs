@@ -113,7 +113,7 @@ const OTHERS: [&str; 14] = [
 ];
 
 /// Keys that mean something somewhere, and so may stand where they mean something else.
-const KEYS: [&str; 22] = [
+const KEYS: [&str; 24] = [
     "POSITION",
     "NORMAL",
     "accessors",
@@ -128,10 +128,12 @@ const KEYS: [&str; 22] = [
     "count",
     "extras",
     "indices",
+    "length",
     "matrix",
     "mesh",
     "mode",
     "nodes",
+    "radius",
     "scale",
     "scene",
     "sparse",

@@ -36,7 +36,7 @@ fn mistake_14_another_layout_before_than_was_said() {
     let depth = stage.gbuffer().depth_for_node();
     let before = depth.before.in_layout(vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL);
     let lie = HostImage { before, ..depth };
-    let plan = stage.plan_with(&scene().lights[0].light, |f| f.depth = lie).unwrap();
+    let plan = stage.plan_with(scene().lights[0].light, |f| f.depth = lie).unwrap();
     stage.run(&plan).unwrap();
     layer_says(&device.take_messages(), &["layout", "SHADER_READ_ONLY_OPTIMAL"]);
 }
@@ -47,7 +47,7 @@ fn mistake_15_the_result_read_in_another_layout_than_was_said() {
     let mut stage = stage(&device);
     let after = Scope::FRAGMENT_SAMPLED;
     let own = Visibility::Own { before: Scope::UNUSED, after };
-    let plan = stage.plan_with(&scene().lights[0].light, |f| f.visibility = own).unwrap();
+    let plan = stage.plan_with(scene().lights[0].light, |f| f.visibility = own).unwrap();
     stage.run(&plan).unwrap();
     assert_eq!(device.take_messages(), Vec::<String>::new());
     // It is copied out of TRANSFER_SRC_OPTIMAL.
@@ -59,7 +59,7 @@ fn mistake_15_the_result_read_in_another_layout_than_was_said() {
 fn mistake_16_always_the_same_slot() {
     let device = device();
     let mut stage = stage(&device);
-    let plan = stage.plan(&scene().lights[0].light, None).unwrap();
+    let plan = stage.plan(scene().lights[0].light, None).unwrap();
     // Two frames of one slot, the second recorded before the first is done.
     stage.run_all(&[plan.clone(), plan]).unwrap();
     layer_says(&device.take_messages(), &["VkDescriptorSet", "updated"]);
@@ -92,7 +92,7 @@ fn scopes_that_say_nothing_are_no_mistake() {
         f.depth.after = Scope::ANY;
         f.visibility = own;
     };
-    let plan = stage.plan_with(&scene().lights[0].light, change).unwrap();
+    let plan = stage.plan_with(scene().lights[0].light, change).unwrap();
     stage.run(&plan).unwrap();
     assert!(stage.visibility().unwrap().contains(&0.0));
     assert_eq!(device.take_messages(), Vec::<String>::new());

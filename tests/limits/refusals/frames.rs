@@ -81,7 +81,14 @@ fn frames() {
             GBuffer,
             "",
             Framed(|f| f.light = Light::with_outline(*f.light.rectangle(), &TRIANGLE).unwrap()),
-            &["polygon", "rectangles"],
+            &["a polygon", "takes no polygons"],
+        ),
+        (
+            "a sphere",
+            GBuffer,
+            "technique=many-lights",
+            Framed(|f| f.light = Light::sphere(f.light.center(), 0.2).unwrap()),
+            &["a sphere", "many-lights takes no spheres"],
         ),
         (
             "a line for an area",

@@ -1,10 +1,10 @@
 //! Area lights in a node's extras.
 
 use super::*;
-use antumbra::RectangleLight;
+use antumbra::{RectangleLight, Shape};
 
 /// The light of a node with these members beside its extras.
-fn light(node: Value, extras: Value) -> Result<antumbra::scene::AreaLight, String> {
+pub fn light(node: Value, extras: Value) -> Result<antumbra::scene::AreaLight, String> {
     let mut lamp = node;
     lamp["name"] = json!("lamp");
     lamp["extras"] = json!({"area_light": "rectangle", "width": 2.0, "height": 1});
@@ -16,7 +16,7 @@ fn light(node: Value, extras: Value) -> Result<antumbra::scene::AreaLight, Strin
 }
 
 fn rectangle(node: Value) -> RectangleLight {
-    light(node, json!({})).unwrap().light
+    *light(node, json!({})).unwrap().light.rectangle()
 }
 
 #[test]
@@ -25,7 +25,8 @@ fn a_light_lies_in_its_nodes_plane_and_emits_along_minus_z() {
     assert_eq!((lamp.name.as_str(), lamp.color, lamp.intensity), ("lamp", [1.0; 3], 1.0));
     assert_eq!(lamp.light.center(), DVec3::new(1.0, 2.0, 3.0));
     assert_eq!(lamp.light.emission(), DVec3::NEG_Z);
-    assert_eq!(lamp.light.half_extents(), [1.0, 0.5]);
+    assert_eq!(lamp.light.shape(), Shape::Rectangle);
+    assert_eq!(lamp.light.rectangle().half_extents(), [1.0, 0.5]);
     let bright = light(json!({}), json!({"color": [1, 0.5, 0], "intensity": 40})).unwrap();
     assert_eq!((bright.color, bright.intensity), ([1.0, 0.5, 0.0], 40.0));
 }
@@ -42,7 +43,10 @@ fn a_sun_is_far_away_and_as_wide_as_its_angle() {
     let away = all.center() - lamp.light.center();
     assert!((away.normalize() - DVec3::NEG_Z).length() < 1e-12);
     assert!((away.length() / all.size().length() - 500.0).abs() < 1e-6);
-    assert!((lamp.light.half_extents()[0] / away.length() - 0.01f64.tan()).abs() < 1e-12);
+    assert_eq!(lamp.light.shape(), Shape::Sun { angular_size: 0.02 });
+    assert!(
+        (lamp.light.rectangle().half_extents()[0] / away.length() - 0.01f64.tan()).abs() < 1e-12
+    );
 }
 
 #[test]
@@ -77,10 +81,11 @@ fn a_side_of_nothing_makes_a_line() {
         let line = |mut node: Value| {
             node["translation"] = json!([1, 2, 3]);
             let lamp = light(node, json!({"width": sides[0], "height": sides[1]})).unwrap();
-            assert!(lamp.light.is_line());
+            assert_eq!(lamp.light.shape(), Shape::Line);
             assert_eq!(lamp.light.center(), DVec3::new(1.0, 2.0, 3.0));
-            let axis = lamp.light.world_from_light().transform_vector3(DVec3::X);
-            (axis, lamp.light.half_extents()[0], lamp.light.emission())
+            let line = lamp.light.rectangle();
+            let axis = line.world_from_light().transform_vector3(DVec3::X);
+            (axis, line.half_extents()[0], line.emission())
         };
         assert_eq!(line(json!({})), (along, 1.5, DVec3::NEG_Z));
         for (scale, z) in [
@@ -142,19 +147,19 @@ fn a_polygon_lies_where_its_node_puts_its_corners() {
             let lamp = light(node.clone(), json!({"area_light": "polygon", "corners": corners}));
             let lamp = lamp.unwrap();
             assert_eq!(lamp.light.emission(), DVec3::Z * z, "{node}");
-            let next = lamp.outline.iter().cycle().skip(1);
-            let area: f64 =
-                lamp.outline.iter().zip(next).map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum();
+            let outline = lamp.light.outline().unwrap();
+            let next = outline.iter().cycle().skip(1);
+            let area: f64 = outline.iter().zip(next).map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum();
             let scale = world.x_axis.truncate().cross(world.y_axis.truncate()).length();
             assert!((area - 8.0 * scale).abs() < 1e-12, "{node}: {area}");
-            lamp.shape().unwrap();
-            for &[x, y] in &lamp.outline {
-                let there = lamp.light.world_from_light().transform_point3(DVec3::new(x, y, 0.0));
+            for &[x, y] in outline {
+                let frame = lamp.light.rectangle().world_from_light();
+                let there = frame.transform_point3(DVec3::new(x, y, 0.0));
                 assert!(placed.iter().any(|p| p.distance(there) < 1e-12), "{node}: {there}");
             }
         }
     }
-    assert!(light(json!({}), json!({})).unwrap().outline().is_none());
+    assert!(light(json!({}), json!({})).unwrap().light.outline().is_none());
 }
 
 #[test]
@@ -206,16 +211,16 @@ fn lights_that_cannot_be_used_are_refused_by_name() {
     for (node, extras, sentence) in [
         (
             json!({}),
-            json!({"area_light": "disk"}),
-            "its area_light is \"disk\"; write \"rectangle\", \"polygon\" or \"sun\"",
+            json!({"area_light": "disc"}),
+            "its area_light is \"disc\"; write \"rectangle\", \"polygon\", \"disk\", \"sphere\", \"capsule\" or \"sun\"",
         ),
         (json!({}), json!({"area_light": 1}), "its area_light is 1; write \"rectangle\""),
         (json!({}), json!({"width": -2}), "its width is -2; write a number of metres from 0 up"),
         (json!({}), json!({"height": "NaN"}), "its height is \"NaN\"; write a number"),
         (
-            json!({}),
+            json!({"translation": [0, 1e10, 0]}),
             json!({"width": 0, "height": 0.0}),
-            "its width 0 and height 0 are a point, which has no soft shadow; give it a width",
+            "it lies further than 1e9 m",
         ),
         (
             json!({"scale": [0, 1, 1]}),

@@ -13,7 +13,7 @@ fn the_bunny() {
     assert_eq!(scene.triangles(), 16_944 / 3 + 2);
     let found: Vec<_> = scene.instances.iter().map(|i| (i.name.as_str(), i.role)).collect();
     assert_eq!(found, [("occluder0", Role::Both), ("ground", Role::Receiver)]);
-    let light = &scene.light(Some("light")).unwrap().light;
+    let light = scene.light(Some("light")).unwrap().light.rectangle();
     let [half_width, half_height] = light.half_extents();
     assert!((half_width - 0.4).abs() + (half_height - 0.2).abs() < 1e-15);
     assert_eq!(light.center(), DVec3::new(1.1, 2.4, -1.3));
@@ -30,7 +30,7 @@ fn suzanne() {
     let scene = model("suzanne.glb");
     assert_eq!(scene.triangles(), 44_526 / 3 + 2);
     assert_eq!(scene.instances[0].role, Role::Occluder);
-    let light = &scene.light(None).unwrap().light;
+    let light = scene.light(None).unwrap().light.rectangle();
     assert!((light.emission() - DVec3::NEG_Y).length() < 1e-7, "{}", light.emission());
     assert!(light.half_extents().iter().all(|h| (h - 0.3).abs() < 1e-15));
 }

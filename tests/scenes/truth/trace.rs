@@ -29,8 +29,7 @@ fn scene_of(quads: &[([DVec3; 4], Role)], light: Option<RectangleLight>) -> Scen
     }
     scene.lights.extend(light.map(|light| AreaLight {
         name: "light".into(),
-        light,
-        outline: Vec::new(),
+        light: light.into(),
         color: [1.0; 3],
         intensity: 1.0,
     }));
@@ -86,7 +85,7 @@ fn random_case(random: &mut Random, receivers: usize) -> Case {
 fn compare(case: &Case, rays: u32) -> (Vec<f64>, Traced) {
     let scene = scene_of(&[(case.quad, Role::Occluder)], Some(case.light));
     let tracer = Tracer::new(&scene).unwrap();
-    let traced = tracer.visible_fractions(&case.light, &case.receivers, &sampling(rays)).unwrap();
+    let traced = tracer.visible_fractions(case.light, &case.receivers, &sampling(rays)).unwrap();
     let exact =
         |receiver: &Receiver| visible_fraction_of_quad(&case.light, case.quad, receiver.position);
     let errors = case.receivers.iter().zip(&traced.visible);
@@ -169,7 +168,7 @@ fn one_grid_sends_half_the_rays_and_tells_no_noise() {
     for (side, rays) in [(1, 1), (2, 4), (8, 64)] {
         let sampling = Sampling::one_grid(side, 3).unwrap();
         assert_eq!(sampling.rays(), rays);
-        let traced = tracer.visible_fractions(&ceiling(), &receivers, &sampling).unwrap();
+        let traced = tracer.visible_fractions(ceiling(), &receivers, &sampling).unwrap();
         assert!(traced.noise.is_nan());
         let error = |(v, r): (&f32, &Receiver)| {
             f64::from(*v) - visible_fraction_of_quad(&ceiling(), card, r.position)

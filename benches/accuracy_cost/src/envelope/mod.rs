@@ -286,7 +286,7 @@ fn seen(instance: &Instance) -> bool {
 /// The visible fraction of every pixel, by the node.
 fn image(stage: &mut Stage, ready: &Ready) -> Result<Vec<f32>, Problem> {
     let light = ready.scene.light(None)?.light;
-    let plan = stage.plan(&light, None)?;
+    let plan = stage.plan(light, None)?;
     stage.run(&plan)?;
     Ok(stage.visibility()?)
 }

@@ -109,7 +109,7 @@ impl<'a> Prepared<'a> {
         held: &'static Held,
     ) -> Result<Row, Problem> {
         let light = self.scene.light(None)?.light;
-        let plan = stage.plan(&light, case.window)?;
+        let plan = stage.plan(light, case.window)?;
         stage.run(&plan)?;
         let image = stage.visibility()?;
         // Where penumbrae are narrower than a pixel, a hard shadow is all that the node makes.

@@ -21,7 +21,7 @@ impl Bunny {
     pub fn new() -> Self {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
         let scene = from_gltf(&root.join("bunny.glb")).unwrap();
-        let light = scene.lights[0].light;
+        let light = *scene.lights[0].light.rectangle();
         let mut random = Random(61);
         // The part of the ground that its shadow is on.
         let ground = (0..POINTS / 2).map(|_| Receiver {
@@ -49,7 +49,7 @@ impl Bunny {
     pub fn traced(&self, rays: u32) -> Vec<Traced> {
         let tracer = Tracer::new(&self.scene).unwrap();
         let sampling = |seed| Sampling::new(rays, seed).unwrap();
-        let of = |seed| tracer.visible_fractions(&self.light, &self.receivers, &sampling(seed));
+        let of = |seed| tracer.visible_fractions(self.light, &self.receivers, &sampling(seed));
         (0..SEEDS).map(|seed| of(seed).unwrap()).collect()
     }
 }

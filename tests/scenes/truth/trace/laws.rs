@@ -36,7 +36,7 @@ fn another_occluder_never_shows_more() {
         let quad = [DVec3::ZERO, u, u + v, v].map(|p| at + DVec3::Y + p);
         quads.push((quad, Role::Occluder));
         let tracer = Tracer::new(&scene_of(&quads, Some(ceiling()))).unwrap();
-        let traced = tracer.visible_fractions(&ceiling(), &receivers, &sampling(512)).unwrap();
+        let traced = tracer.visible_fractions(ceiling(), &receivers, &sampling(512)).unwrap();
         // The same rays each time: this holds ray by ray, without noise.
         assert!(traced.visible.iter().zip(&before).all(|(now, before)| now <= before));
         before = traced.visible;
@@ -90,7 +90,7 @@ fn a_floor_does_not_shadow_itself() {
             Receiver { position: light.center() + relative, normal: axis(DVec3::Y) }
         })
         .collect();
-    let traced = tracer.visible_fractions(&light, &receivers, &sampling(32)).unwrap();
+    let traced = tracer.visible_fractions(light, &receivers, &sampling(32)).unwrap();
     assert!(traced.visible.iter().all(|&v| v == 1.0));
 
     // World positions in f32 are off by more here, and the caller who says so is safe as well.
@@ -101,7 +101,7 @@ fn a_floor_does_not_shadow_itself() {
     let tracer = Tracer::new(&scene_of(&far_needles, Some(far_light))).unwrap();
     let rounded = receivers.map_positions(|p| (p + far).as_vec3().as_dvec3());
     let darkest = |sampling: &Sampling| {
-        let traced = tracer.visible_fractions(&far_light, &rounded, sampling).unwrap();
+        let traced = tracer.visible_fractions(far_light, &rounded, sampling).unwrap();
         traced.visible.into_iter().fold(1.0_f32, f32::min)
     };
     assert!(darkest(&sampling(32)) < 1.0);
@@ -156,15 +156,15 @@ fn the_same_inputs_give_the_same_bits_on_any_number_of_threads() {
     let tracer = Tracer::new(&scene_of(&[(case.quad, Role::Both)], Some(case.light))).unwrap();
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| tracer.visible_fractions(&case.light, &case.receivers, &sampling(128)))
+        pool.install(|| tracer.visible_fractions(case.light, &case.receivers, &sampling(128)))
     };
     let one = on(1).unwrap();
     assert_eq!(one, on(3).unwrap());
     assert_eq!(one.rays, 300 * 128);
     let other = Sampling::new(128, 8).unwrap();
-    let other = tracer.visible_fractions(&case.light, &case.receivers, &other).unwrap();
+    let other = tracer.visible_fractions(case.light, &case.receivers, &other).unwrap();
     assert_ne!(one.visible, other.visible);
-    let alone = tracer.visible_fraction(&case.light, &case.receivers[7], &sampling(128), 7);
+    let alone = tracer.visible_fraction(case.light, &case.receivers[7], &sampling(128), 7);
     assert_eq!(alone.unwrap().visible as f32, one.visible[7]);
 }
 
@@ -191,7 +191,7 @@ fn unusable_input_is_refused_with_a_sentence() {
     let tracer = Tracer::new(&scene).unwrap();
     let lost = Receiver { position: DVec3::NAN, normal: DVec3::Y };
     let image = [on_floor(0.0, 0.0), lost];
-    let refusal = tracer.visible_fractions(&ceiling(), &image, &sampling(2)).unwrap_err();
+    let refusal = tracer.visible_fractions(ceiling(), &image, &sampling(2)).unwrap_err();
     assert!(refusal.to_string().contains("receiver 1"));
 
     for rays in [0, 1, u32::MAX] {

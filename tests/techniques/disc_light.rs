@@ -1,0 +1,51 @@
+//! Discs, which many-lights alone of these techniques takes, and how far from the truth it is.
+
+use antumbra::scene::{Scene, generate};
+use antumbra::{Light, RectangleLight};
+use antumbra_tests::device;
+use antumbra_tests::measure::{Setup, as_measured, percent};
+use glam::DVec3;
+
+fn card(light: impl Into<Light>) -> Scene {
+    generate::card(light)
+}
+
+fn disc(radius: f64) -> Light {
+    Light::disc(DVec3::Y * 4.0, DVec3::NEG_Y, radius).unwrap()
+}
+
+/// The mean error in percent for 64 and 256 points, as measured on lavapipe.
+const MEASURED: [f64; 2] = [1.14, 0.45];
+
+#[test]
+fn many_lights_are_a_disc() {
+    let device = device();
+    let scene = card(disc(0.5));
+    let setup = Setup::ground(&scene, 2.2, 128);
+    for (samples, measured) in [64, 256].into_iter().zip(MEASURED) {
+        let words = format!("technique=many-lights samples={samples}");
+        let mut stage = setup.stage(&device, &words);
+        let image = setup.visibility(&mut stage);
+        let (truth, _) = setup.traced(&stage, 2048);
+        let error = percent(&truth, &image);
+        println!("{samples} points: {error:.2} %");
+        assert!(as_measured(error, measured), "{samples} points: {error} %, not {measured}");
+    }
+}
+
+/// A disc a tenth too wide, and the square around the disc, are further from what many points see than the disc itself.
+#[test]
+fn a_wrong_disc_is_noticed() {
+    let device = device();
+    let scene = card(disc(0.5));
+    let setup = Setup::ground(&scene, 2.2, 96);
+    let mut stage = setup.stage(&device, "technique=many-lights samples=256");
+    let image = setup.visibility(&mut stage);
+    let square = RectangleLight::facing(DVec3::Y * 4.0, DVec3::NEG_Y, DVec3::X, [1.0; 2]).unwrap();
+    let [right, wide, square] = [disc(0.5), disc(0.55), square.into()].map(|light| {
+        let (truth, _) = Setup { scene: &card(light), ..setup }.traced(&stage, 2048);
+        percent(&truth, &image)
+    });
+    println!("{right:.2} %; too wide {wide:.2} %, square {square:.2} %");
+    assert!(wide > 2.0 * right && square > 2.0 * right, "{right} {wide} {square}");
+}
