@@ -46,11 +46,11 @@ Triangle triangle_of(uint nth)
 }
 
 // The hidden samples of row j: those between the lines in their first and second components.
-uint row_within(vec3 least, vec3 least_step, vec3 most, vec3 most_step, float j, float shift)
+uint row_within(vec3 least, vec3 least_step, vec3 most, vec3 most_step, float j)
 {
     vec3 from = least + least_step * j;
     vec3 to = most + most_step * j;
-    return interval(max(max(from.x, from.y), from.z), min(min(to.x, to.y), to.z), shift);
+    return interval(max(max(from.x, from.y), from.z), min(min(to.x, to.y), to.z));
 }
 
 // The light's samples that a triangle hides from a receiver at `p`, four rows of eight a word. `towards` is where the
@@ -83,10 +83,10 @@ uvec2 hidden_by(Triangle t, vec3 p, vec3 towards)
     vec3 m = vec3(m0.x, m1.x, m2.x);
     vec3 ms = vec3(m0.y, m1.y, m2.y);
     uvec2 mask;
-    mask.x = row_within(l, ls, m, ms, 0.0, 15.0 / 16.0) | row_within(l, ls, m, ms, 1.0, 7.0 / 16.0) << 8 |
-             row_within(l, ls, m, ms, 2.0, 11.0 / 16.0) << 16 | row_within(l, ls, m, ms, 3.0, 3.0 / 16.0) << 24;
-    mask.y = row_within(l, ls, m, ms, 4.0, 13.0 / 16.0) | row_within(l, ls, m, ms, 5.0, 5.0 / 16.0) << 8 |
-             row_within(l, ls, m, ms, 6.0, 9.0 / 16.0) << 16 | row_within(l, ls, m, ms, 7.0, 1.0 / 16.0) << 24;
+    mask.x = row_within(l, ls, m, ms, 0.0) | row_within(l, ls, m, ms, 1.0) << 8 |
+             row_within(l, ls, m, ms, 2.0) << 16 | row_within(l, ls, m, ms, 3.0) << 24;
+    mask.y = row_within(l, ls, m, ms, 4.0) | row_within(l, ls, m, ms, 5.0) << 8 |
+             row_within(l, ls, m, ms, 6.0) << 16 | row_within(l, ls, m, ms, 7.0) << 24;
     return none ? uvec2(0u) : mask;
 }
 
@@ -100,11 +100,23 @@ uvec2 behind_plane(Triangle t, vec3 p)
     vec3 m = vec3(most_of(own).x);
     vec3 ms = vec3(most_of(own).y);
     uvec2 mask;
-    mask.x = row_within(l, ls, m, ms, 0.0, 15.0 / 16.0) | row_within(l, ls, m, ms, 1.0, 7.0 / 16.0) << 8 |
-             row_within(l, ls, m, ms, 2.0, 11.0 / 16.0) << 16 | row_within(l, ls, m, ms, 3.0, 3.0 / 16.0) << 24;
-    mask.y = row_within(l, ls, m, ms, 4.0, 13.0 / 16.0) | row_within(l, ls, m, ms, 5.0, 5.0 / 16.0) << 8 |
-             row_within(l, ls, m, ms, 6.0, 9.0 / 16.0) << 16 | row_within(l, ls, m, ms, 7.0, 1.0 / 16.0) << 24;
+    mask.x = row_within(l, ls, m, ms, 0.0) | row_within(l, ls, m, ms, 1.0) << 8 |
+             row_within(l, ls, m, ms, 2.0) << 16 | row_within(l, ls, m, ms, 3.0) << 24;
+    mask.y = row_within(l, ls, m, ms, 4.0) | row_within(l, ls, m, ms, 5.0) << 8 |
+             row_within(l, ls, m, ms, 6.0) << 16 | row_within(l, ls, m, ms, 7.0) << 24;
     return mask;
+}
+
+// The share of the light that its samples show.
+float visible_share(uvec2 hidden)
+{
+    float seen = 0.0;
+    for (int i = 0; i < (frame.weight > 0.0 ? SIDE * SIDE : 0); ++i) {
+        uint bit = (i < 32 ? hidden.x : hidden.y) >> (i & 31) & 1u;
+        seen += bit == 0u ? weight_of(i) : 0.0;
+    }
+    float count = float(SIDE * SIDE - bitCount(hidden.x) - bitCount(hidden.y));
+    return frame.weight > 0.0 ? seen / frame.weight : count / float(SIDE * SIDE);
 }
 
 void main()
@@ -146,11 +158,10 @@ void main()
         hidden0 |= hidden_by(t, p0, towards0) & behind_plane(t, p0);
         hidden1 |= hidden_by(t, p1, towards1) & behind_plane(t, p1);
     }
-    ivec2 counts = 64 - ivec2(bitCount(hidden0.x) + bitCount(hidden0.y), bitCount(hidden1.x) + bitCount(hidden1.y));
     if (mine0) {
-        imageStore(visibility, pixel0, vec4(float(counts.x) / 64.0));
+        imageStore(visibility, pixel0, vec4(visible_share(hidden0)));
     }
     if (mine1) {
-        imageStore(visibility, pixel1, vec4(float(counts.y) / 64.0));
+        imageStore(visibility, pixel1, vec4(visible_share(hidden1)));
     }
 }

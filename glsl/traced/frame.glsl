@@ -26,6 +26,8 @@ struct Frame {
     uint most;          // the most leaves that a shaft may hold
     uint capacity;      // how many leaves all lists hold together
     uint samples;       // rays that a pixel of a dense shaft sends
+    float weight;       // the sum of the samples' weights; 0 where all weigh the same
+    uint weights[32];   // the samples' weights, 16 bits each, row by row
 };
 
 layout(set = 0, binding = 0) uniform texture2D gbuffer_depth;
@@ -38,6 +40,12 @@ const int TILE_PIXELS = TILE_SIDE * TILE_SIDE;
 
 // Shafts a tile: its receivers may lie in two groups, one behind the other.
 const uint SHAFTS_A_TILE = 2u;
+
+// The weight of a sample of the light; see `weights`.
+float weight_of(int sample_number)
+{
+    return float(frame.weights[sample_number >> 1] >> 16 * (sample_number & 1) & 0xffffu);
+}
 
 ivec2 tiles_in(ivec2 extent)
 {

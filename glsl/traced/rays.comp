@@ -24,15 +24,19 @@ layout(set = 0, binding = 9, r32f) writeonly uniform image2D visibility;
 // The turns of all loops of an invocation: some drivers end loops without a word after 65,535 of them.
 const int MOST_TURNS = 60000;
 
-// The nth of 64 samples of the light, each coordinate from -1 to 1: the same rows as in traced/cover.comp, in an order in
-// which any first few are spread over the light.
-vec2 sample_at(int n)
+// The sample that the nth ray goes to: any first few are spread over the light.
+int sample_number(int n)
 {
     const int order[8] = int[8](0, 4, 2, 6, 1, 5, 3, 7);
     int row = order[n & 7];
-    int column = order[n >> 3 & 7] + order[row] & 7;
-    float offset = (float(order[row]) + 0.5) / 8.0;
-    return vec2(float(column) + offset, float(row) + 0.5) / 4.0 - 1.0;
+    return row * 8 + (order[n >> 3 & 7] + order[row] & 7);
+}
+
+// Where a sample lies, each coordinate from -1 to 1: on the turned grid of traced/cover.glsl.
+vec2 sample_at(int number)
+{
+    vec2 cell = vec2(number & 7, number >> 3);
+    return (cell + vec2(cell.y + 0.5, 7.5 - cell.x) / 8.0) / 4.0 - 1.0;
 }
 
 void main()
@@ -53,15 +57,20 @@ void main()
     Receiver r = receiver_of(pixel);
     int turns = MOST_TURNS;
     int sent = 0;
-    int seen = 0;
+    float sum = 0.0;
+    float seen = 0.0;
     while (sent < int(frame.samples) && turns > 0) {
-        vec2 at = sample_at(sent) * frame.half_light;
+        int number = sample_number(sent);
+        vec2 at = sample_at(number) * frame.half_light;
+        float weight = frame.weight > 0.0 ? weight_of(number) : 1.0;
         vec3 in_light = frame.sun != 0u ? vec3(at, -1.0) : vec3(at, 0.0) - r.in_light;
         vec3 along = in_light.x * frame.light_x.xyz + in_light.y * frame.light_y.xyz + in_light.z * frame.light_z.xyz;
         Segment s = segment_of(r.position, along, frame.sun == 0u, root_low.xyz, root_step.xyz);
-        bool hit = blocked(s, frame.nodes, turns);
+        // A sample outside the light's shape needs no ray.
+        bool hit = weight > 0.0 && blocked(s, frame.nodes, turns);
         sent += 1;
-        seen += hit ? 0 : 1;
+        sum += weight;
+        seen += hit ? 0.0 : weight;
     }
-    imageStore(visibility, pixel, vec4(float(seen) / float(max(sent, 1))));
+    imageStore(visibility, pixel, vec4(sum > 0.0 ? seen / sum : 1.0));
 }

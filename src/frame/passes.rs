@@ -82,9 +82,10 @@ pub(super) struct Needs {
 }
 
 /// Whether a hard shadow may replace the technique's penumbra. It cannot where the image holds a fraction for each
-/// color.
+/// color, and need not where the technique works with the triangles, whose narrow shafts cost less than a map.
 fn hardens(description: &Description) -> bool {
-    description.technique.room().shows().penumbra && !description.has_color()
+    let room = description.technique.room();
+    room.shows().penumbra && !description.has_color() && !room.reads_triangles()
 }
 
 impl Needs {

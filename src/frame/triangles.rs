@@ -6,10 +6,10 @@ use super::check::bad;
 use super::{Description, Frame};
 use crate::Error;
 use crate::lent::{Geometry, LightIndex, MeshBuffers, MeshInstance};
-use crate::light::Light;
+use crate::light::{Light, Shape};
 use crate::stages::hierarchy::{LEAF, MeshPush, Sizes};
 use ash::vk;
-use glam::{DMat4, DVec3, DVec4};
+use glam::{DMat3, DMat4, DVec3, DVec4};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// The most triangles and meshes that block light in any frame, for which a node has memory where a technique works
@@ -164,11 +164,16 @@ impl TriangleList {
             None => (camera.direction * if near == 1.0 { 1.0 } else { -1.0 }).extend(0.0),
         };
         let light_from_world = frame.light.rectangle().light_from_world();
+        // A sun has no place: its light space begins where the hierarchy's does.
+        let light_from_here = match frame.light.shape() {
+            Shape::Sun { .. } => DMat4::from_mat3(DMat3::from_mat4(light_from_world)),
+            _ => light_from_world * DMat4::from_translation(self.origin),
+        };
         Space {
             eye_from_ndc: DMat4::from_translation(-eye) * frame.world_from_ndc,
             eye: eye - self.origin,
             towards,
-            light_from_here: light_from_world * DMat4::from_translation(self.origin),
+            light_from_here,
             light: frame.light,
             depth_step: depth_step(description.depth_format),
             nodes: self.sizes.nodes(),

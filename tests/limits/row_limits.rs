@@ -97,7 +97,10 @@ fn of_resources(graph: &Graph, extent: [u32; 2]) -> Vec<String> {
 
 fn modules(pass: &Pass) -> Vec<antumbra::shaders::Module> {
     match pass.work {
-        Work::Dispatch { shader, .. } | Work::Indirect { shader, .. } => vec![shader],
+        Work::Dispatch { shader, .. }
+        | Work::Indirect { shader, .. }
+        | Work::EachMesh { shader } => vec![shader],
+        Work::Constants { .. } => Vec::new(),
         Work::Raster { vertex, fragment, .. } => std::iter::once(vertex).chain(fragment).collect(),
     }
 }

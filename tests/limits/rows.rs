@@ -81,7 +81,10 @@ fn graphs() -> Vec<(String, Graph)> {
 
 fn modules(pass: &Pass) -> Vec<Module> {
     match pass.work {
-        Work::Dispatch { shader, .. } | Work::Indirect { shader, .. } => vec![shader],
+        Work::Dispatch { shader, .. }
+        | Work::Indirect { shader, .. }
+        | Work::EachMesh { shader } => vec![shader],
+        Work::Constants { .. } => Vec::new(),
         Work::Raster { vertex, fragment, .. } => std::iter::once(vertex).chain(fragment).collect(),
     }
 }

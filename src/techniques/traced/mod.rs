@@ -2,10 +2,11 @@
 
 pub mod passes;
 pub mod settings;
+mod weights;
 
 pub use settings::Settings;
 
-use super::room::{HostDraws, Maps, PassInputs, Room, Shows, Takes};
+use super::room::{HostDraws, Maps, PassInputs, Room, Shapes, Shows, Takes};
 use crate::graph::{Graph, ResourceId};
 use crate::stages::hierarchy;
 
@@ -18,6 +19,7 @@ impl Room for Settings {
             host_draws: HostDraws::Receivers(
                 "has no triangles for the hierarchy that traced reads",
             ),
+            shapes: Shapes::ALL,
             lent_maps: Err("works with triangles, and does not read depth images of occluders"),
             ..Takes::RECTANGLES
         }

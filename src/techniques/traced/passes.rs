@@ -1,11 +1,12 @@
 //! The passes over tiles and pixels, and their constants.
 
-use super::Settings;
+use super::{Settings, weights};
 use crate::graph::{Access, Graph, Pass, Push, ResourceId, Use, Uses, Work};
 use crate::shaders::module;
 use crate::stages::hierarchy::{Hierarchy, groups};
 use crate::stages::visibility::grid;
 use crate::techniques::room::PassInputs;
+use crate::{Light, Shape};
 use bytemuck::{Pod, Zeroable};
 use smallvec::smallvec;
 
@@ -56,6 +57,16 @@ pub struct PixelConstants {
     pub capacity: u32,
     /// How many rays a pixel of a dense shaft sends.
     pub samples: u32,
+    /// The sum of the samples' weights; 0 where all weigh the same.
+    pub weight: f32,
+}
+
+/// The third part of the frame's constants (`traced/frame.glsl`).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct SampleConstants {
+    /// The samples' weights, row by row.
+    pub weights: [[u16; 32]; 2],
 }
 
 /// The push constants of the passes that make the lists (`traced/sums.comp`).
@@ -87,7 +98,7 @@ pub(super) fn declare(
     let capacity = LISTED_A_PIXEL * extent[0] * extent[1];
     let push = Push::new(&ListPush { slots, blocks, most: settings.leaves, capacity });
 
-    let constants = graph.buffer("traced.constants", 192);
+    let constants = graph.buffer("traced.constants", 336);
     declare_constants(graph, settings, constants, capacity, inputs);
     let of_slots = |bytes: u64| bytes * u64::from(slots);
     let shafts = graph.buffer("traced.shafts", of_slots(64));
@@ -201,12 +212,15 @@ fn declare_constants(
 ) {
     let PassInputs { gbuffer, need, .. } = *inputs;
     let (_, space) = inputs.tree;
-    let light = space.light.rectangle();
+    let shape = space.light.shape();
+    let half_light = half_of(&space.light);
+    let weights = weights::weights(shape, half_light);
+    let weight: u32 = weights.iter().flatten().map(|&w| u32::from(w)).sum();
     let row = |i: usize| space.light_from_here.row(i).as_vec4().to_array();
     let first = LightConstants {
         eye_from_ndc: space.eye_from_ndc.as_mat4().to_cols_array(),
         light_from_here: [row(0), row(1), row(2)],
-        half_light: light.half_extents().map(|half| half as f32),
+        half_light: half_light.map(|half| half as f32),
         background: gbuffer.background,
         depth_step: space.depth_step,
     };
@@ -216,11 +230,23 @@ fn declare_constants(
         towards: space.towards.as_vec4().to_array(),
         extent: gbuffer.extent.map(|e| e as i32),
         masked: u32::from(gbuffer.mask.is_some()),
-        sun: 0,
+        sun: u32::from(matches!(shape, Shape::Sun { .. })),
         nodes: space.nodes,
         most: settings.leaves,
         capacity,
         samples: settings.rays,
+        weight: weight as f32,
     };
     graph.push(Pass::constants("traced.pixels", constants, 128, &second, need));
+    let weights = weights.unwrap_or([0; 64]);
+    let third = SampleConstants { weights: bytemuck::cast(weights) };
+    graph.push(Pass::constants("traced.weights", constants, 196, &third, need));
+}
+
+/// Half the width and height of the rectangle of the light's samples, m; of a sun the tangents of half its angular size.
+fn half_of(light: &Light) -> [f64; 2] {
+    match light.shape() {
+        Shape::Sun { angular_size } => [(0.5 * angular_size).tan(); 2],
+        _ => light.rectangle().half_extents(),
+    }
 }
