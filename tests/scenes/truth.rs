@@ -4,6 +4,6 @@ mod closed_form;
 mod exact;
 mod metrics;
 mod polygon_light;
-mod random;
+pub mod random;
 mod segment;
 mod trace;
