@@ -6,13 +6,11 @@ use crate::scenes::scaled;
 use crate::techniques::Method;
 use crate::truth;
 use antumbra::scene::Instance;
-use antumbra::truth::{Receiver, Sampling, Tracer};
+use antumbra::truth::Receiver;
 use antumbra::{FramePlan, RectangleLight};
+use antumbra_harness::rays::RayTracer;
 use antumbra_harness::{Forward, FrameTimes, HeadlessDevice, ReadbackScheme, Stage};
 use std::time::{Duration, Instant};
-
-/// The random numbers of the ray tracer that is measured, which are not the truth's.
-const TRACER_SEED: u64 = 2;
 
 /// What computes one row's image.
 pub enum Runner<'a> {
@@ -20,10 +18,11 @@ pub enum Runner<'a> {
     Node { stage: Box<Stage>, plan: Box<FramePlan> },
     /// Rays by the processor.
     Rays {
-        tracer: &'a Tracer,
+        tracer: &'a RayTracer,
         receivers: &'a [Receiver],
         light: RectangleLight,
-        sampling: Sampling,
+        width: usize,
+        rays: u32,
     },
     /// Rays of the fragments as they are drawn, by the maps of the stage within.
     Forward(Box<Forward>),
@@ -48,16 +47,16 @@ impl<'a> Runner<'a> {
         entry: &Entry,
         method: Result<Option<Method>, Problem>,
         light: &RectangleLight,
-        (tracer, receivers): (&'a Tracer, &'a [Receiver]),
+        (tracer, receivers): (Option<&'a RayTracer>, &'a [Receiver]),
     ) -> Result<Option<Self>, Problem> {
         let lit = scaled(light, entry.light_scale);
         let stage = |settings| ready.stage(device, group.extent, settings).map(Box::new);
         Ok(match method? {
             None => None,
             Some(Method::Rays(rays)) => {
-                let sampling =
-                    truth::sampling(Sampling::one_grid(rays.isqrt(), TRACER_SEED), receivers)?;
-                Some(Self::Rays { tracer, receivers, light: lit?, sampling })
+                let tracer = tracer.ok_or("its tree was not built")?;
+                let width = group.extent[0] as usize;
+                Some(Self::Rays { tracer, receivers, light: lit?, width, rays })
             }
             Some(Method::Readback(side)) => {
                 let words = "soft-shadow-map receivers=map accumulate=blend sides=one";
@@ -106,12 +105,18 @@ impl<'a> Runner<'a> {
                 };
                 Ok((times, None))
             }
-            Self::Rays { tracer, receivers, light, sampling } => {
+            Self::Rays { tracer, receivers, light, width, rays } => {
+                let error = truth::position_error(receivers);
                 let started = Instant::now();
-                let traced = tracer.visible_fractions(light, receivers, sampling)?;
+                let visible = tracer.visible_fractions(light, receivers, *width, *rays, error)?;
                 let frame = started.elapsed();
-                let times = FrameTimes { frame, record: Duration::ZERO, passes: Vec::new() };
-                Ok((times, Some(traced.visible)))
+                let ms = |time: Duration| time.as_secs_f64() * 1e3;
+                // The tree outlives the frame, whose time it is no part of.
+                let passes = vec![
+                    ("rays.trace", ms(frame)),
+                    ("rays.tree_built_once", ms(tracer.build_time())),
+                ];
+                Ok((FrameTimes { frame, record: Duration::ZERO, passes }, Some(visible)))
             }
         }
     }
