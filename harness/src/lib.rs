@@ -2,8 +2,8 @@
 //! scene and a G-buffer on it, a node that shades them, and read-back; beside them the made scenes and the
 //! small readers and writers that more than one of those programs uses.
 //!
-//! Nothing here is fast: every call submits and waits. What is here is careful: an instance of Vulkan 1.1, no
-//! optional feature and no device extension, so that whatever runs on this device runs on any that antumbra
+//! Nothing here but [`rays`] is fast: every call submits and waits. What is here is careful: an instance of Vulkan
+//! 1.1, no optional feature and no device extension, so that whatever runs on this device runs on any that antumbra
 //! accepts, and every message of the validation layer is kept for a test to look at.
 //!
 //! | what | where |
@@ -12,7 +12,7 @@
 //! | buffers and images that can be read back | [`HostBuffer`], [`OwnedImage`], [`read_image`] |
 //! | a scene, its G-buffer and a node that shades it | [`Stage`], [`SceneBuffers`], [`GBuffer`], [`View`] |
 //! | one compute shader, for a shader's unit test | [`ComputeProgram`], [`run_compute`] |
-//! | what a technique is compared with | [`Forward`], [`ReadbackScheme`] |
+//! | what a technique is compared with | [`rays`], [`Forward`], [`ReadbackScheme`] |
 //! | what passes cost on this device | [`measure_costs`], [`probe`] |
 //! | made scenes, and files read and pictures made | [`cases`], [`ply`], [`shade`], [`levels`], [`whole`] |
 
@@ -35,6 +35,7 @@ mod module;
 mod painter;
 pub mod ply;
 mod raster;
+pub mod rays;
 mod readback;
 mod scene;
 mod set;

@@ -7,5 +7,6 @@
 mod generate;
 mod gltf;
 mod light;
+mod rays;
 mod scene;
 mod truth;

@@ -4,7 +4,7 @@ mod closed_form;
 mod exact;
 mod metrics;
 mod polygon_light;
-mod random;
+pub mod random;
 mod segment;
 mod shapes;
 mod trace;

@@ -8,11 +8,12 @@ use crate::report::once;
 use crate::runner::Runner;
 use crate::stats::{median, quartiles};
 use crate::store::{Errors, Outcome, Row, Times};
-use crate::techniques::method;
+use crate::techniques::{Method, method};
 use crate::truth::{self, mask};
 use antumbra::Technique;
 use antumbra::scene::AreaLight;
 use antumbra::truth::{ErrorSummary, Receiver, Traced, Tracer};
+use antumbra_harness::rays::RayTracer;
 use antumbra_harness::shade;
 use antumbra_harness::{FrameTimes, HeadlessDevice, Stage};
 use rayon::prelude::*;
@@ -67,7 +68,9 @@ impl Bench<'_> {
         let pixels = ready.stage(self.device, group.extent, Technique::default())?;
         let receivers = truth::receivers(pixels.gbuffer())?;
         let tracer = Tracer::new(&ready.scene)?;
-        let views = (&tracer, receivers.as_slice());
+        let sends_rays = methods.iter().any(|m| matches!(m, Ok(Some(Method::Rays(_)))));
+        let rays = sends_rays.then(|| RayTracer::new(&ready.scene)).transpose()?;
+        let views = (rays.as_ref(), receivers.as_slice());
         let candidate = |(entry, method)| Candidate {
             entry,
             state: Runner::new(self.device, &ready, group, entry, method, &light.light, views),

@@ -6,20 +6,24 @@ use crate::scenes::scaled;
 use crate::techniques::Method;
 use crate::truth;
 use antumbra::scene::Instance;
-use antumbra::truth::{Receiver, Sampling, Tracer};
+use antumbra::truth::Receiver;
 use antumbra::{FramePlan, Light, RectangleLight};
+use antumbra_harness::rays::RayTracer;
 use antumbra_harness::{Forward, FrameTimes, HeadlessDevice, ReadbackScheme, Stage};
 use std::time::{Duration, Instant};
-
-/// The random numbers of the ray tracer that is measured, which are not the truth's.
-const TRACER_SEED: u64 = 2;
 
 /// What computes one row's image.
 pub enum Runner<'a> {
     /// The node, its stage and its frame.
     Node { stage: Box<Stage>, plan: Box<FramePlan> },
     /// Rays by the processor.
-    Rays { tracer: &'a Tracer, receivers: &'a [Receiver], light: Box<Light>, sampling: Sampling },
+    Rays {
+        tracer: &'a RayTracer,
+        receivers: &'a [Receiver],
+        light: RectangleLight,
+        width: usize,
+        rays: u32,
+    },
     /// Rays of the fragments as they are drawn, by the maps of the stage within.
     Forward(Box<Forward>),
     /// The paper's scheme ends with its map. Its image is that of blending, whose sums are the same
@@ -43,7 +47,7 @@ impl<'a> Runner<'a> {
         entry: &Entry,
         method: Result<Option<Method>, Problem>,
         light: &Light,
-        (tracer, receivers): (&'a Tracer, &'a [Receiver]),
+        (tracer, receivers): (Option<&'a RayTracer>, &'a [Receiver]),
     ) -> Result<Option<Self>, Problem> {
         let lit = match entry.light_scale {
             1.0 => Ok(*light),
@@ -53,9 +57,9 @@ impl<'a> Runner<'a> {
         Ok(match method? {
             None => None,
             Some(Method::Rays(rays)) => {
-                let sampling =
-                    truth::sampling(Sampling::one_grid(rays.isqrt(), TRACER_SEED), receivers)?;
-                Some(Self::Rays { tracer, receivers, light: Box::new(lit?), sampling })
+                let tracer = tracer.ok_or("its tree was not built")?;
+                let (width, light) = (group.extent[0] as usize, *lit?.rectangle());
+                Some(Self::Rays { tracer, receivers, light, width, rays })
             }
             Some(Method::Readback(side)) => {
                 let words = "soft-shadow-map receivers=map accumulate=blend sides=one";
@@ -104,12 +108,18 @@ impl<'a> Runner<'a> {
                 };
                 Ok((times, None))
             }
-            Self::Rays { tracer, receivers, light, sampling } => {
+            Self::Rays { tracer, receivers, light, width, rays } => {
+                let error = truth::position_error(receivers);
                 let started = Instant::now();
-                let traced = tracer.visible_fractions(**light, receivers, sampling)?;
+                let visible = tracer.visible_fractions(light, receivers, *width, *rays, error)?;
                 let frame = started.elapsed();
-                let times = FrameTimes { frame, record: Duration::ZERO, passes: Vec::new() };
-                Ok((times, Some(traced.visible)))
+                let ms = |time: Duration| time.as_secs_f64() * 1e3;
+                // The tree outlives the frame, whose time it is no part of.
+                let passes = vec![
+                    ("rays.trace", ms(frame)),
+                    ("rays.tree_built_once", ms(tracer.build_time())),
+                ];
+                Ok((FrameTimes { frame, record: Duration::ZERO, passes }, Some(visible)))
             }
         }
     }

@@ -26,15 +26,18 @@ pub fn receivers(gbuffer: &GBuffer) -> Result<Vec<Receiver>, Problem> {
     Ok(pixels.map(receiver).collect())
 }
 
-/// What positions read from an f32 image add to a sampling: half a unit in the last place of the
-/// largest coordinate.
+/// The error in metres of positions read from an f32 image: half a unit in the last place of the largest coordinate.
+pub fn position_error(receivers: &[Receiver]) -> f64 {
+    let largest = receivers.iter().map(|r| r.position.abs().max_element()).fold(0.0, f64::max);
+    largest / f64::from(1 << 24)
+}
+
+/// What positions read from an f32 image add to a sampling.
 pub fn sampling(
     rays: Result<Sampling, antumbra::Error>,
     receivers: &[Receiver],
 ) -> Result<Sampling, Problem> {
-    let largest = receivers.iter().map(|r| r.position.abs().max_element()).fold(0.0, f64::max);
-    let precise = |s: Sampling| s.with_position_error(largest / f64::from(1 << 24));
-    Ok(rays.and_then(precise)?)
+    Ok(rays.and_then(|s| s.with_position_error(position_error(receivers)))?)
 }
 
 /// The card's corners in the world, around its rim.

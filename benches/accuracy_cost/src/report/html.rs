@@ -131,13 +131,14 @@ fn method() -> Markup {
              one G-buffer. " b { "Mean error" } ": mean |error| over the pixels that either puts in shadow or \
              penumbra (Atty 2006 section 5.2.1), in percent of the light. " b { "FLIP" } ": mean over the whole \
              shaded image, visibility × unshadowed irradiance. The card's truth is its closed form; the others' is \
-             traced, with random numbers that are not the measured ray tracer's. The dotted line is what the truth's \
-             own noise adds up to in a mean error."
+             traced, by another tracer than the one that is measured. The dotted line is what the truth's own noise \
+             adds up to in a mean error."
         }
         p {
             b { "Time" } ": from submit to fence, G-buffer not counted, after a frame of warm-up, techniques in turns \
-             in one process, the median of all rounds. The ray tracer's is the wall time of its rays on all cores, \
-             its hierarchy built beforehand."
+             in one process, the median of all rounds. The ray tracer's is the wall time of its rays on all cores; \
+             that of its tree, which outlives the frame, stands among its passes as " code { "rays.tree_built_once" }
+            " and is not in it."
         }
     }
 }
