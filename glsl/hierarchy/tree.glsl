@@ -25,11 +25,22 @@ Node unpacked_node(uvec4 words)
     return node;
 }
 
-// How far the furthest corner of a box lies on the inner side of a plane; below 0 where the box lies outside.
-float furthest(vec4 plane, Node node)
+// A plane, as its parts above and below 0, so that the furthest corner of a box needs no choice.
+struct Plane {
+    vec3 above;
+    vec3 below;
+    float offset;
+};
+
+Plane plane_of(vec4 plane)
 {
-    vec3 corner = max(plane.xyz * node.low, plane.xyz * node.high);
-    return corner.x + corner.y + corner.z + plane.w;
+    return Plane(max(plane.xyz, 0.0), min(plane.xyz, 0.0), plane.w);
+}
+
+// How far the furthest corner of a box lies on the inner side of a plane; below 0 where the box lies outside.
+float furthest(Plane plane, Node node)
+{
+    return dot(plane.above, node.high) + (dot(plane.below, node.low) + plane.offset);
 }
 
 #endif

@@ -129,6 +129,10 @@ void main()
     uint evens = (shaft_count + 1u) / 2u;
     nth = nth < evens ? 2u * nth : 2u * (nth - evens) + 1u;
     uvec2 entry = listed[nth];
+    uvec4 list = found[nth];
+    if (list.y + list.w == 0u) {
+        return;
+    }
     int tile = int(entry.x / SHAFTS_A_TILE);
     int row = tiles_in(frame.extent).x;
     ivec2 first = ivec2(tile % row, tile / row) * TILE_SIDE;
@@ -147,7 +151,6 @@ void main()
     vec3 p1 = r1.in_light;
     vec3 towards0 = frame.sun != 0u ? vec3(0.0, 0.0, 1.0) : p0;
     vec3 towards1 = frame.sun != 0u ? vec3(0.0, 0.0, 1.0) : p1;
-    uvec4 list = found[nth];
     for (uint i = 0u; i < list.y && (hidden0 & hidden1) != ALL; ++i) {
         Triangle t = triangle_of(lists[list.x + i]);
         hidden0 |= hidden_by(t, p0, towards0);

@@ -38,6 +38,9 @@ layout(set = 0, binding = 2, std430) readonly buffer Constants { Frame frame; };
 const int TILE_SIDE = 4;
 const int TILE_PIXELS = TILE_SIDE * TILE_SIDE;
 
+// The leaves of each shaft that are written down as they are counted.
+const uint FIRST_LEAVES = 32u;
+
 // Shafts a tile: its receivers may lie in two groups, one behind the other.
 const uint SHAFTS_A_TILE = 2u;
 
@@ -61,13 +64,6 @@ struct Receiver {
 // The rounding of the arithmetic on positions, as a share of their size.
 const float ROUNDING = 1.0 / 4194304.0;
 
-vec3 unprojected(vec2 pixel, float depth)
-{
-    vec2 ndc = (pixel + 0.5) * 2.0 / vec2(frame.extent) - 1.0;
-    vec4 p = frame.eye_from_ndc * vec4(ndc, depth, 1.0);
-    return p.xyz / p.w;
-}
-
 vec3 in_light_space(vec3 p)
 {
     vec4 q = vec4(p, 1.0);
@@ -87,10 +83,13 @@ Receiver receiver_of(ivec2 pixel)
     if (depth == frame.background || role <= 0.25) {
         return r;
     }
-    vec3 from_eye = unprojected(vec2(pixel), depth);
+    vec2 ndc = (vec2(pixel) + 0.5) * 2.0 / vec2(frame.extent) - 1.0;
+    vec4 at_zero = frame.eye_from_ndc * vec4(ndc, 0.0, 1.0);
+    vec4 p = at_zero + frame.eye_from_ndc[2] * depth;
+    vec3 from_eye = p.xyz / p.w;
     float step = frame.depth_step > 0.0 ? frame.depth_step * depth : -frame.depth_step;
-    float nearer = frame.background == 0.0 ? depth + step : depth - step;
-    vec3 moved = from_eye - unprojected(vec2(pixel), nearer);
+    vec4 q = p + frame.eye_from_ndc[2] * (frame.background == 0.0 ? step : -step);
+    vec3 moved = from_eye - q.xyz / q.w;
     vec3 towards = frame.towards.w > 0.0 ? -normalize(from_eye) : frame.towards.xyz;
     vec3 size = abs(frame.eye.xyz) + abs(from_eye);
     float off = 2.0 * length(moved) + 8.0 * ROUNDING * max(max(size.x, size.y), size.z);

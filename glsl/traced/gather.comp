@@ -19,6 +19,9 @@ layout(set = 0, binding = 7, std430) readonly buffer Totals { uint shaft_count; 
 layout(set = 0, binding = 8, std430) readonly buffer Listed { uvec2 listed[]; };
 layout(set = 0, binding = 9, std430) writeonly buffer Found { uvec4 found[]; };
 layout(set = 0, binding = 10, std430) buffer Lists { uint lists[]; };
+layout(set = 0, binding = 11, std430) readonly buffer Counts { uint counts[]; };
+layout(set = 0, binding = 12, std430) readonly buffer FirstLeaves { uint first_leaves[]; };
+layout(set = 0, binding = 13, r32f) writeonly uniform image2D visibility;
 
 // Whether a triangle may lie between a receiver of the shaft and the light: its corners are not all on the outer side of
 // one of the shaft's sides, and its own plane does not have all receivers and the whole light on one side.
@@ -62,17 +65,25 @@ void main()
     uvec2 entry = listed[nth];
     Shaft shaft = shafts[entry.x];
     Planes planes = planes_of(shaft, root_low.xyz, root_step.xyz);
-    // First the leaves: a turn of a walk costs all that it may do, so that the triangles come after it.
-    uint leaves = 0u;
-    uint at = 0u;
-    while (at < frame.nodes) {
-        Node node = unpacked_node(imageLoad(nodes, texel(at)));
-        bool inside = meets(planes, node);
-        if (inside && node.leaf) {
-            lists[entry.y + leaves] = node.link;
-            leaves += 1u;
+    // First the leaves: a turn of a walk costs all that it may do, so that the triangles come after it. Most shafts have few,
+    // which are known.
+    uint leaves = counts[entry.x] - 1u;
+    if (leaves <= FIRST_LEAVES) {
+        for (uint i = 0u; i < leaves; ++i) {
+            lists[entry.y + i] = first_leaves[entry.x * FIRST_LEAVES + i];
         }
-        at = inside || node.leaf ? at + 1u : node.link;
+    } else {
+        uint at = 0u;
+        leaves = 0u;
+        while (at < frame.nodes) {
+            Node node = unpacked_node(imageLoad(nodes, texel(at)));
+            bool inside = meets(planes, node);
+            if (inside && node.leaf) {
+                lists[entry.y + leaves] = node.link;
+                leaves += 1u;
+            }
+            at = inside || node.leaf ? at + 1u : node.link;
+        }
     }
     // Then their triangles, in the leaves' second half of the list's room: those that cross the light's plane from its
     // end on backwards.
@@ -95,4 +106,13 @@ void main()
         }
     }
     found[nth] = uvec4(entry.y + leaves, plain, entry.y + room - crossing, crossing);
+    // Nothing is between the light and the receivers of an empty shaft.
+    int tile = int(entry.x / SHAFTS_A_TILE);
+    int row = tiles_in(frame.extent).x;
+    ivec2 corner = ivec2(tile % row, tile / row) * TILE_SIDE;
+    for (int i = 0; i < (plain + crossing == 0u ? TILE_PIXELS : 0); ++i) {
+        if ((shaft.pixels >> i & 1u) != 0u) {
+            imageStore(visibility, corner + ivec2(i % TILE_SIDE, i / TILE_SIDE), vec4(1.0));
+        }
+    }
 }

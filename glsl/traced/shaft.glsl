@@ -49,41 +49,43 @@ Shaft with_receiver(Shaft shaft, vec3 p, uint pixel)
 
 // The planes of a shaft in steps of the root's box, as `furthest` takes them.
 struct Planes {
-    vec4 side[4];
-    vec4 far;
-    vec4 near;
+    Plane left;
+    Plane bottom;
+    Plane right;
+    Plane top;
+    Plane far;
+    Plane near;
 };
 
 // A plane of light space, (n, d) with n p + d >= 0 inside, in steps of the root's box; `slack` metres wider, which is
 // more than the arithmetic of it rounds.
-vec4 in_steps(vec4 plane, vec3 root_low, vec3 root_step)
+Plane in_steps(vec4 plane, vec3 root_low, vec3 root_step)
 {
     vec4 world = plane.x * frame.light_x + plane.y * frame.light_y + plane.z * frame.light_z;
     world.w += plane.w;
     vec3 reach = abs(root_low) + 65535.0 * root_step;
     float slack = ROUNDING * 4.0 * (dot(abs(world.xyz), reach) + abs(plane.x * frame.light_x.w) +
                                     abs(plane.y * frame.light_y.w) + abs(plane.z * frame.light_z.w) + abs(plane.w));
-    return vec4(world.xyz * root_step, world.w + dot(world.xyz, root_low) + slack);
+    return plane_of(vec4(world.xyz * root_step, world.w + dot(world.xyz, root_low) + slack));
 }
 
 Planes planes_of(Shaft shaft, vec3 root_low, vec3 root_step)
 {
     Planes planes;
-    planes.side[0] = in_steps(vec4(1.0, 0.0, -shaft.low.y, -shaft.low.x), root_low, root_step);
-    planes.side[1] = in_steps(vec4(0.0, 1.0, -shaft.low.w, -shaft.low.z), root_low, root_step);
-    planes.side[2] = in_steps(vec4(-1.0, 0.0, shaft.high.y, shaft.high.x), root_low, root_step);
-    planes.side[3] = in_steps(vec4(0.0, -1.0, shaft.high.w, shaft.high.z), root_low, root_step);
+    planes.left = in_steps(vec4(1.0, 0.0, -shaft.low.y, -shaft.low.x), root_low, root_step);
+    planes.bottom = in_steps(vec4(0.0, 1.0, -shaft.low.w, -shaft.low.z), root_low, root_step);
+    planes.right = in_steps(vec4(-1.0, 0.0, shaft.high.y, shaft.high.x), root_low, root_step);
+    planes.top = in_steps(vec4(0.0, -1.0, shaft.high.w, shaft.high.z), root_low, root_step);
     planes.far = in_steps(vec4(0.0, 0.0, -1.0, shaft.most.z), root_low, root_step);
-    planes.near = frame.sun != 0u ? vec4(0.0, 0.0, 0.0, 1.0)
-                                  : in_steps(vec4(0.0, 0.0, 1.0, 0.0), root_low, root_step);
+    planes.near = in_steps(frame.sun != 0u ? vec4(0.0, 0.0, 0.0, 1.0) : vec4(0.0, 0.0, 1.0, 0.0), root_low, root_step);
     return planes;
 }
 
 // Whether a node's box may meet the shaft.
 bool meets(Planes planes, Node node)
 {
-    float a = min(furthest(planes.side[0], node), furthest(planes.side[1], node));
-    float b = min(furthest(planes.side[2], node), furthest(planes.side[3], node));
+    float a = min(furthest(planes.left, node), furthest(planes.bottom, node));
+    float b = min(furthest(planes.right, node), furthest(planes.top, node));
     float c = min(furthest(planes.far, node), furthest(planes.near, node));
     return min(min(a, b), c) >= 0.0;
 }

@@ -15,9 +15,10 @@ layout(set = 0, binding = 4, std430) readonly buffer Header { vec4 root_low; vec
 layout(set = 0, binding = 5, std430) writeonly buffer Shafts { Shaft shafts[]; };
 layout(set = 0, binding = 6, std430) writeonly buffer Counts { uint counts[]; };
 layout(set = 0, binding = 7, r32f) writeonly uniform image2D visibility;
+layout(set = 0, binding = 8, std430) writeonly buffer FirstLeaves { uint first_leaves[]; };
 
-// How many leaves a shaft holds, up to one more than a list may have.
-uint leaves_in(Shaft shaft)
+// Counts the leaves that a shaft holds, up to one more than a list may have, and writes down the first of them.
+uint leaves_in(Shaft shaft, uint slot)
 {
     Planes planes = planes_of(shaft, root_low.xyz, root_step.xyz);
     uint found = 0u;
@@ -25,11 +26,17 @@ uint leaves_in(Shaft shaft)
     while (at < frame.nodes && found <= frame.most) {
         Node node = unpacked_node(imageLoad(nodes, texel(at)));
         bool inside = meets(planes, node);
+        if (inside && node.leaf && found < FIRST_LEAVES) {
+            first_leaves[slot * FIRST_LEAVES + found] = node.link;
+        }
         found += inside && node.leaf ? 1u : 0u;
         at = inside || node.leaf ? at + 1u : node.link;
     }
     return found;
 }
+
+// A tile whose receivers lie further apart than this share of their distance from the viewer may be torn.
+const float TEAR = 1.0 / 32.0;
 
 void main()
 {
@@ -40,12 +47,14 @@ void main()
     }
     vec3 low = vec3(3.0e38);
     vec3 high = vec3(-3.0e38);
+    Shaft one = empty_shaft();
     for (int i = 0; i < TILE_PIXELS; ++i) {
         ivec2 pixel = tile * TILE_SIDE + ivec2(i % TILE_SIDE, i / TILE_SIDE);
         Receiver r = receiver_of(pixel);
         if (r.receives) {
             low = min(low, r.position);
             high = max(high, r.position);
+            one = with_receiver(one, r.in_light, uint(i));
         } else if (all(lessThan(pixel, frame.extent))) {
             imageStore(visibility, pixel, vec4(1.0));
         }
@@ -54,36 +63,32 @@ void main()
     vec3 size = high - low;
     int axis = size.x >= max(size.y, size.z) ? 0 : size.y >= size.z ? 1 : 2;
     float middle = 0.5 * (low[axis] + high[axis]);
-    vec3 low_of[2] = vec3[2](vec3(3.0e38), vec3(3.0e38));
-    vec3 high_of[2] = vec3[2](vec3(-3.0e38), vec3(-3.0e38));
-    Shaft one = empty_shaft();
+    float away = length(0.5 * (low + high) - frame.eye.xyz);
+    bool may_be_torn = one.pixels != 0u && (size[axis] > TEAR * away || frame.towards.w == 0.0);
+    vec2 near = vec2(3.0e38, -3.0e38);
+    vec2 far = near;
     Shaft first = empty_shaft();
     Shaft second = empty_shaft();
-    for (int i = 0; i < TILE_PIXELS; ++i) {
+    for (int i = 0; i < (may_be_torn ? TILE_PIXELS : 0); ++i) {
         Receiver r = receiver_of(tile * TILE_SIDE + ivec2(i % TILE_SIDE, i / TILE_SIDE));
-        if (r.receives) {
-            one = with_receiver(one, r.in_light, uint(i));
-            if (r.position[axis] < middle) {
-                first = with_receiver(first, r.in_light, uint(i));
-                low_of[0] = min(low_of[0], r.position);
-                high_of[0] = max(high_of[0], r.position);
-            } else {
-                second = with_receiver(second, r.in_light, uint(i));
-                low_of[1] = min(low_of[1], r.position);
-                high_of[1] = max(high_of[1], r.position);
-            }
+        float x = r.position[axis];
+        if (r.receives && x < middle) {
+            first = with_receiver(first, r.in_light, uint(i));
+            near = vec2(min(near.x, x), max(near.y, x));
+        } else if (r.receives) {
+            second = with_receiver(second, r.in_light, uint(i));
+            far = vec2(min(far.x, x), max(far.y, x));
         }
     }
-    // A torn tile: both groups together are much smaller than the whole.
-    vec3 parts = max(high_of[0] - low_of[0], 0.0) + max(high_of[1] - low_of[1], 0.0);
-    bool torn = first.pixels != 0u && parts[axis] < 0.5 * size[axis];
+    // A torn tile: both groups together are much shorter than the whole.
+    bool torn = first.pixels != 0u && max(near.y - near.x, 0.0) + max(far.y - far.x, 0.0) < 0.5 * size[axis];
     uint slot = SHAFTS_A_TILE * uint(tile.y * count.x + tile.x);
     if (torn) {
         one = first;
     }
     shafts[slot] = one;
     shafts[slot + 1u] = second;
-    // An empty list is one pixel's work still; a shaft without pixels has no list.
-    counts[slot] = one.pixels != 0u ? 1u + leaves_in(one) : 0u;
-    counts[slot + 1u] = torn ? 1u + leaves_in(second) : 0u;
+    // The count is one more than the number of leaves: 0 is no shaft.
+    counts[slot] = one.pixels != 0u ? 1u + leaves_in(one, slot) : 0u;
+    counts[slot + 1u] = torn ? 1u + leaves_in(second, slot + 1u) : 0u;
 }

@@ -14,6 +14,8 @@ use smallvec::smallvec;
 const TILE_SIDE: u32 = 4;
 /// The shafts of a tile (`traced/frame.glsl`).
 const SHAFTS_A_TILE: u32 = 2;
+/// The leaves of each shaft that are written down as they are counted (`traced/frame.glsl`).
+const FIRST_LEAVES: u64 = 32;
 /// The slots of a block (`traced/lists.glsl`).
 const BLOCK: u32 = 256;
 /// The places in the lists of triangles for each pixel of the image, on average.
@@ -109,6 +111,7 @@ pub(super) fn declare(
     let listed = graph.buffer("traced.listed", of_slots(8));
     let dense = graph.buffer("traced.dense", of_slots(4));
     let found = graph.buffer("traced.found", of_slots(16));
+    let first_leaves = graph.buffer("traced.first_leaves", of_slots(4 * FIRST_LEAVES));
     let lists = graph.buffer("traced.lists", 4 * u64::from(capacity));
 
     let read = |binding, id| Use::bound(binding, id, Access::BufferReadCompute);
@@ -126,6 +129,7 @@ pub(super) fn declare(
         write(5, shafts),
         write(6, counts),
         Use::bound(7, visibility, Access::ImageWrite),
+        write(8, first_leaves),
     ]);
     let (name, shader) = ("traced.tiles", module!("traced/tiles.comp"));
     graph.push(Pass::compute(name, shader, grid(tiles), Push::NONE, uses, need));
@@ -167,6 +171,9 @@ pub(super) fn declare(
         read(8, listed),
         write(9, found),
         write(10, lists),
+        read(11, counts),
+        read(12, first_leaves),
+        Use::bound(13, visibility, Access::ImageUpdate),
         Use::fixed(arguments, Access::Indirect),
     ]);
     let shader = module!("traced/gather.comp");
