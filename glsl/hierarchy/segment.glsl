@@ -54,7 +54,7 @@ bool crosses(Segment s, uint triangle)
     float inside = min(min(edges.x, edges.y), edges.z);
     float reach = dot(normal, s.along) * side;
     vec3 size = max(max(abs(a), abs(b)), abs(c)) + s.size;
-    float sharp = 2.0 * SEGMENT_ROUNDING * length(normal) * (size.x + size.y + size.z);
+    float sharp = 0.5 * SEGMENT_ROUNDING * length(normal) * (size.x + size.y + size.z);
     return corner.w > 0.0 && inside >= 0.0 && reach * s.ends >= abs(volume) * s.ends && abs(volume) > sharp;
 }
 

@@ -20,91 +20,73 @@ layout(set = 0, binding = 7, std430) readonly buffer Found { uvec4 found[]; };
 layout(set = 0, binding = 8, std430) readonly buffer Lists { uint lists[]; };
 layout(set = 0, binding = 9, r32f) writeonly uniform image2D visibility;
 
-// A triangle in light space, as all receivers of the shaft need it.
+// A triangle in light space, relative to a point near the shaft's receivers, as all of them need it. The plane through a
+// receiver at q and an edge from a to b has the normal (a - q) x (b - q) = a x b + (b - a) x q.
 struct Triangle {
-    vec3 a;
-    vec3 b;
-    vec3 c;
+    vec3 moment[3]; // a x b of each edge
+    vec3 edge[3];   // b - a
     vec3 normal;
-    float sharp;   // the height above its plane, times the normal's length, below which a receiver is in that plane
-    float nearest; // the least and largest z of its corners
+    float offset;   // the triangle's own plane: dot(normal, p) = offset
+    float sharp;    // the height above its plane, times the normal's length, below which a receiver is in that plane
+    float nearest;  // the least and largest z of its corners
     float furthest;
 };
 
-Triangle triangle_of(uint nth)
+Triangle triangle_of(uint nth, vec3 about)
 {
+    vec3 a = in_light_space(imageLoad(triangles, texel(3u * nth)).xyz);
+    vec3 b = in_light_space(imageLoad(triangles, texel(3u * nth + 1u)).xyz);
+    vec3 c = in_light_space(imageLoad(triangles, texel(3u * nth + 2u)).xyz);
+    vec3 size = max(max(abs(a), abs(b)), abs(c));
+    a -= about;
+    b -= about;
+    c -= about;
     Triangle t;
-    t.a = in_light_space(imageLoad(triangles, texel(3u * nth)).xyz);
-    t.b = in_light_space(imageLoad(triangles, texel(3u * nth + 1u)).xyz);
-    t.c = in_light_space(imageLoad(triangles, texel(3u * nth + 2u)).xyz);
-    t.normal = cross(t.b - t.a, t.c - t.a);
-    vec3 size = max(max(abs(t.a), abs(t.b)), abs(t.c));
-    t.sharp = 2.0 * ROUNDING * length(t.normal) * (size.x + size.y + size.z);
-    t.nearest = min(t.a.z, min(t.b.z, t.c.z));
-    t.furthest = max(t.a.z, max(t.b.z, t.c.z));
+    t.moment = vec3[3](cross(a, b), cross(b, c), cross(c, a));
+    t.edge = vec3[3](b - a, c - b, a - c);
+    t.normal = cross(t.edge[0], c - a);
+    t.offset = dot(t.normal, a);
+    t.sharp = 0.5 * ROUNDING * length(t.normal) * (size.x + size.y + size.z);
+    t.nearest = min(a.z, min(b.z, c.z));
+    t.furthest = max(a.z, max(b.z, c.z));
     return t;
 }
 
-// The hidden samples of row j: those between the lines in their first and second components.
-uint row_within(vec3 least, vec3 least_step, vec3 most, vec3 most_step, float j)
+// What the planes through a receiver are seen from: `to` is where segments to the light begin, or for a sun (0, 0, 1).
+struct Eye {
+    vec3 q;      // the receiver, relative to the same point
+    vec3 beyond; // that once more; nothing for a sun
+};
+
+// Where a plane through the receiver and an edge meets the light.
+Line edge_line(vec3 moment, vec3 edge, Eye eye, vec3 about, float side)
 {
-    vec3 from = least + least_step * j;
-    vec3 to = most + most_step * j;
-    return interval(max(max(from.x, from.y), from.z), min(min(to.x, to.y), to.z));
+    vec3 n = moment + cross(edge, eye.q);
+    return line_of(n.xy, -(dot(n, about) + dot(moment, eye.beyond)), side);
 }
 
-// The light's samples that a triangle hides from a receiver at `p`, four rows of eight a word. `towards` is where the
-// segments to the light begin, as planes through the receiver see it: at the receiver, or for a sun (0, 0, 1).
-uvec2 hidden_by(Triangle t, vec3 p, vec3 towards)
+// The light's samples that a triangle hides from a receiver.
+uvec2 hidden_by(Triangle t, Eye eye, vec3 about)
 {
-    vec3 a = t.a - p;
-    vec3 b = t.b - p;
-    vec3 c = t.c - p;
-    float volume = dot(t.normal, a);
+    float volume = t.offset - dot(t.normal, eye.q);
     float side = volume < 0.0 ? -1.0 : 1.0;
-    vec3 ab = cross(a, b) * side;
-    vec3 bc = cross(b, c) * side;
-    vec3 ca = cross(c, a) * side;
-    Line e0 = line_of(ab.xy, -dot(ab, towards));
-    Line e1 = line_of(bc.xy, -dot(bc, towards));
-    Line e2 = line_of(ca.xy, -dot(ca, towards));
+    Line a = edge_line(t.moment[0], t.edge[0], eye, about, side);
+    Line b = edge_line(t.moment[1], t.edge[1], eye, about, side);
+    Line c = edge_line(t.moment[2], t.edge[2], eye, about, side);
     // A triangle wholly nearer to the light than the receiver is bounded on both sides; where rounding leaves a sliver
     // of it open, it has no samples.
-    bool open = e0.least == e1.least && e1.least == e2.least;
-    bool none = abs(volume) <= t.sharp || t.nearest > p.z || (open && t.furthest < p.z);
-    vec2 l0 = least_of(e0);
-    vec2 l1 = least_of(e1);
-    vec2 l2 = least_of(e2);
-    vec2 m0 = most_of(e0);
-    vec2 m1 = most_of(e1);
-    vec2 m2 = most_of(e2);
-    vec3 l = vec3(l0.x, l1.x, l2.x);
-    vec3 ls = vec3(l0.y, l1.y, l2.y);
-    vec3 m = vec3(m0.x, m1.x, m2.x);
-    vec3 ms = vec3(m0.y, m1.y, m2.y);
-    uvec2 mask;
-    mask.x = row_within(l, ls, m, ms, 0.0) | row_within(l, ls, m, ms, 1.0) << 8 |
-             row_within(l, ls, m, ms, 2.0) << 16 | row_within(l, ls, m, ms, 3.0) << 24;
-    mask.y = row_within(l, ls, m, ms, 4.0) | row_within(l, ls, m, ms, 5.0) << 8 |
-             row_within(l, ls, m, ms, 6.0) << 16 | row_within(l, ls, m, ms, 7.0) << 24;
+    bool open = a.least == b.least && b.least == c.least && !(a.along || b.along || c.along);
+    bool none = abs(volume) <= t.sharp || t.nearest > eye.q.z || (open && t.furthest < eye.q.z);
+    uvec2 mask = samples_between(bounds_of(a, b, c));
     return none ? uvec2(0u) : mask;
 }
 
-// The samples behind a triangle's own plane, as seen from a receiver on one side of it, where it crosses the light's.
-uvec2 behind_plane(Triangle t, vec3 p)
+// The samples behind a triangle's own plane, as seen from a receiver on one side of it, where it crosses a lamp's plane.
+uvec2 behind_plane(Triangle t, Eye eye, vec3 about)
 {
-    float side = dot(t.normal, t.a - p) < 0.0 ? -1.0 : 1.0;
-    Line own = line_of(t.normal.xy * side, -dot(t.normal, t.a) * side);
-    vec3 l = vec3(least_of(own).x);
-    vec3 ls = vec3(least_of(own).y);
-    vec3 m = vec3(most_of(own).x);
-    vec3 ms = vec3(most_of(own).y);
-    uvec2 mask;
-    mask.x = row_within(l, ls, m, ms, 0.0) | row_within(l, ls, m, ms, 1.0) << 8 |
-             row_within(l, ls, m, ms, 2.0) << 16 | row_within(l, ls, m, ms, 3.0) << 24;
-    mask.y = row_within(l, ls, m, ms, 4.0) | row_within(l, ls, m, ms, 5.0) << 8 |
-             row_within(l, ls, m, ms, 6.0) << 16 | row_within(l, ls, m, ms, 7.0) << 24;
-    return mask;
+    float side = t.offset - dot(t.normal, eye.q) < 0.0 ? -1.0 : 1.0;
+    Line own = line_of(t.normal.xy, t.normal.z * light_end() - (t.offset + dot(t.normal, about)), side);
+    return samples_between(bounds_of(own, own, own));
 }
 
 // The share of the light that its samples show.
@@ -136,6 +118,7 @@ void main()
     int tile = int(entry.x / SHAFTS_A_TILE);
     int row = tiles_in(frame.extent).x;
     ivec2 first = ivec2(tile % row, tile / row) * TILE_SIDE;
+    face_light(shafts[entry.x], first);
     uint pixels = shafts[entry.x].pixels;
     int lane = int(gl_LocalInvocationIndex);
     ivec2 pixel0 = first + ivec2(lane % TILE_SIDE, lane / TILE_SIDE);
@@ -147,19 +130,22 @@ void main()
     const uvec2 ALL = uvec2(0xffffffffu);
     uvec2 hidden0 = mine0 ? uvec2(0u) : ALL;
     uvec2 hidden1 = mine1 ? uvec2(0u) : ALL;
-    vec3 p0 = r0.in_light;
-    vec3 p1 = r1.in_light;
-    vec3 towards0 = frame.sun != 0u ? vec3(0.0, 0.0, 1.0) : p0;
-    vec3 towards1 = frame.sun != 0u ? vec3(0.0, 0.0, 1.0) : p1;
+    vec3 middle = 0.5 * (shafts[entry.x].least + shafts[entry.x].most);
+    vec3 q0 = r0.in_light - middle;
+    vec3 q1 = r1.in_light - middle;
+    bool sun = is_sun();
+    Eye eye0 = Eye(q0, sun ? vec3(0.0) : q0);
+    Eye eye1 = Eye(q1, sun ? vec3(0.0) : q1);
+    vec3 about = sun ? vec3(0.0, 0.0, 1.0) : middle;
     for (uint i = 0u; i < list.y && (hidden0 & hidden1) != ALL; ++i) {
-        Triangle t = triangle_of(lists[list.x + i]);
-        hidden0 |= hidden_by(t, p0, towards0);
-        hidden1 |= hidden_by(t, p1, towards1);
+        Triangle t = triangle_of(lists[list.x + i], middle);
+        hidden0 |= hidden_by(t, eye0, about);
+        hidden1 |= hidden_by(t, eye1, about);
     }
     for (uint i = 0u; i < list.w && (hidden0 & hidden1) != ALL; ++i) {
-        Triangle t = triangle_of(lists[list.z + i]);
-        hidden0 |= hidden_by(t, p0, towards0) & behind_plane(t, p0);
-        hidden1 |= hidden_by(t, p1, towards1) & behind_plane(t, p1);
+        Triangle t = triangle_of(lists[list.z + i], middle);
+        hidden0 |= hidden_by(t, eye0, about) & behind_plane(t, eye0, about);
+        hidden1 |= hidden_by(t, eye1, about) & behind_plane(t, eye1, about);
     }
     if (mine0) {
         imageStore(visibility, pixel0, vec4(visible_share(hidden0)));

@@ -18,42 +18,61 @@ const int WORDS = SIDE * SIDE / 32;
 
 const float FAR = 1.0e9;
 
-// A line across the samples: those of a j meet it at i = x + y j.
+// A line across the samples: those of a j meet it at i = at.x + at.y j.
 struct Line {
     vec2 at;
     bool least; // whether the samples behind it are hidden, not those before it
+    bool along; // whether it bounds none of the samples of a j, or all
 };
 
-// The line where the plane n of light space, dot(n.xy, s.xy) + c = 0, meets the light.
-Line line_of(vec2 n, float c)
+// The line where the plane n of light space, dot(n, s.xy) + c = 0, meets the light; the samples with `side` times that
+// above 0 are inside.
+Line line_of(vec2 n, float c, float side)
 {
     const float TURN = 1.0 / float(SIDE);
-    vec2 cell = n * frame.half_light * (2.0 * TURN);
-    float k = c - dot(n, frame.half_light) + dot(cell, vec2(0.5 * TURN, 1.0 - 0.5 * TURN));
+    vec2 cell = n * half_light * (2.0 * TURN);
+    float k = c - dot(n, half_light) + dot(cell, vec2(0.5 * TURN, 1.0 - 0.5 * TURN));
     float i = cell.x - cell.y * TURN;
     float j = cell.y + cell.x * TURN;
-    // A plane along the samples of a j bounds none of them, or all.
     float least = 1.0e-7 * (abs(j) * float(SIDE) + abs(k)) + 1.0e-37;
-    i = abs(i) < least ? (i < 0.0 ? -least : least) : i;
-    return Line(vec2(-k, -j) / i, i > 0.0);
+    bool along = abs(i) < least;
+    i = along ? (i < 0.0 ? -least : least) : i;
+    return Line(vec2(-k, -j) / i, i * side > 0.0, along);
 }
 
-vec2 least_of(Line line)
+// Three lines, as bounds of i + 1 from below and from above for each j; a line that is no bound is far away.
+struct Bounds {
+    vec3 least;
+    vec3 least_step;
+    vec3 most;
+    vec3 most_step;
+};
+
+Bounds bounds_of(Line a, Line b, Line c)
 {
-    return line.least ? line.at : vec2(-FAR, 0.0);
+    bvec3 least = bvec3(a.least, b.least, c.least);
+    vec3 at = vec3(a.at.x, b.at.x, c.at.x) + 1.0;
+    vec3 step = vec3(a.at.y, b.at.y, c.at.y);
+    return Bounds(mix(vec3(-FAR), at, least), mix(vec3(0.0), step, least),
+                  mix(at, vec3(FAR), least), mix(step, vec3(0.0), least));
 }
 
-vec2 most_of(Line line)
+// The hidden samples of a j as a mask; a sample at the very edge of two triangles belongs to one of them. Whole numbers
+// have least and most in one instruction, which floats do not have everywhere.
+uint samples_of(Bounds b, float j)
 {
-    return line.least ? vec2(FAR, 0.0) : line.at;
-}
-
-// The mask of the samples from above `least` to `most`; a sample at the very edge of two triangles belongs to one.
-uint interval(float least, float most)
-{
-    int from = int(clamp(least + 1.0, 0.0, float(SIDE)));
-    int to = int(clamp(most + 1.0, 0.0, float(SIDE)));
+    ivec3 least = ivec3(b.least + b.least_step * j);
+    ivec3 most = ivec3(b.most + b.most_step * j);
+    int from = min(max(max(least.x, least.y), max(least.z, 0)), SIDE);
+    int to = max(min(min(most.x, most.y), min(most.z, SIDE)), 0);
     return (1u << to) - 1u & 0xffffffffu << from;
+}
+
+// The hidden samples of all j, four of eight a word.
+uvec2 samples_between(Bounds b)
+{
+    return uvec2(samples_of(b, 0.0) | samples_of(b, 1.0) << 8 | samples_of(b, 2.0) << 16 | samples_of(b, 3.0) << 24,
+                 samples_of(b, 4.0) | samples_of(b, 5.0) << 8 | samples_of(b, 6.0) << 16 | samples_of(b, 7.0) << 24);
 }
 
 #endif

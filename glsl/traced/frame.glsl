@@ -8,6 +8,12 @@
 #ifndef TRACED_FRAME_GLSL
 #define TRACED_FRAME_GLSL
 
+// A light that shines to one side; one without a place; one that shines to all sides, and shows each receiver the disc or
+// the stadium that faces it.
+const uint LAMP = 0u;
+const uint SUN = 1u;
+const uint ROUND = 2u;
+
 struct Frame {
     mat4 eye_from_ndc;  // normalized device coordinates to the hierarchy's space, relative to `eye`
     vec4 light_x;       // a point's x, y and z in light space, each as a plane
@@ -21,7 +27,7 @@ struct Frame {
     vec4 towards;       // the direction towards the viewer of an orthographic camera; w is 1 for a perspective
     ivec2 extent;       // the G-buffer's width and height
     uint masked;        // 1 where the G-buffer has a mask of roles
-    uint sun;           // 1 for a light without a place
+    uint kind;          // LAMP, SUN or ROUND
     uint nodes;         // how many nodes the hierarchy has
     uint most;          // the most leaves that a shaft may hold
     uint capacity;      // how many leaves all lists hold together
@@ -64,10 +70,66 @@ struct Receiver {
 // The rounding of the arithmetic on positions, as a share of their size.
 const float ROUNDING = 1.0 / 4194304.0;
 
+// The light as the receivers at hand see it: light space, and half the light's width and height.
+vec4 light_x;
+vec4 light_y;
+vec4 light_z;
+vec2 half_light;
+
 vec3 in_light_space(vec3 p)
 {
     vec4 q = vec4(p, 1.0);
-    return vec3(dot(frame.light_x, q), dot(frame.light_y, q), dot(frame.light_z, q));
+    return vec3(dot(light_x, q), dot(light_y, q), dot(light_z, q));
+}
+
+bool is_sun()
+{
+    return frame.kind == SUN;
+}
+
+// Sets light space for receivers about a point. That of a round light has its z towards them; its x lies along a capsule.
+void face_light(vec3 about)
+{
+    light_x = frame.light_x;
+    light_y = frame.light_y;
+    light_z = frame.light_z;
+    half_light = frame.half_light;
+    if (frame.kind != ROUND) {
+        return;
+    }
+    vec3 to = in_light_space(about);
+    float radius = half_light.y;
+    bool capsule = half_light.x > half_light.y;
+    vec3 z = normalize(capsule ? vec3(0.0, to.yz) : to + vec3(0.0, 0.0, 1.0e-30));
+    // Axes that turn with z, without a jump but opposite to the light's own (Duff and others 2017).
+    float pole = z.z < -0.9999 ? -0.9999 : z.z;
+    float share = -z.x * z.y / (1.0 + pole);
+    vec3 x = capsule ? vec3(1.0, 0.0, 0.0) : normalize(vec3(1.0 - z.x * z.x / (1.0 + pole), share, -z.x));
+    vec3 y = cross(z, x);
+    mat3x4 rows = mat3x4(light_x, light_y, light_z);
+    light_x = rows * x;
+    light_y = rows * y;
+    light_z = rows * z;
+    // The disc that fills a sphere's cone lies in the plane of its centre.
+    float away = dot(to, to);
+    if (!capsule) {
+        half_light *= sqrt(away / max(away - radius * radius, 1.0e-6 * away));
+    }
+}
+
+// How far before the light's plane segments to it end, in metres: what lies in that plane does not block.
+float light_end()
+{
+    vec3 away = abs(vec3(light_x.w, light_y.w, light_z.w));
+    return 32.0 * ROUNDING * (max(away.x, max(away.y, away.z)) + max(half_light.x, half_light.y));
+}
+
+// Whether a point lies within a round light, which hides nothing of itself.
+bool in_light(vec3 p)
+{
+    vec3 to = vec3(dot(frame.light_x, vec4(p, 1.0)), dot(frame.light_y, vec4(p, 1.0)), dot(frame.light_z, vec4(p, 1.0)));
+    to.x -= clamp(to.x, frame.half_light.y - frame.half_light.x, frame.half_light.x - frame.half_light.y);
+    return dot(to, to) <= frame.half_light.y * frame.half_light.y;
 }
 
 // The receiver of a pixel, moved towards the viewer by as much as its depth and its position may be off: so it lies on
@@ -92,11 +154,11 @@ Receiver receiver_of(ivec2 pixel)
     vec3 moved = from_eye - q.xyz / q.w;
     vec3 towards = frame.towards.w > 0.0 ? -normalize(from_eye) : frame.towards.xyz;
     vec3 size = abs(frame.eye.xyz) + abs(from_eye);
-    float off = 2.0 * length(moved) + 8.0 * ROUNDING * max(max(size.x, size.y), size.z);
+    float off = 2.0 * length(moved) + 16.0 * ROUNDING * max(max(size.x, size.y), size.z);
     r.position = frame.eye.xyz + from_eye + towards * off;
     r.in_light = in_light_space(r.position);
-    // Behind the plane of a lamp there is nothing to hide.
-    r.receives = frame.sun != 0u || r.in_light.z > 0.0;
+    // At the plane of a lamp and behind it there is nothing to hide, nor within a round light.
+    r.receives = is_sun() || (frame.kind == ROUND ? !in_light(r.position) : r.in_light.z > 2.0 * off + light_end());
     return r;
 }
 

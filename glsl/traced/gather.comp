@@ -41,7 +41,7 @@ bool may_block(Shaft shaft, vec3 a, vec3 b, vec3 c)
     if (least < -slack || min(z.x, min(z.y, z.z)) > shaft.most.z) {
         return false;
     }
-    if (frame.sun == 0u && max(z.x, max(z.y, z.z)) < 0.0) {
+    if (!is_sun() && max(z.x, max(z.y, z.z)) < light_end()) {
         return false;
     }
     vec3 normal = cross(b - a, c - a);
@@ -49,8 +49,8 @@ bool may_block(Shaft shaft, vec3 a, vec3 b, vec3 c)
     vec3 half_size = 0.5 * (shaft.most - shaft.least);
     float height = dot(normal, middle);
     float spread = dot(abs(normal), half_size);
-    float light = frame.sun != 0u ? -normal.z : -dot(normal, a);
-    float reach = dot(abs(normal.xy), frame.half_light);
+    float light = is_sun() ? -normal.z : -dot(normal, a);
+    float reach = dot(abs(normal.xy), half_light);
     bool above = height >= spread && light >= reach;
     bool below = height <= -spread && light <= -reach;
     return !(above || below);
@@ -64,6 +64,10 @@ void main()
     }
     uvec2 entry = listed[nth];
     Shaft shaft = shafts[entry.x];
+    int tile = int(entry.x / SHAFTS_A_TILE);
+    int row = tiles_in(frame.extent).x;
+    ivec2 corner = ivec2(tile % row, tile / row) * TILE_SIDE;
+    face_light(shaft, corner);
     Planes planes = planes_of(shaft, root_low.xyz, root_step.xyz);
     // First the leaves: a turn of a walk costs all that it may do, so that the triangles come after it. Most shafts have few,
     // which are known.
@@ -98,7 +102,7 @@ void main()
         vec3 la = in_light_space(a.xyz);
         vec3 lb = in_light_space(b.xyz);
         vec3 lc = in_light_space(c.xyz);
-        bool crosses = frame.sun == 0u && min(la.z, min(lb.z, lc.z)) < 0.0;
+        bool crosses = !is_sun() && min(la.z, min(lb.z, lc.z)) < light_end();
         if (a.w > 0.0 && may_block(shaft, la, lb, lc)) {
             lists[entry.y + (crosses ? room - 1u - crossing : leaves + plain)] = triangle;
             plain += crosses ? 0u : 1u;
@@ -107,9 +111,6 @@ void main()
     }
     found[nth] = uvec4(entry.y + leaves, plain, entry.y + room - crossing, crossing);
     // Nothing is between the light and the receivers of an empty shaft.
-    int tile = int(entry.x / SHAFTS_A_TILE);
-    int row = tiles_in(frame.extent).x;
-    ivec2 corner = ivec2(tile % row, tile / row) * TILE_SIDE;
     for (int i = 0; i < (plain + crossing == 0u ? TILE_PIXELS : 0); ++i) {
         if ((shaft.pixels >> i & 1u) != 0u) {
             imageStore(visibility, corner + ivec2(i % TILE_SIDE, i / TILE_SIDE), vec4(1.0));

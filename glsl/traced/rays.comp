@@ -54,6 +54,7 @@ void main()
     if (!mine) {
         return;
     }
+    face_light(shafts[slot], ivec2(tile % row, tile / row) * TILE_SIDE);
     Receiver r = receiver_of(pixel);
     int turns = MOST_TURNS;
     int sent = 0;
@@ -61,11 +62,12 @@ void main()
     float seen = 0.0;
     while (sent < int(frame.samples) && turns > 0) {
         int number = sample_number(sent);
-        vec2 at = sample_at(number) * frame.half_light;
+        vec2 at = sample_at(number) * half_light;
         float weight = frame.weight > 0.0 ? weight_of(number) : 1.0;
-        vec3 in_light = frame.sun != 0u ? vec3(at, -1.0) : vec3(at, 0.0) - r.in_light;
-        vec3 along = in_light.x * frame.light_x.xyz + in_light.y * frame.light_y.xyz + in_light.z * frame.light_z.xyz;
-        Segment s = segment_of(r.position, along, frame.sun == 0u, root_low.xyz, root_step.xyz);
+        vec3 in_light = is_sun() ? vec3(at, -1.0) : vec3(at, 0.0) - r.in_light;
+        in_light *= is_sun() ? 1.0 : 1.0 - light_end() / r.in_light.z;
+        vec3 along = in_light.x * light_x.xyz + in_light.y * light_y.xyz + in_light.z * light_z.xyz;
+        Segment s = segment_of(r.position, along, !is_sun(), root_low.xyz, root_step.xyz);
         // A sample outside the light's shape needs no ray.
         bool hit = weight > 0.0 && blocked(s, frame.nodes, turns);
         sent += 1;

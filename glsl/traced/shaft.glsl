@@ -24,17 +24,16 @@ struct Shaft {
 Shaft empty_shaft()
 {
     float none = 3.0e38;
-    return frame.sun != 0u
-        ? Shaft(vec4(none, frame.half_light.x, none, frame.half_light.y),
-                vec4(-none, -frame.half_light.x, -none, -frame.half_light.y), vec3(none), 0u, vec3(-none))
-        : Shaft(vec4(-frame.half_light.x, none, -frame.half_light.y, none),
-                vec4(frame.half_light.x, -none, frame.half_light.y, -none), vec3(none), 0u, vec3(-none));
+    return is_sun()
+        ? Shaft(vec4(none, half_light.x, none, half_light.y),
+                vec4(-none, -half_light.x, -none, -half_light.y), vec3(none), 0u, vec3(-none))
+        : Shaft(vec4(-half_light.x, none, -half_light.y, none),
+                vec4(half_light.x, -none, half_light.y, -none), vec3(none), 0u, vec3(-none));
 }
 
 Shaft with_receiver(Shaft shaft, vec3 p, uint pixel)
 {
-    vec2 half_light = frame.half_light;
-    if (frame.sun != 0u) {
+    if (is_sun()) {
         shaft.low.xz = min(shaft.low.xz, p.xy - half_light * p.z);
         shaft.high.xz = max(shaft.high.xz, p.xy + half_light * p.z);
     } else {
@@ -45,6 +44,17 @@ Shaft with_receiver(Shaft shaft, vec3 p, uint pixel)
     shaft.most = max(shaft.most, p);
     shaft.pixels |= 1u << pixel;
     return shaft;
+}
+
+// Sets light space for the receivers of a shaft, in the tile whose first pixel is `corner`.
+void face_light(Shaft shaft, ivec2 corner)
+{
+    int first = findLSB(shaft.pixels);
+    Receiver r = Receiver(false, vec3(0.0), vec3(0.0));
+    if (frame.kind == ROUND && first >= 0) {
+        r = receiver_of(corner + ivec2(first % TILE_SIDE, first / TILE_SIDE));
+    }
+    face_light(r.position);
 }
 
 // The planes of a shaft in steps of the root's box, as `furthest` takes them.
@@ -61,11 +71,11 @@ struct Planes {
 // more than the arithmetic of it rounds.
 Plane in_steps(vec4 plane, vec3 root_low, vec3 root_step)
 {
-    vec4 world = plane.x * frame.light_x + plane.y * frame.light_y + plane.z * frame.light_z;
+    vec4 world = plane.x * light_x + plane.y * light_y + plane.z * light_z;
     world.w += plane.w;
     vec3 reach = abs(root_low) + 65535.0 * root_step;
-    float slack = ROUNDING * 4.0 * (dot(abs(world.xyz), reach) + abs(plane.x * frame.light_x.w) +
-                                    abs(plane.y * frame.light_y.w) + abs(plane.z * frame.light_z.w) + abs(plane.w));
+    float slack = ROUNDING * 4.0 * (dot(abs(world.xyz), reach) + abs(plane.x * light_x.w) +
+                                    abs(plane.y * light_y.w) + abs(plane.z * light_z.w) + abs(plane.w));
     return plane_of(vec4(world.xyz * root_step, world.w + dot(world.xyz, root_low) + slack));
 }
 
@@ -77,7 +87,7 @@ Planes planes_of(Shaft shaft, vec3 root_low, vec3 root_step)
     planes.right = in_steps(vec4(-1.0, 0.0, shaft.high.y, shaft.high.x), root_low, root_step);
     planes.top = in_steps(vec4(0.0, -1.0, shaft.high.w, shaft.high.z), root_low, root_step);
     planes.far = in_steps(vec4(0.0, 0.0, -1.0, shaft.most.z), root_low, root_step);
-    planes.near = in_steps(frame.sun != 0u ? vec4(0.0, 0.0, 0.0, 1.0) : vec4(0.0, 0.0, 1.0, 0.0), root_low, root_step);
+    planes.near = in_steps(is_sun() ? vec4(0.0, 0.0, 0.0, 1.0) : vec4(0.0, 0.0, 1.0, 0.0), root_low, root_step);
     return planes;
 }
 

@@ -35,21 +35,40 @@ uint leaves_in(Shaft shaft, uint slot)
     return found;
 }
 
+// A shaft whose light faces its own receivers.
+Shaft faced(Shaft shaft, ivec2 corner)
+{
+    face_light(shaft, corner);
+    if (frame.kind == ROUND) {
+        uint pixels = shaft.pixels;
+        shaft = empty_shaft();
+        for (int i = 0; i < TILE_PIXELS; ++i) {
+            if ((pixels >> i & 1u) != 0u) {
+                Receiver r = receiver_of(corner + ivec2(i % TILE_SIDE, i / TILE_SIDE));
+                shaft = with_receiver(shaft, r.in_light, uint(i));
+            }
+        }
+    }
+    return shaft;
+}
+
 // A tile whose receivers lie further apart than this share of their distance from the viewer may be torn.
 const float TEAR = 1.0 / 32.0;
 
 void main()
 {
     ivec2 tile = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 corner = tile * TILE_SIDE;
     ivec2 count = tiles_in(frame.extent);
     if (any(greaterThanEqual(tile, count))) {
         return;
     }
+    face_light(vec3(0.0));
     vec3 low = vec3(3.0e38);
     vec3 high = vec3(-3.0e38);
     Shaft one = empty_shaft();
     for (int i = 0; i < TILE_PIXELS; ++i) {
-        ivec2 pixel = tile * TILE_SIDE + ivec2(i % TILE_SIDE, i / TILE_SIDE);
+        ivec2 pixel = corner + ivec2(i % TILE_SIDE, i / TILE_SIDE);
         Receiver r = receiver_of(pixel);
         if (r.receives) {
             low = min(low, r.position);
@@ -70,7 +89,7 @@ void main()
     Shaft first = empty_shaft();
     Shaft second = empty_shaft();
     for (int i = 0; i < (may_be_torn ? TILE_PIXELS : 0); ++i) {
-        Receiver r = receiver_of(tile * TILE_SIDE + ivec2(i % TILE_SIDE, i / TILE_SIDE));
+        Receiver r = receiver_of(corner + ivec2(i % TILE_SIDE, i / TILE_SIDE));
         float x = r.position[axis];
         if (r.receives && x < middle) {
             first = with_receiver(first, r.in_light, uint(i));
@@ -86,9 +105,11 @@ void main()
     if (torn) {
         one = first;
     }
+    one = faced(one, corner);
     shafts[slot] = one;
-    shafts[slot + 1u] = second;
     // The count is one more than the number of leaves: 0 is no shaft.
     counts[slot] = one.pixels != 0u ? 1u + leaves_in(one, slot) : 0u;
+    second = faced(second, corner);
+    shafts[slot + 1u] = second;
     counts[slot + 1u] = torn ? 1u + leaves_in(second, slot + 1u) : 0u;
 }

@@ -1,6 +1,6 @@
 //! Fits a light's maps to the meshes that matter to it. The result stays valid while light and meshes do.
 
-use super::boxes::{Boxes, MeshBoxes};
+use super::boxes::{Boxes, MeshBoxes, has_triangles};
 use super::hull::Hull;
 use super::odd::Odd;
 use super::passes::PLACEHOLDER;
@@ -190,6 +190,10 @@ impl Fit {
             }
             _ => None,
         };
+        if frame.light.is_round() {
+            self.place_around(frame);
+            return Ok(());
+        }
         boxes.near(light, frame.reach, near);
         let gone = self.place(frame, near);
         let Placed { places, boxes: placed, .. } = &self.occluders;
@@ -228,6 +232,35 @@ impl Fit {
             _ => None,
         };
         Ok(())
+    }
+
+    /// Sorts all meshes into receivers and occluders of a light that shines to all sides, which no map is fitted to.
+    fn place_around(&mut self, frame: &Frame) {
+        let Self { occluders, receivers, light_from_world, .. } = self;
+        occluders.clear();
+        receivers.clear();
+        for (place, mesh) in frame.meshes.iter().enumerate().filter(|(_, m)| has_triangles(m)) {
+            let placed = LightBox::new(&mesh.bounds, &(*light_from_world * mesh.world_from_mesh));
+            if mesh.role.receives() {
+                receivers.push(place as u32, placed);
+            }
+            if mesh.role.blocks() {
+                occluders.push(place as u32, placed);
+            }
+        }
+        (self.centre, self.shadowed, self.behind, self.situation) = (None, None, None, None);
+        self.odd = Odd::default();
+        self.need = match (occluders.boxes.len(), receivers.boxes.len()) {
+            (0, _) => Need::No("there are no occluders".into()),
+            (_, 0) => Need::No("there are no receivers".into()),
+            (blocking, showing) => Need::Yes(
+                Why::default()
+                    .and(blocking)
+                    .and(" occluder meshes are around the light, and ")
+                    .and(showing)
+                    .and(" receiver meshes"),
+            ),
+        };
     }
 
     /// Sorts the meshes near the light into receivers and the occluders that can lie between a receiver and the light.

@@ -297,6 +297,11 @@ impl Light {
         }
     }
 
+    /// Whether the light is a sphere, a capsule or a point, which shine to all sides.
+    pub fn is_round(&self) -> bool {
+        matches!(self.form, Form::Sphere | Form::Capsule { .. } | Form::Point)
+    }
+
     /// The centre in world space; a sun's is that of its rectangle.
     pub fn center(&self) -> DVec3 {
         self.rectangle.center()

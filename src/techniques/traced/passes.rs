@@ -49,8 +49,8 @@ pub struct PixelConstants {
     pub extent: [i32; 2],
     /// 1 where the G-buffer has a mask of roles.
     pub masked: u32,
-    /// 1 for a light without a place.
-    pub sun: u32,
+    /// 0 for a light that shines to one side, 1 for a sun, 2 for one that shines to all sides.
+    pub kind: u32,
     /// How many nodes the hierarchy has.
     pub nodes: u32,
     /// The most leaves that a shaft may hold.
@@ -237,7 +237,11 @@ fn declare_constants(
         towards: space.towards.as_vec4().to_array(),
         extent: gbuffer.extent.map(|e| e as i32),
         masked: u32::from(gbuffer.mask.is_some()),
-        sun: u32::from(matches!(shape, Shape::Sun { .. })),
+        kind: match shape {
+            Shape::Sun { .. } => 1,
+            _ if space.light.is_round() => 2,
+            _ => 0,
+        },
         nodes: space.nodes,
         most: settings.leaves,
         capacity,
@@ -254,6 +258,9 @@ fn declare_constants(
 fn half_of(light: &Light) -> [f64; 2] {
     match light.shape() {
         Shape::Sun { angular_size } => [(0.5 * angular_size).tan(); 2],
+        Shape::Sphere { radius } => [radius; 2],
+        Shape::Capsule { half_length, radius } => [half_length + radius, radius],
+        Shape::Point => [0.0; 2],
         _ => light.rectangle().half_extents(),
     }
 }
