@@ -65,8 +65,8 @@ Line edge_line(vec3 moment, vec3 edge, Eye eye, vec3 about, float side)
     return line_of(n.xy, -(dot(n, about) + dot(moment, eye.beyond)), side);
 }
 
-// The light's samples that a triangle hides from a receiver.
-uvec2 hidden_by(Triangle t, Eye eye, vec3 about)
+// The light's samples that a triangle hides from a receiver, of one mask, whose first word is the light's `first`.
+Mask hidden_by(Triangle t, Eye eye, vec3 about, float first)
 {
     float volume = t.offset - dot(t.normal, eye.q);
     float side = volume < 0.0 ? -1.0 : 1.0;
@@ -77,28 +77,30 @@ uvec2 hidden_by(Triangle t, Eye eye, vec3 about)
     // of it open, it has no samples.
     bool open = a.least == b.least && b.least == c.least && !(a.along || b.along || c.along);
     bool none = abs(volume) <= t.sharp || t.nearest > eye.q.z || (open && t.furthest < eye.q.z);
-    uvec2 mask = samples_between(bounds_of(a, b, c));
-    return none ? uvec2(0u) : mask;
+    return samples_between(bounds_of(a, b, c, none), first);
 }
 
 // The samples behind a triangle's own plane, as seen from a receiver on one side of it, where it crosses a lamp's plane.
-uvec2 behind_plane(Triangle t, Eye eye, vec3 about)
+Mask behind_plane(Triangle t, Eye eye, vec3 about, float first)
 {
     float side = t.offset - dot(t.normal, eye.q) < 0.0 ? -1.0 : 1.0;
     Line own = line_of(t.normal.xy, t.normal.z * light_end() - (t.offset + dot(t.normal, about)), side);
-    return samples_between(bounds_of(own, own, own));
+    return samples_between(bounds_of(own, own, own, false), first);
 }
 
-// The share of the light that its samples show.
-float visible_share(uvec2 hidden)
+// The sum of the weights of the samples that a mask of words from `first` on does not hide.
+float seen_of(Mask hidden, int first)
 {
     float seen = 0.0;
-    for (int i = 0; i < (frame.weight > 0.0 ? SIDE * SIDE : 0); ++i) {
-        uint bit = (i < 32 ? hidden.x : hidden.y) >> (i & 31) & 1u;
-        seen += bit == 0u ? weight_of(i) : 0.0;
+    int count = 0;
+    for (int i = 0; i < MASK_WORDS; ++i) {
+        uint word = ~word_of(hidden, i);
+        count += bitCount(word);
+        for (int bit = 0; bit < (frame.weight > 0.0 ? 32 : 0); ++bit) {
+            seen += (word >> bit & 1u) != 0u ? weight_of((first + i) * 32 + bit, SIDE) : 0.0;
+        }
     }
-    float count = float(SIDE * SIDE - bitCount(hidden.x) - bitCount(hidden.y));
-    return frame.weight > 0.0 ? seen / frame.weight : count / float(SIDE * SIDE);
+    return frame.weight > 0.0 ? seen : float(count);
 }
 
 void main()
@@ -127,9 +129,6 @@ void main()
     Receiver r1 = receiver_of(pixel1);
     bool mine0 = (pixels >> lane & 1u) != 0u;
     bool mine1 = (pixels >> lane + 8 & 1u) != 0u;
-    const uvec2 ALL = uvec2(0xffffffffu);
-    uvec2 hidden0 = mine0 ? uvec2(0u) : ALL;
-    uvec2 hidden1 = mine1 ? uvec2(0u) : ALL;
     vec3 middle = 0.5 * (shafts[entry.x].least + shafts[entry.x].most);
     vec3 q0 = r0.in_light - middle;
     vec3 q1 = r1.in_light - middle;
@@ -137,20 +136,30 @@ void main()
     Eye eye0 = Eye(q0, sun ? vec3(0.0) : q0);
     Eye eye1 = Eye(q1, sun ? vec3(0.0) : q1);
     vec3 about = sun ? vec3(0.0, 0.0, 1.0) : middle;
-    for (uint i = 0u; i < list.y && (hidden0 & hidden1) != ALL; ++i) {
-        Triangle t = triangle_of(lists[list.x + i], middle);
-        hidden0 |= hidden_by(t, eye0, about);
-        hidden1 |= hidden_by(t, eye1, about);
+    vec2 seen = vec2(0.0);
+    for (int m = 0; m < MASKS; ++m) {
+        float word = float(m * MASK_WORDS);
+        Mask hidden0 = whole_mask(mine0 ? 0u : 0xffffffffu);
+        Mask hidden1 = whole_mask(mine1 ? 0u : 0xffffffffu);
+        for (uint i = 0u; i < list.y && !(is_full(hidden0) && is_full(hidden1)); ++i) {
+            Triangle t = triangle_of(lists[list.x + i], middle);
+            hidden0 = with_both(hidden0, hidden_by(t, eye0, about, word), false);
+            hidden1 = with_both(hidden1, hidden_by(t, eye1, about, word), false);
+        }
+        for (uint i = 0u; i < list.w && !(is_full(hidden0) && is_full(hidden1)); ++i) {
+            Triangle t = triangle_of(lists[list.z + i], middle);
+            Mask by0 = with_both(hidden_by(t, eye0, about, word), behind_plane(t, eye0, about, word), true);
+            Mask by1 = with_both(hidden_by(t, eye1, about, word), behind_plane(t, eye1, about, word), true);
+            hidden0 = with_both(hidden0, by0, false);
+            hidden1 = with_both(hidden1, by1, false);
+        }
+        seen += vec2(seen_of(hidden0, m * MASK_WORDS), seen_of(hidden1, m * MASK_WORDS));
     }
-    for (uint i = 0u; i < list.w && (hidden0 & hidden1) != ALL; ++i) {
-        Triangle t = triangle_of(lists[list.z + i], middle);
-        hidden0 |= hidden_by(t, eye0, about) & behind_plane(t, eye0, about);
-        hidden1 |= hidden_by(t, eye1, about) & behind_plane(t, eye1, about);
-    }
+    seen /= frame.weight > 0.0 ? frame.weight : float(SIDE * SIDE);
     if (mine0) {
-        imageStore(visibility, pixel0, vec4(visible_share(hidden0)));
+        imageStore(visibility, pixel0, vec4(seen.x));
     }
     if (mine1) {
-        imageStore(visibility, pixel1, vec4(visible_share(hidden1)));
+        imageStore(visibility, pixel1, vec4(seen.y));
     }
 }

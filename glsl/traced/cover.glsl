@@ -11,10 +11,13 @@
 #ifndef TRACED_COVER_GLSL
 #define TRACED_COVER_GLSL
 
-// Samples along a side of the light.
-const int SIDE = 8;
-const int ROWS_A_WORD = 32 / SIDE;
-const int WORDS = SIDE * SIDE / 32;
+// Samples along a side of the light: 8, 16 or 32.
+#ifndef SIDE
+#define SIDE 8
+#endif
+// How many j a mask holds, and how many masks the light takes.
+#define MASK_ROWS (SIDE == 8 ? 8 : 256 / SIDE)
+#define MASKS (SIDE / MASK_ROWS)
 
 const float FAR = 1.0e9;
 
@@ -48,12 +51,12 @@ struct Bounds {
     vec3 most_step;
 };
 
-Bounds bounds_of(Line a, Line b, Line c)
+Bounds bounds_of(Line a, Line b, Line c, bool none)
 {
     bvec3 least = bvec3(a.least, b.least, c.least);
     vec3 at = vec3(a.at.x, b.at.x, c.at.x) + 1.0;
     vec3 step = vec3(a.at.y, b.at.y, c.at.y);
-    return Bounds(mix(vec3(-FAR), at, least), mix(vec3(0.0), step, least),
+    return Bounds(none ? vec3(FAR) : mix(vec3(-FAR), at, least), mix(vec3(0.0), step, least),
                   mix(at, vec3(FAR), least), mix(step, vec3(0.0), least));
 }
 
@@ -65,14 +68,100 @@ uint samples_of(Bounds b, float j)
     ivec3 most = ivec3(b.most + b.most_step * j);
     int from = min(max(max(least.x, least.y), max(least.z, 0)), SIDE);
     int to = max(min(min(most.x, most.y), min(most.z, SIDE)), 0);
+#if SIDE == 32
+    uint before = to == 32 ? 0xffffffffu : (1u << to) - 1u;
+    return from == 32 ? 0u : before & 0xffffffffu << from;
+#else
     return (1u << to) - 1u & 0xffffffffu << from;
+#endif
 }
 
-// The hidden samples of all j, four of eight a word.
-uvec2 samples_between(Bounds b)
+// A mask of samples: those of four j in a word, of two, or of one.
+#if SIDE == 8
+
+struct Mask {
+    uvec2 words;
+};
+
+Mask whole_mask(uint bits)
 {
-    return uvec2(samples_of(b, 0.0) | samples_of(b, 1.0) << 8 | samples_of(b, 2.0) << 16 | samples_of(b, 3.0) << 24,
-                 samples_of(b, 4.0) | samples_of(b, 5.0) << 8 | samples_of(b, 6.0) << 16 | samples_of(b, 7.0) << 24);
+    return Mask(uvec2(bits));
 }
+
+bool is_full(Mask m)
+{
+    return (m.words.x & m.words.y) == 0xffffffffu;
+}
+
+uint word_of(Mask m, int nth)
+{
+    return nth == 0 ? m.words.x : m.words.y;
+}
+
+Mask samples_between(Bounds b, float j)
+{
+    return Mask(uvec2(
+        samples_of(b, 0.0) | samples_of(b, 1.0) << 8 | samples_of(b, 2.0) << 16 | samples_of(b, 3.0) << 24,
+        samples_of(b, 4.0) | samples_of(b, 5.0) << 8 | samples_of(b, 6.0) << 16 | samples_of(b, 7.0) << 24));
+}
+
+Mask with_both(Mask a, Mask b, bool and)
+{
+    return Mask(and ? a.words & b.words : a.words | b.words);
+}
+
+#define MASK_WORDS 2
+
+#else
+
+struct Mask {
+    uvec4 low;
+    uvec4 high;
+};
+
+Mask whole_mask(uint bits)
+{
+    return Mask(uvec4(bits), uvec4(bits));
+}
+
+bool is_full(Mask m)
+{
+    uvec4 both = m.low & m.high;
+    return (both.x & both.y & both.z & both.w) == 0xffffffffu;
+}
+
+uint word_of(Mask m, int nth)
+{
+    uvec4 half_of = nth < 4 ? m.low : m.high;
+    uvec2 pair = (nth & 2) == 0 ? half_of.xy : half_of.zw;
+    return (nth & 1) == 0 ? pair.x : pair.y;
+}
+
+uint word_between(Bounds b, float j)
+{
+#if SIDE == 16
+    return samples_of(b, 2.0 * j) | samples_of(b, 2.0 * j + 1.0) << 16;
+#else
+    return samples_of(b, j);
+#endif
+}
+
+// The samples of the j from `first` on, counted in words.
+Mask samples_between(Bounds b, float first)
+{
+    return Mask(uvec4(word_between(b, first), word_between(b, first + 1.0),
+                      word_between(b, first + 2.0), word_between(b, first + 3.0)),
+                uvec4(word_between(b, first + 4.0), word_between(b, first + 5.0),
+                      word_between(b, first + 6.0), word_between(b, first + 7.0)));
+}
+
+Mask with_both(Mask a, Mask b, bool and)
+{
+    return and ? Mask(a.low & b.low, a.high & b.high) : Mask(a.low | b.low, a.high | b.high);
+}
+
+#define MASK_WORDS 8
+
+#endif
 
 #endif

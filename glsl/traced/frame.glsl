@@ -33,7 +33,8 @@ struct Frame {
     uint capacity;      // how many leaves all lists hold together
     uint samples;       // rays that a pixel of a dense shaft sends
     float weight;       // the sum of the samples' weights; 0 where all weigh the same
-    uint weights[32];   // the samples' weights, 16 bits each, row by row
+    uint side;          // samples along a side of the light: 8, 16 or 32
+    uint weights[128];  // the weights of 8x8 samples, or of 16x16 with one for four of 32x32: 16 bits each, row by row
 };
 
 layout(set = 0, binding = 0) uniform texture2D gbuffer_depth;
@@ -50,10 +51,12 @@ const uint FIRST_LEAVES = 32u;
 // Shafts a tile: its receivers may lie in two groups, one behind the other.
 const uint SHAFTS_A_TILE = 2u;
 
-// The weight of a sample of the light; see `weights`.
-float weight_of(int sample_number)
+// The weight of the nth sample of a light with `side` of them along a side; see `weights`.
+float weight_of(int nth, int side)
 {
-    return float(frame.weights[sample_number >> 1] >> 16 * (sample_number & 1) & 0xffffu);
+    ivec2 at = ivec2(nth % side, nth / side);
+    int place = side == 32 ? (at.y >> 1) * 16 + (at.x >> 1) : nth;
+    return float(frame.weights[place >> 1] >> 16 * (place & 1) & 0xffffu);
 }
 
 ivec2 tiles_in(ivec2 extent)

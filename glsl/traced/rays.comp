@@ -24,19 +24,25 @@ layout(set = 0, binding = 9, r32f) writeonly uniform image2D visibility;
 // The turns of all loops of an invocation: some drivers end loops without a word after 65,535 of them.
 const int MOST_TURNS = 60000;
 
-// The sample that the nth ray goes to: any first few are spread over the light.
-int sample_number(int n)
+// The bits of a number below `side` in reverse.
+int reversed(int n, int side)
 {
-    const int order[8] = int[8](0, 4, 2, 6, 1, 5, 3, 7);
-    int row = order[n & 7];
-    return row * 8 + (order[n >> 3 & 7] + order[row] & 7);
+    return int(bitfieldReverse(uint(n)) >> 32 - findMSB(side));
+}
+
+// The sample that the nth ray goes to: any first few are spread over the light.
+int sample_number(int n, int side)
+{
+    int row = reversed(n % side, side);
+    return row * side + (reversed(n / side, side) + reversed(row, side) & side - 1);
 }
 
 // Where a sample lies, each coordinate from -1 to 1: on the turned grid of traced/cover.glsl.
-vec2 sample_at(int number)
+vec2 sample_at(int number, int side)
 {
-    vec2 cell = vec2(number & 7, number >> 3);
-    return (cell + vec2(cell.y + 0.5, 7.5 - cell.x) / 8.0) / 4.0 - 1.0;
+    vec2 cell = vec2(number % side, number / side);
+    float n = float(side);
+    return (cell + vec2(cell.y + 0.5, n - 0.5 - cell.x) / n) * 2.0 / n - 1.0;
 }
 
 void main()
@@ -61,9 +67,9 @@ void main()
     float sum = 0.0;
     float seen = 0.0;
     while (sent < int(frame.samples) && turns > 0) {
-        int number = sample_number(sent);
-        vec2 at = sample_at(number) * half_light;
-        float weight = frame.weight > 0.0 ? weight_of(number) : 1.0;
+        int number = sample_number(sent, int(frame.side));
+        vec2 at = sample_at(number, int(frame.side)) * half_light;
+        float weight = frame.weight > 0.0 ? weight_of(number, int(frame.side)) : 1.0;
         vec3 in_light = is_sun() ? vec3(at, -1.0) : vec3(at, 0.0) - r.in_light;
         in_light *= is_sun() ? 1.0 : 1.0 - light_end() / r.in_light.z;
         vec3 along = in_light.x * light_x.xyz + in_light.y * light_y.xyz + in_light.z * light_z.xyz;

@@ -1,5 +1,6 @@
 //! The passes over tiles and pixels, and their constants.
 
+use super::settings::Samples;
 use super::{Settings, weights};
 use crate::graph::{Access, Graph, Pass, Push, ResourceId, Use, Uses, Work};
 use crate::shaders::module;
@@ -61,13 +62,15 @@ pub struct PixelConstants {
     pub samples: u32,
     /// The sum of the samples' weights; 0 where all weigh the same.
     pub weight: f32,
+    /// Samples along a side of the light.
+    pub side: u32,
 }
 
-/// The third part of the frame's constants (`traced/frame.glsl`).
+/// A part of the samples' weights (`traced/frame.glsl`).
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub struct SampleConstants {
-    /// The samples' weights, row by row.
+pub struct WeightConstants {
+    /// A quarter of the samples' weights, row by row.
     pub weights: [[u16; 32]; 2],
 }
 
@@ -100,7 +103,7 @@ pub(super) fn declare(
     let capacity = LISTED_A_PIXEL * extent[0] * extent[1];
     let push = Push::new(&ListPush { slots, blocks, most: settings.leaves, capacity });
 
-    let constants = graph.buffer("traced.constants", 336);
+    let constants = graph.buffer("traced.constants", 720);
     declare_constants(graph, settings, constants, capacity, inputs);
     let of_slots = |bytes: u64| bytes * u64::from(slots);
     let shafts = graph.buffer("traced.shafts", of_slots(64));
@@ -190,7 +193,11 @@ pub(super) fn declare(
         Use::bound(9, visibility, Access::ImageUpdate),
         Use::fixed(arguments, Access::Indirect),
     ]);
-    let shader = module!("traced/cover.comp");
+    let shader = match settings.samples {
+        Samples::Few => module!("traced/cover.comp"),
+        Samples::Many => module!("traced/cover_many.comp"),
+        Samples::Most => module!("traced/cover_most.comp"),
+    };
     let work = Work::Indirect { shader, arguments, offset: 16 };
     graph.push(Pass { name: "traced.cover", uses, push: Push::NONE, work, need: *need });
     let mut uses = of_frame();
@@ -221,8 +228,11 @@ fn declare_constants(
     let (_, space) = inputs.tree;
     let shape = space.light.shape();
     let half_light = half_of(&space.light);
-    let weights = weights::weights(shape, half_light);
+    let side = settings.samples.side();
+    let weights = weights::weights(shape, half_light, weights::MOST.min(side as usize));
     let weight: u32 = weights.iter().flatten().map(|&w| u32::from(w)).sum();
+    // Four samples share a weight where there are more samples than weights.
+    let shared = (side as usize / weights::MOST).max(1).pow(2);
     let row = |i: usize| space.light_from_here.row(i).as_vec4().to_array();
     let first = LightConstants {
         eye_from_ndc: space.eye_from_ndc.as_mat4().to_cols_array(),
@@ -245,13 +255,16 @@ fn declare_constants(
         nodes: space.nodes,
         most: settings.leaves,
         capacity,
-        samples: settings.rays,
-        weight: weight as f32,
+        samples: settings.rays.min(side * side),
+        weight: weight as f32 * shared as f32,
+        side,
     };
     graph.push(Pass::constants("traced.pixels", constants, 128, &second, need));
-    let weights = weights.unwrap_or([0; 64]);
-    let third = SampleConstants { weights: bytemuck::cast(weights) };
-    graph.push(Pass::constants("traced.weights", constants, 196, &third, need));
+    for (nth, part) in weights.unwrap_or([0; 256]).as_chunks::<64>().0.iter().enumerate() {
+        let part = WeightConstants { weights: bytemuck::cast(*part) };
+        let offset = 200 + 128 * nth as u64;
+        graph.push(Pass::constants("traced.weights", constants, offset, &part, need));
+    }
 }
 
 /// Half the width and height of the rectangle of the light's samples, m; of a sun the tangents of half its angular size.

@@ -6,26 +6,29 @@
 use crate::Shape;
 use std::f64::consts::TAU;
 
-/// The cells along a side of the light.
-pub(super) const SIDE: usize = 8;
+/// The most cells along a side of the light that have weights of their own.
+pub(super) const MOST: usize = 16;
 
 /// The corners of the polygon that stands for a circle: its area is 99.98 % of the circle's.
 const CIRCLE: usize = 180;
 
 /// The weights of the samples, row by row: 65,535 for a cell within the shape, 0 for one outside.
-pub type Weights = [u16; SIDE * SIDE];
+pub type Weights = [u16; MOST * MOST];
 
-/// The weights of a shape's samples; `None` where all are the same.
-pub fn weights(shape: Shape, half: [f64; 2]) -> Option<Weights> {
+/// The weights of a shape's `side` × `side` samples, at most [`MOST`] a side; `None` where all are the same.
+pub fn weights(shape: Shape, half: [f64; 2], side: usize) -> Option<Weights> {
     let outline: Vec<[f64; 2]> = match shape {
         Shape::Polygon(corners) => corners.to_vec(),
         Shape::Disc { .. } | Shape::Sphere { .. } | Shape::Sun { .. } => stadium(0.0, half[1]),
         Shape::Capsule { half_length, radius } => stadium(half_length, radius),
         _ => return None,
     };
-    let step = half.map(|h| 2.0 * h / SIDE as f64);
+    let step = half.map(|h| 2.0 * h / side as f64);
     let cell = |nth: usize| {
-        let at = [nth % SIDE, nth / SIDE];
+        let at = [nth % side, nth / side];
+        if at[1] >= side {
+            return 0;
+        }
         let low = [0, 1].map(|i| -half[i] + step[i] * at[i] as f64);
         let share = covered(&outline, low, step) / (step[0] * step[1]);
         (share.clamp(0.0, 1.0) * f64::from(u16::MAX)).round() as u16
@@ -76,13 +79,17 @@ mod tests {
     use std::f64::consts::PI;
 
     fn area(shape: Shape, half: [f64; 2]) -> f64 {
-        let sum: f64 = weights(shape, half).unwrap().iter().map(|&w| f64::from(w)).sum();
-        sum / f64::from(u16::MAX) / (SIDE * SIDE) as f64 * 4.0 * half[0] * half[1]
+        let of = |side: usize| {
+            let sum: f64 = weights(shape, half, side).unwrap().iter().map(|&w| f64::from(w)).sum();
+            sum / f64::from(u16::MAX) / (side * side) as f64 * 4.0 * half[0] * half[1]
+        };
+        assert!((of(8) / of(16) - 1.0).abs() < 1e-3);
+        of(8)
     }
 
     #[test]
     fn weights_add_up_to_the_shapes_area() {
-        assert_eq!(weights(Shape::Rectangle, [1.0, 2.0]), None);
+        assert_eq!(weights(Shape::Rectangle, [1.0, 2.0], 8), None);
         let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-3;
         assert!(near(area(Shape::Disc { radius: 2.0 }, [2.0, 2.0]), 4.0 * PI));
         let capsule = Shape::Capsule { half_length: 1.0, radius: 0.5 };
@@ -91,7 +98,7 @@ mod tests {
         let l = [[-1.0, -1.0], [1.0, -1.0], [1.0, -0.4], [-0.3, -0.4], [-0.3, 1.0], [-1.0, 1.0]];
         let polygon = Shape::Polygon(&l);
         assert!(near(area(polygon, [1.0, 1.0]), 2.0 * 0.6 + 0.7 * 1.4));
-        let weights = weights(polygon, [1.0, 1.0]).unwrap();
-        assert_eq!((weights[0], weights[SIDE * SIDE - 1]), (u16::MAX, 0));
+        let weights = weights(polygon, [1.0, 1.0], 8).unwrap();
+        assert_eq!((weights[0], weights[63]), (u16::MAX, 0));
     }
 }
