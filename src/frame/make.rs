@@ -160,9 +160,12 @@ pub(crate) fn plan_into(
     (plan.light_index, plan.technique_index) = (frame.light_index, frame.technique_index);
 
     // Meshes that no pass reads in this frame are no accesses of it.
-    if !plan.plan.steps.iter().any(|s| {
-        matches!(plan.plan.graph.passes()[s.pass].work, Work::EachMesh { .. })
-    }) {
+    if !plan
+        .plan
+        .steps
+        .iter()
+        .any(|s| matches!(plan.plan.graph.passes()[s.pass].work, Work::EachMesh { .. }))
+    {
         plan.triangles.meshes.clear();
     }
     let maps = room.maps();

@@ -17,9 +17,9 @@ mod passes;
 mod plan;
 mod plans;
 mod reuse;
-mod triangles;
 #[cfg(test)]
 mod tests;
+mod triangles;
 
 pub use accesses::{BufferAccess, HostAccess, ImageBarrier, NodeUse};
 pub(crate) use boxes::MeshBoxes;
@@ -36,8 +36,8 @@ pub use passes::{Limits, full_graph};
 pub use plan::FramePlan;
 pub(crate) use plan::Stamp;
 pub use plans::FramePlans;
-pub use triangles::{Capacity, Space};
 pub(crate) use triangles::TriangleList;
+pub use triangles::{Capacity, Space};
 
 use crate::Error;
 use crate::effects::Omit;

@@ -155,9 +155,9 @@ impl TriangleList {
     pub fn space(&self, frame: &Frame, description: &Description) -> Space {
         let camera = Camera::of(&frame.world_from_ndc);
         let near = if frame.far_depth() == 0.0 { 1.0 } else { 0.0 };
-        let eye = camera.eye.unwrap_or_else(|| {
-            frame.world_from_ndc.project_point3(DVec3::new(0.0, 0.0, near))
-        });
+        let eye = camera
+            .eye
+            .unwrap_or_else(|| frame.world_from_ndc.project_point3(DVec3::new(0.0, 0.0, near)));
         let towards = match camera.eye {
             Some(_) => DVec4::W,
             // Depth grows towards the viewer where it is reversed.

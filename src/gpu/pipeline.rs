@@ -71,13 +71,12 @@ impl PassObjects {
                 pass.push.bytes().len(),
             ),
         };
-        let info =
-            LayoutsInfo {
-                bindings: &bindings,
-                push_stages: stages,
-                push_bytes: push_bytes as u32,
-                meshes: matches!(pass.work, Work::EachMesh { .. }),
-            };
+        let info = LayoutsInfo {
+            bindings: &bindings,
+            push_stages: stages,
+            push_bytes: push_bytes as u32,
+            meshes: matches!(pass.work, Work::EachMesh { .. }),
+        };
         let layouts = match &host.layouts {
             Some(shared) => shared.find(&host.device, &info, pass.name)?,
             None => PassLayouts::new(&mut maker.owner, &host.device, &info, pass.name)?,

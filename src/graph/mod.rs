@@ -28,9 +28,7 @@ pub use pass::{
 pub(crate) use plan::Compiler;
 pub use plan::{Barriers, Border, BoundaryUse, Plan, ResourceBarrier, Skipped, Step, compile};
 pub(crate) use resource::aspects;
-pub use resource::{
-    Owner, Resource, ResourceId, Shape, Until, is_color_format, is_depth_format,
-};
+pub use resource::{Owner, Resource, ResourceId, Shape, Until, is_color_format, is_depth_format};
 pub use show::Run;
 pub use why::{Part, Why};
 

@@ -3,8 +3,8 @@
 //! Each room implements [`Room`] on its own settings; frames, effects, `auto` and the device's checks query that value
 //! and never match on a technique's name.
 
-use crate::graph::{Graph, Need, ResourceId};
 use crate::frame::Space;
+use crate::graph::{Graph, Need, ResourceId};
 use crate::knob::Tune;
 use crate::lent::MeshBounds;
 use crate::light::{Light, RectangleLight, Shape};

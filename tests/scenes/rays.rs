@@ -45,7 +45,9 @@ fn fractions_are_as_near_the_truth_as_those_of_stratified_random_rays() {
         let exact = of_truth(Sampling::new(2048, 1).unwrap());
         let summary = |image: &[f32]| ErrorSummary::between(&exact, image, None).unwrap();
         for n in [1, 4, 16, 64_u32] {
-            let trace = |light: &RectangleLight| rays.visible_fractions(light, &receivers, WIDTH, n, 0.0).unwrap();
+            let trace = |light: &RectangleLight| {
+                rays.visible_fractions(light, &receivers, WIDTH, n, 0.0).unwrap()
+            };
             let found = summary(&trace(&light));
             let random = summary(&of_truth(Sampling::one_grid(n.isqrt(), 2).unwrap()));
             assert!(random.pixels > 500, "{name}: {} pixels are in shadow", random.pixels);
