@@ -6,7 +6,7 @@
 // The box of every leaf: the pyramid's lowest level.
 
 layout(set = 0, binding = 0, rgba32f) readonly uniform image2D triangles;
-layout(set = 0, binding = 1, std430) writeonly buffer Boxes { float boxes[]; };
+layout(set = 0, binding = 1, std430) buffer Boxes { float boxes[]; };
 
 void main()
 {

@@ -1,4 +1,4 @@
-// Entry of the pass hierarchy.keys (src/stages/hierarchy/mod.rs).
+// Entry of the pass hierarchy.keys (src/stages/hierarchy/sort.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "hierarchy/mesh.glsl"
@@ -6,7 +6,7 @@
 // The key by which a triangle is sorted: the mesh's bits, and below them a Morton code of the triangle's middle in the
 // mesh's own box. So the triangles of a mesh stay together however the mesh moves.
 
-layout(set = 0, binding = 0, std430) writeonly buffer Keys { uvec2 keys[]; };
+layout(set = 0, binding = 0, std430) buffer Keys { uvec2 keys[]; };
 
 // The low 10 bits of a number, two zeros behind each.
 uint spread(uint x)

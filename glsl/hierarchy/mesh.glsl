@@ -11,7 +11,7 @@
 layout(local_size_x = 64) in;
 
 layout(push_constant) uniform Push {
-    vec4 row_x;      // mesh space to the hierarchy's space, by row
+    vec4 row_x;      // mesh space to the hierarchy's space, a plane each
     vec4 row_y;
     vec4 row_z;
     vec4 low;        // the least corner of the mesh's box, in mesh space

@@ -9,7 +9,6 @@ layout(set = 0, binding = 0, std430) readonly buffer Boxes { float boxes[]; };
 layout(set = 0, binding = 1, std430) readonly buffer Inner { uvec4 inner[]; };
 layout(set = 0, binding = 2, std430) readonly buffer Order { uint order[]; };
 layout(set = 0, binding = 3, rgba32ui) writeonly uniform uimage2D nodes;
-layout(set = 0, binding = 4, std430) writeonly buffer Header { vec4 root_low; vec4 root_step; };
 
 // Boxes are this share of a step wider than they are, which is more than their arithmetic rounds.
 const float MARGIN = 1.0 / 16.0;
@@ -71,8 +70,8 @@ void main()
     float largest = max(max(extent.x, extent.y), max(extent.z, 1.0e-30));
     vec3 steps = max(extent, vec3(1.0e-6 * largest)) / (STEPS - 2.0);
     if (node == 0u) {
-        root_low = vec4(root.low - steps, 0.0);
-        root_step = vec4(steps, 0.0);
+        imageStore(nodes, texel(0u), uvec4(floatBitsToUint(root.low - steps), 0u));
+        imageStore(nodes, texel(1u), uvec4(floatBitsToUint(steps), 0u));
     }
     uvec3 a = uvec3(STEPS);
     uvec3 b = uvec3(0u);
@@ -82,5 +81,5 @@ void main()
     }
     uint place = order[node];
     uint link = is_leaf ? 1u << 31u | leaf : place + 2u * (of.y - of.x + 1u) - 1u;
-    imageStore(nodes, texel(place), uvec4(a | b << 16u, link));
+    imageStore(nodes, texel(HEAD + place), uvec4(a | b << 16u, link));
 }

@@ -8,7 +8,7 @@
 
 layout(set = 0, binding = 0, std430) readonly buffer Inner { uvec4 inner[]; };
 layout(set = 0, binding = 1, std430) readonly buffer Parents { uint parents[]; };
-layout(set = 0, binding = 2, std430) writeonly buffer Order { uint order[]; };
+layout(set = 0, binding = 2, std430) buffer Order { uint order[]; };
 
 void main()
 {

@@ -8,7 +8,7 @@
 layout(set = 0, binding = 0, std430) readonly buffer From { uvec2 from[]; };
 layout(set = 0, binding = 1, std430) buffer Counts { uint counts[]; };
 layout(set = 0, binding = 2, std430) readonly buffer Totals { uint totals[]; };
-layout(set = 0, binding = 3, std430) writeonly buffer To { uvec2 to[]; };
+layout(set = 0, binding = 3, std430) buffer To { uvec2 to[]; };
 
 void main()
 {

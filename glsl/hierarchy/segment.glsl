@@ -1,7 +1,7 @@
 // Entered from traced/rays.comp.
 //
 // Whether anything blocks a segment: the one function that a device with ray queries would answer by itself. The including
-// shader declares `nodes`, `triangles` and the header's `root_low` and `root_step`.
+// shader declares `nodes` and `triangles`.
 
 #ifndef HIERARCHY_SEGMENT_GLSL
 #define HIERARCHY_SEGMENT_GLSL
@@ -21,12 +21,13 @@ struct Segment {
     vec3 size;     // the size of the positions, for their rounding
 };
 
-Segment segment_of(vec3 from, vec3 along, bool ends, vec3 low, vec3 step)
+Segment segment_of(vec3 from, vec3 along, bool ends)
 {
+    vec3 step = root_step();
     vec3 d = along / step;
     // Along a plane of boxes it leaves none of them through that plane.
     d = mix(d, vec3(1.0e-30), lessThan(abs(d), vec3(1.0e-30)));
-    return Segment(from, along, ends ? 1.0 : 0.0, (from - low) / step, 1.0 / d, abs(from));
+    return Segment(from, along, ends ? 1.0 : 0.0, (from - root_low()) / step, 1.0 / d, abs(from));
 }
 
 bool meets(Segment s, Node node)
@@ -69,7 +70,7 @@ bool blocked(Segment s, uint node_count, inout int turns)
         uvec4 leaves = uvec4(0u);
         int count = 0;
         while (at < node_count && count < 4 && turns > 0) {
-            Node node = unpacked_node(imageLoad(nodes, texel(at)));
+            Node node = node_at(at);
             bool inside = meets(s, node);
             bool found = inside && node.leaf;
             leaves = found ? uvec4(node.link, leaves.xyz) : leaves;

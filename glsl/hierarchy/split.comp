@@ -8,13 +8,13 @@
 // one leaf are.
 
 layout(set = 0, binding = 0, std430) readonly buffer Keys { uvec2 keys[]; };
-layout(set = 0, binding = 1, std430) writeonly buffer Places { uint places[]; };
-layout(set = 0, binding = 2, std430) writeonly buffer Inner { uvec4 inner[]; };
-layout(set = 0, binding = 3, std430) writeonly buffer Parents { uint parents[]; };
+layout(set = 0, binding = 1, std430) buffer Places { uint places[]; };
+layout(set = 0, binding = 2, std430) buffer Inner { uvec4 inner[]; };
+layout(set = 0, binding = 3, std430) buffer Parents { uint parents[]; };
 
 int leading_zeros(uint x)
 {
-    return 31 - findMSB(x);
+    return (x & 1u << 31u) != 0u ? 0 : 31 - findMSB(int(x));
 }
 
 // How many leading bits the keys of two leaves share; equal keys go on with the leaves' numbers, so that no two are

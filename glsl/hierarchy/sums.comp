@@ -6,7 +6,7 @@
 // Replaces each count by the sum of those before it in its block of DIGITS counts, and writes the block's total.
 
 layout(set = 0, binding = 0, std430) buffer Counts { uint counts[]; };
-layout(set = 0, binding = 1, std430) writeonly buffer Totals { uint totals[]; };
+layout(set = 0, binding = 1, std430) buffer Totals { uint totals[]; };
 
 void main()
 {

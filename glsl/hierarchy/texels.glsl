@@ -1,7 +1,8 @@
 // Entered from hierarchy/triangles.comp, hierarchy/boxes.comp, hierarchy/nodes.comp and hierarchy/tree.glsl.
 //
-// Where the hierarchy's lists lie in images. A node is one texel, a triangle three: its corners, with w = 1, or four
-// zeros for a place without a triangle.
+// Where the hierarchy's lists lie in images. A node is one texel, behind two that hold the least corner of the root's box
+// and the step of all boxes, as the bits of floats. A triangle is three texels: its corners, with w = 1, or four zeros for
+// a place without a triangle.
 
 #ifndef HIERARCHY_TEXELS_GLSL
 #define HIERARCHY_TEXELS_GLSL
@@ -13,6 +14,9 @@ ivec2 texel(uint nth)
 {
     return ivec2(nth & (1u << TEXELS_BITS) - 1u, nth >> TEXELS_BITS);
 }
+
+// The texels before the first node.
+const uint HEAD = 2u;
 
 // The triangles of a leaf (src/stages/hierarchy/mod.rs).
 const uint LEAF = 2u;

@@ -1,7 +1,7 @@
-// Entered from traced/tiles.comp, traced/gather.comp and traced/cover.comp.
+// Entered from traced/tiles.comp, traced/gather.comp and traced/rays.comp.
 //
 // The hierarchy as it is walked. Nodes lie in depth-first order: a walk goes to the next node where it enters a box, and
-// to the node's link where it does not. The including shader declares `nodes`, and `triangles` where it fetches those.
+// to the node's link where it does not. The including shader declares `nodes`.
 
 #ifndef HIERARCHY_TREE_GLSL
 #define HIERARCHY_TREE_GLSL
@@ -15,8 +15,20 @@ struct Node {
     uint link; // the node behind the subtree, or the leaf's number
 };
 
-Node unpacked_node(uvec4 words)
+// The least corner of the root's box, and the step of all boxes.
+vec3 root_low()
 {
+    return uintBitsToFloat(imageLoad(nodes, texel(0u)).xyz);
+}
+
+vec3 root_step()
+{
+    return uintBitsToFloat(imageLoad(nodes, texel(1u)).xyz);
+}
+
+Node node_at(uint nth)
+{
+    uvec4 words = imageLoad(nodes, texel(HEAD + nth));
     Node node;
     node.low = vec3(words.xyz & 0xffffu);
     node.high = vec3(words.xyz >> 16u);

@@ -1,9 +1,8 @@
-// Entry of the pass traced.cover (src/techniques/traced/mod.rs).
+// Entry of the pass traced.cover (src/techniques/traced/passes.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "traced/frame.glsl"
-#include "traced/shaft.glsl"
 #include "traced/lists.glsl"
 #include "traced/cover.glsl"
 
@@ -12,13 +11,11 @@
 
 layout(local_size_x = 8) in;
 
-layout(set = 0, binding = 3, std430) readonly buffer Shafts { Shaft shafts[]; };
-layout(set = 0, binding = 4, rgba32f) readonly uniform image2D triangles;
-layout(set = 0, binding = 5, std430) readonly buffer Totals { uint shaft_count; uint dense_count; };
-layout(set = 0, binding = 6, std430) readonly buffer Listed { uvec2 listed[]; };
-layout(set = 0, binding = 7, std430) readonly buffer Found { uvec4 found[]; };
-layout(set = 0, binding = 8, std430) readonly buffer Lists { uint lists[]; };
-layout(set = 0, binding = 9, r32f) writeonly uniform image2D visibility;
+layout(set = 0, binding = 3, rgba32f) readonly uniform image2D triangles;
+layout(set = 0, binding = 4, std430) readonly buffer Slots { Slot slots[]; };
+layout(set = 0, binding = 5, std430) readonly buffer Entries { uint shaft_count; uint dense_count; Entry entries[]; };
+layout(set = 0, binding = 6, std430) readonly buffer Lists { uint lists[]; };
+layout(set = 0, binding = 7, r32f) writeonly uniform image2D visibility;
 
 // A triangle in light space, relative to a point near the shaft's receivers, as all of them need it. The plane through a
 // receiver at q and an edge from a to b has the normal (a - q) x (b - q) = a x b + (b - a) x q.
@@ -95,7 +92,7 @@ float seen_of(Mask hidden, int first)
     int count = 0;
     for (int i = 0; i < MASK_WORDS; ++i) {
         uint word = ~word_of(hidden, i);
-        count += bitCount(word);
+        count += bitCount(int(word));
         for (int bit = 0; bit < (frame.weight > 0.0 ? 32 : 0); ++bit) {
             seen += (word >> bit & 1u) != 0u ? weight_of((first + i) * 32 + bit, SIDE) : 0.0;
         }
@@ -109,19 +106,13 @@ void main()
     if (nth >= shaft_count) {
         return;
     }
-    // Even places first, then odd ones: drivers that cut a dispatch in halves get halves of equal work.
-    uint evens = (shaft_count + 1u) / 2u;
-    nth = nth < evens ? 2u * nth : 2u * (nth - evens) + 1u;
-    uvec2 entry = listed[nth];
-    uvec4 list = found[nth];
-    if (list.y + list.w == 0u) {
+    Entry entry = entries[evens_first(nth, shaft_count)];
+    if (entry.plain + entry.crossing == 0u) {
         return;
     }
-    int tile = int(entry.x / SHAFTS_A_TILE);
-    int row = tiles_in(frame.extent).x;
-    ivec2 first = ivec2(tile % row, tile / row) * TILE_SIDE;
-    face_light(shafts[entry.x], first);
-    uint pixels = shafts[entry.x].pixels;
+    ivec2 first = corner_of(entry.slot);
+    uint pixels = slots[entry.slot].shaft.pixels;
+    face_light(pixels, first);
     int lane = int(gl_LocalInvocationIndex);
     ivec2 pixel0 = first + ivec2(lane % TILE_SIDE, lane / TILE_SIDE);
     ivec2 pixel1 = pixel0 + ivec2(0, 8 / TILE_SIDE);
@@ -129,7 +120,7 @@ void main()
     Receiver r1 = receiver_of(pixel1);
     bool mine0 = (pixels >> lane & 1u) != 0u;
     bool mine1 = (pixels >> lane + 8 & 1u) != 0u;
-    vec3 middle = 0.5 * (shafts[entry.x].least + shafts[entry.x].most);
+    vec3 middle = 0.5 * (slots[entry.slot].shaft.least + slots[entry.slot].shaft.most);
     vec3 q0 = r0.in_light - middle;
     vec3 q1 = r1.in_light - middle;
     bool sun = is_sun();
@@ -141,13 +132,13 @@ void main()
         float word = float(m * MASK_WORDS);
         Mask hidden0 = whole_mask(mine0 ? 0u : 0xffffffffu);
         Mask hidden1 = whole_mask(mine1 ? 0u : 0xffffffffu);
-        for (uint i = 0u; i < list.y && !(is_full(hidden0) && is_full(hidden1)); ++i) {
-            Triangle t = triangle_of(lists[list.x + i], middle);
+        for (uint i = 0u; i < entry.plain && !(is_full(hidden0) && is_full(hidden1)); ++i) {
+            Triangle t = triangle_of(lists[entry.plain_first + i], middle);
             hidden0 = with_both(hidden0, hidden_by(t, eye0, about, word), false);
             hidden1 = with_both(hidden1, hidden_by(t, eye1, about, word), false);
         }
-        for (uint i = 0u; i < list.w && !(is_full(hidden0) && is_full(hidden1)); ++i) {
-            Triangle t = triangle_of(lists[list.z + i], middle);
+        for (uint i = 0u; i < entry.crossing && !(is_full(hidden0) && is_full(hidden1)); ++i) {
+            Triangle t = triangle_of(lists[entry.crossing_first + i], middle);
             Mask by0 = with_both(hidden_by(t, eye0, about, word), behind_plane(t, eye0, about, word), true);
             Mask by1 = with_both(hidden_by(t, eye1, about, word), behind_plane(t, eye1, about, word), true);
             hidden0 = with_both(hidden0, by0, false);

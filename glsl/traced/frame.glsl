@@ -1,4 +1,4 @@
-// Entered from traced/tiles.comp, traced/gather.comp and traced/cover.comp.
+// Entered from traced/tiles.comp, traced/gather.comp, traced/cover.comp and traced/rays.comp.
 //
 // What all passes of the technique share: the frame's constants, its receivers, and tiles of 4x4 pixels.
 //
@@ -30,7 +30,7 @@ struct Frame {
     uint kind;          // LAMP, SUN or ROUND
     uint nodes;         // how many nodes the hierarchy has
     uint most;          // the most leaves that a shaft may hold
-    uint capacity;      // how many leaves all lists hold together
+    uint unused;
     uint samples;       // rays that a pixel of a dense shaft sends
     float weight;       // the sum of the samples' weights; 0 where all weigh the same
     uint side;          // samples along a side of the light: 8, 16 or 32
@@ -44,9 +44,6 @@ layout(set = 0, binding = 2, std430) readonly buffer Constants { Frame frame; };
 // Pixels along a tile's sides.
 const int TILE_SIDE = 4;
 const int TILE_PIXELS = TILE_SIDE * TILE_SIDE;
-
-// The leaves of each shaft that are written down as they are counted.
-const uint FIRST_LEAVES = 32u;
 
 // Shafts a tile: its receivers may lie in two groups, one behind the other.
 const uint SHAFTS_A_TILE = 2u;
@@ -163,6 +160,25 @@ Receiver receiver_of(ivec2 pixel)
     // At the plane of a lamp and behind it there is nothing to hide, nor within a round light.
     r.receives = is_sun() || (frame.kind == ROUND ? !in_light(r.position) : r.in_light.z > 2.0 * off + light_end());
     return r;
+}
+
+// Sets light space for the receivers of some pixels, a bit each, of the tile whose first pixel is `corner`.
+void face_light(uint pixels, ivec2 corner)
+{
+    int first = findLSB(int(pixels));
+    Receiver r = Receiver(false, vec3(0.0), vec3(0.0));
+    if (frame.kind == ROUND && first >= 0) {
+        r = receiver_of(corner + ivec2(first % TILE_SIDE, first / TILE_SIDE));
+    }
+    face_light(r.position);
+}
+
+// The first pixel of a slot's tile.
+ivec2 corner_of(uint slot)
+{
+    int tile = int(slot / SHAFTS_A_TILE);
+    int across = tiles_in(frame.extent).x;
+    return ivec2(tile % across, tile / across) * TILE_SIDE;
 }
 
 #endif

@@ -1,9 +1,8 @@
-// Entry of the pass traced.gather (src/techniques/traced/mod.rs).
+// Entry of the pass traced.gather (src/techniques/traced/passes.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "traced/frame.glsl"
-#include "traced/shaft.glsl"
 #include "traced/lists.glsl"
 
 // Writes the triangles that may hide some of the light from some receiver of a shaft into the shaft's list. One
@@ -12,16 +11,13 @@
 layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 3, rgba32ui) readonly uniform uimage2D nodes;
-layout(set = 0, binding = 4, std430) readonly buffer Header { vec4 root_low; vec4 root_step; };
-layout(set = 0, binding = 5, std430) readonly buffer Shafts { Shaft shafts[]; };
-layout(set = 0, binding = 6, rgba32f) readonly uniform image2D triangles;
-layout(set = 0, binding = 7, std430) readonly buffer Totals { uint shaft_count; uint dense_count; };
-layout(set = 0, binding = 8, std430) readonly buffer Listed { uvec2 listed[]; };
-layout(set = 0, binding = 9, std430) writeonly buffer Found { uvec4 found[]; };
-layout(set = 0, binding = 10, std430) buffer Lists { uint lists[]; };
-layout(set = 0, binding = 11, std430) readonly buffer Counts { uint counts[]; };
-layout(set = 0, binding = 12, std430) readonly buffer FirstLeaves { uint first_leaves[]; };
-layout(set = 0, binding = 13, r32f) writeonly uniform image2D visibility;
+layout(set = 0, binding = 4, rgba32f) readonly uniform image2D triangles;
+layout(set = 0, binding = 5, std430) readonly buffer Slots { Slot slots[]; };
+layout(set = 0, binding = 6, std430) buffer Entries { uint shaft_count; uint dense_count; Entry entries[]; };
+layout(set = 0, binding = 7, std430) buffer Lists { uint lists[]; };
+layout(set = 0, binding = 8, r32f) writeonly uniform image2D visibility;
+
+#include "traced/shaft.glsl"
 
 // Whether a triangle may lie between a receiver of the shaft and the light: its corners are not all on the outer side of
 // one of the shaft's sides, and its own plane does not have all receivers and the whole light on one side.
@@ -62,28 +58,27 @@ void main()
     if (nth >= shaft_count) {
         return;
     }
-    uvec2 entry = listed[nth];
-    Shaft shaft = shafts[entry.x];
-    int tile = int(entry.x / SHAFTS_A_TILE);
-    int row = tiles_in(frame.extent).x;
-    ivec2 corner = ivec2(tile % row, tile / row) * TILE_SIDE;
-    face_light(shaft, corner);
-    Planes planes = planes_of(shaft, root_low.xyz, root_step.xyz);
+    uint slot = entries[nth].slot;
+    uint first = entries[nth].first;
+    Shaft shaft = slots[slot].shaft;
+    ivec2 corner = corner_of(slot);
+    face_light(shaft.pixels, corner);
+    Planes planes = planes_of(shaft);
     // First the leaves: a turn of a walk costs all that it may do, so that the triangles come after it. Most shafts have few,
     // which are known.
-    uint leaves = counts[entry.x] - 1u;
+    uint leaves = shaft.count - 1u;
     if (leaves <= FIRST_LEAVES) {
         for (uint i = 0u; i < leaves; ++i) {
-            lists[entry.y + i] = first_leaves[entry.x * FIRST_LEAVES + i];
+            lists[first + i] = slots[slot].leaves[i];
         }
     } else {
         uint at = 0u;
         leaves = 0u;
         while (at < frame.nodes) {
-            Node node = unpacked_node(imageLoad(nodes, texel(at)));
+            Node node = node_at(at);
             bool inside = meets(planes, node);
             if (inside && node.leaf) {
-                lists[entry.y + leaves] = node.link;
+                lists[first + leaves] = node.link;
                 leaves += 1u;
             }
             at = inside || node.leaf ? at + 1u : node.link;
@@ -95,7 +90,7 @@ void main()
     uint plain = 0u;
     uint crossing = 0u;
     for (uint i = 0u; i < leaves * LEAF; ++i) {
-        uint triangle = lists[entry.y + i / LEAF] * LEAF + i % LEAF;
+        uint triangle = lists[first + i / LEAF] * LEAF + i % LEAF;
         vec4 a = imageLoad(triangles, texel(3u * triangle));
         vec4 b = imageLoad(triangles, texel(3u * triangle + 1u));
         vec4 c = imageLoad(triangles, texel(3u * triangle + 2u));
@@ -104,12 +99,12 @@ void main()
         vec3 lc = in_light_space(c.xyz);
         bool crosses = !is_sun() && min(la.z, min(lb.z, lc.z)) < light_end();
         if (a.w > 0.0 && may_block(shaft, la, lb, lc)) {
-            lists[entry.y + (crosses ? room - 1u - crossing : leaves + plain)] = triangle;
+            lists[first + (crosses ? room - 1u - crossing : leaves + plain)] = triangle;
             plain += crosses ? 0u : 1u;
             crossing += crosses ? 1u : 0u;
         }
     }
-    found[nth] = uvec4(entry.y + leaves, plain, entry.y + room - crossing, crossing);
+    entries[nth] = Entry(slot, first, first + leaves, plain, first + room - crossing, crossing);
     // Nothing is between the light and the receivers of an empty shaft.
     for (int i = 0; i < (plain + crossing == 0u ? TILE_PIXELS : 0); ++i) {
         if ((shaft.pixels >> i & 1u) != 0u) {

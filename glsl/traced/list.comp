@@ -7,10 +7,9 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0, std430) readonly buffer Counts { uint counts[]; };
+layout(set = 0, binding = 0, std430) readonly buffer Slots { Slot slots[]; };
 layout(set = 0, binding = 1, std430) readonly buffer Sums { uvec4 sums[]; };
-layout(set = 0, binding = 2, std430) writeonly buffer Listed { uvec2 listed[]; };
-layout(set = 0, binding = 3, std430) writeonly buffer Dense { uint dense[]; };
+layout(set = 0, binding = 2, std430) buffer Entries { uint shaft_count; uint dense_count; Entry entries[]; };
 
 layout(push_constant) uniform Push {
     uint slots;
@@ -29,12 +28,14 @@ void main()
     bool fits = at.w != 0u;
     uint end = min((block + 1u) * BLOCK, push.slots);
     for (uint slot = block * BLOCK; slot < end; ++slot) {
-        uint count = counts[slot];
-        if (is_shaft(count, push.most) && fits) {
-            listed[at.y] = uvec2(slot, at.x);
+        uint count = slots[slot].shaft.count;
+        if (is_listed(count, push.most) && fits) {
+            entries[at.y].slot = slot;
+            entries[at.y].first = at.x;
             at.xy += uvec2(room_of(count), 1u);
         } else if (count > 0u) {
-            dense[at.z] = slot;
+            // From the end backwards.
+            entries[push.slots - 1u - at.z].slot = slot;
             at.z += 1u;
         }
     }

@@ -3,7 +3,6 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "traced/frame.glsl"
-#include "traced/shaft.glsl"
 #include "traced/lists.glsl"
 
 // Works off the shafts that hold too many triangles: each of their pixels sends rays to samples of the light. One
@@ -12,12 +11,10 @@
 layout(local_size_x = 16) in;
 
 layout(set = 0, binding = 3, rgba32ui) readonly uniform uimage2D nodes;
-layout(set = 0, binding = 4, std430) readonly buffer Header { vec4 root_low; vec4 root_step; };
-layout(set = 0, binding = 5, std430) readonly buffer Shafts { Shaft shafts[]; };
-layout(set = 0, binding = 6, rgba32f) readonly uniform image2D triangles;
-layout(set = 0, binding = 7, std430) readonly buffer Totals { uint shaft_count; uint dense_count; };
-layout(set = 0, binding = 8, std430) readonly buffer Dense { uint dense[]; };
-layout(set = 0, binding = 9, r32f) writeonly uniform image2D visibility;
+layout(set = 0, binding = 4, rgba32f) readonly uniform image2D triangles;
+layout(set = 0, binding = 5, std430) readonly buffer Slots { Slot slots[]; };
+layout(set = 0, binding = 6, std430) readonly buffer Entries { uint shaft_count; uint dense_count; Entry entries[]; };
+layout(set = 0, binding = 7, r32f) writeonly uniform image2D visibility;
 
 #include "hierarchy/segment.glsl"
 
@@ -48,19 +45,21 @@ vec2 sample_at(int number, int side)
 void main()
 {
     uint nth = nth_group(gl_WorkGroupID.xy);
-    uint slot = 0u;
-    uint evens = (dense_count + 1u) / 2u;
-    // As in traced/cover.comp, even places come first.
-    slot = nth < dense_count ? dense[nth < evens ? 2u * nth : 2u * (nth - evens) + 1u] : 0u;
-    int lane = int(gl_LocalInvocationID.x);
-    bool mine = nth < dense_count && (shafts[slot].pixels >> lane & 1u) != 0u;
-    int tile = int(slot / SHAFTS_A_TILE);
-    int row = tiles_in(frame.extent).x;
-    ivec2 pixel = ivec2(tile % row, tile / row) * TILE_SIDE + ivec2(lane % TILE_SIDE, lane / TILE_SIDE);
-    if (!mine) {
+    if (nth >= dense_count) {
         return;
     }
-    face_light(shafts[slot], ivec2(tile % row, tile / row) * TILE_SIDE);
+    // They are listed from the end backwards.
+    ivec2 tiles = tiles_in(frame.extent);
+    uint last = SHAFTS_A_TILE * uint(tiles.x * tiles.y) - 1u;
+    uint slot = entries[last - evens_first(nth, dense_count)].slot;
+    uint pixels = slots[slot].shaft.pixels;
+    int lane = int(gl_LocalInvocationIndex);
+    if ((pixels >> lane & 1u) == 0u) {
+        return;
+    }
+    ivec2 corner = corner_of(slot);
+    ivec2 pixel = corner + ivec2(lane % TILE_SIDE, lane / TILE_SIDE);
+    face_light(pixels, corner);
     Receiver r = receiver_of(pixel);
     int turns = MOST_TURNS;
     int sent = 0;
@@ -73,7 +72,7 @@ void main()
         vec3 in_light = is_sun() ? vec3(at, -1.0) : vec3(at, 0.0) - r.in_light;
         in_light *= is_sun() ? 1.0 : 1.0 - light_end() / r.in_light.z;
         vec3 along = in_light.x * light_x.xyz + in_light.y * light_y.xyz + in_light.z * light_z.xyz;
-        Segment s = segment_of(r.position, along, !is_sun(), root_low.xyz, root_step.xyz);
+        Segment s = segment_of(r.position, along, !is_sun());
         // A sample outside the light's shape needs no ray.
         bool hit = weight > 0.0 && blocked(s, frame.nodes, turns);
         sent += 1;

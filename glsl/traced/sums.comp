@@ -7,8 +7,8 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0, std430) readonly buffer Counts { uint counts[]; };
-layout(set = 0, binding = 1, std430) writeonly buffer Sums { uvec4 sums[]; };
+layout(set = 0, binding = 0, std430) readonly buffer Slots { Slot slots[]; };
+layout(set = 0, binding = 1, std430) buffer Sums { uvec4 sums[]; };
 
 layout(push_constant) uniform Push {
     uint slots;
@@ -26,8 +26,8 @@ void main()
     uvec4 sum = uvec4(0u);
     uint end = min((block + 1u) * BLOCK, push.slots);
     for (uint slot = block * BLOCK; slot < end; ++slot) {
-        uint count = counts[slot];
-        if (is_shaft(count, push.most)) {
+        uint count = slots[slot].shaft.count;
+        if (is_listed(count, push.most)) {
             sum.xy += uvec2(room_of(count), 1u);
         }
         sum.z += is_dense(count, push.most) ? 1u : 0u;

@@ -1,9 +1,9 @@
-// Entry of the pass traced.tiles (src/techniques/traced/mod.rs).
+// Entry of the pass traced.tiles (src/techniques/traced/passes.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "traced/frame.glsl"
-#include "traced/shaft.glsl"
+#include "traced/lists.glsl"
 
 // Makes the shafts of each tile, and counts the leaves of the hierarchy in each: so the work of a tile is known before
 // it is done. One invocation handles one tile.
@@ -11,23 +11,22 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 3, rgba32ui) readonly uniform uimage2D nodes;
-layout(set = 0, binding = 4, std430) readonly buffer Header { vec4 root_low; vec4 root_step; };
-layout(set = 0, binding = 5, std430) writeonly buffer Shafts { Shaft shafts[]; };
-layout(set = 0, binding = 6, std430) writeonly buffer Counts { uint counts[]; };
-layout(set = 0, binding = 7, r32f) writeonly uniform image2D visibility;
-layout(set = 0, binding = 8, std430) writeonly buffer FirstLeaves { uint first_leaves[]; };
+layout(set = 0, binding = 4, std430) buffer Slots { Slot slots[]; };
+layout(set = 0, binding = 5, r32f) writeonly uniform image2D visibility;
+
+#include "traced/shaft.glsl"
 
 // Counts the leaves that a shaft holds, up to one more than a list may have, and writes down the first of them.
 uint leaves_in(Shaft shaft, uint slot)
 {
-    Planes planes = planes_of(shaft, root_low.xyz, root_step.xyz);
+    Planes planes = planes_of(shaft);
     uint found = 0u;
     uint at = 0u;
     while (at < frame.nodes && found <= frame.most) {
-        Node node = unpacked_node(imageLoad(nodes, texel(at)));
+        Node node = node_at(at);
         bool inside = meets(planes, node);
         if (inside && node.leaf && found < FIRST_LEAVES) {
-            first_leaves[slot * FIRST_LEAVES + found] = node.link;
+            slots[slot].leaves[found] = node.link;
         }
         found += inside && node.leaf ? 1u : 0u;
         at = inside || node.leaf ? at + 1u : node.link;
@@ -38,7 +37,7 @@ uint leaves_in(Shaft shaft, uint slot)
 // A shaft whose light faces its own receivers.
 Shaft faced(Shaft shaft, ivec2 corner)
 {
-    face_light(shaft, corner);
+    face_light(shaft.pixels, corner);
     if (frame.kind == ROUND) {
         uint pixels = shaft.pixels;
         shaft = empty_shaft();
@@ -106,10 +105,9 @@ void main()
         one = first;
     }
     one = faced(one, corner);
-    shafts[slot] = one;
-    // The count is one more than the number of leaves: 0 is no shaft.
-    counts[slot] = one.pixels != 0u ? 1u + leaves_in(one, slot) : 0u;
+    one.count = one.pixels != 0u ? 1u + leaves_in(one, slot) : 0u;
+    slots[slot].shaft = one;
     second = faced(second, corner);
-    shafts[slot + 1u] = second;
-    counts[slot + 1u] = torn ? 1u + leaves_in(second, slot + 1u) : 0u;
+    second.count = torn ? 1u + leaves_in(second, slot + 1u) : 0u;
+    slots[slot + 1u].shaft = second;
 }

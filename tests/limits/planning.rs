@@ -64,6 +64,7 @@ fn planning_takes_no_memory_after_the_first_frame() {
         "technique=pcss",
         "technique=hard",
         "technique=back-projection",
+        "technique=traced",
     ] {
         let description =
             Description { technique: settings(words), lights: 4, ..Description::new([64; 2]) };

@@ -41,7 +41,7 @@ const STORED: [F; 5] = [
 const CAPABILITIES: [u32; 9] = [0, 1, 40, 43, 44, 46, 47, 50, 51];
 
 /// What asks for most of each kind of row.
-const WORDS: [&str; 17] = [
+const WORDS: [&str; 18] = [
     "",
     "classify=off",
     "receivers=map receiver_map=4096 sides=two",
@@ -59,16 +59,29 @@ const WORDS: [&str; 17] = [
     "technique=occlusion-textures slices=32",
     "technique=occlusion-textures slices=32 prefilter=n-buffer",
     "technique=linear-light samples=16 lines=16",
+    "technique=traced samples=1024",
 ];
 
 /// The largest image, or for a list of its pixels the largest that is accepted, in the shape with the widest rows.
 fn largest(words: &str) -> Description {
     // The largest map that agrees with the other settings.
     let sides = std::iter::successors(Some(4096), |side| (*side > 16).then_some(side / 2));
-    let mut all = sides.map(|side| settings(words).with_map(side).unwrap());
-    let technique = all.find(|t| t.check().is_ok()).unwrap_or_else(|| panic!("{words}: no map"));
-    let lists_pixels = technique.room().pixel_list([16384; 2]).is_some();
-    let extent = if lists_pixels { [16384, 682] } else { [16384; 2] };
+    let technique = settings(words);
+    // Not every technique has maps.
+    let technique = match technique.get("map") {
+        Some(_) => {
+            let mut all = sides.map(|side| technique.with_map(side).unwrap());
+            all.find(|t| t.check().is_ok()).unwrap_or_else(|| panic!("{words}: no map"))
+        }
+        None => technique,
+    };
+    let heights = std::iter::successors(Some(16384), |height| (*height > 1).then_some(height - 1));
+    let mut extents = heights.map(|height| [16384, height]);
+    let fits = |extent: &[u32; 2]| {
+        let list = technique.room().pixel_list(*extent);
+        list.is_none_or(|(bytes, _)| bytes <= STORAGE_BYTES)
+    };
+    let extent = extents.find(fits).unwrap();
     let format = F::R8G8B8A8_UNORM;
     let textured = technique.room().takes().texture;
     let texture = textured.then_some(LightTexture { format, color: true });

@@ -3,12 +3,13 @@
 use antumbra::graph::{Draw, Graph, INVOCATIONS, PUSH_BYTES, Pass, Work};
 use antumbra::shaders::Module;
 use antumbra::stages::depth_layers::DepthPush;
+use antumbra::stages::hierarchy::MeshPush;
 use antumbra::{Description, LightTexture, frame};
 use antumbra_tests::example::root;
 use antumbra_tests::headers;
 use antumbra_tests::measure::settings;
 use antumbra_tests::permutations;
-use antumbra_tests::reflect::{Interface, reflect};
+use antumbra_tests::reflect::{Binding, Interface, reflect};
 use ash::vk;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -43,6 +44,9 @@ fn descriptions() -> Vec<(String, Description)> {
         "technique=linear-light",
         "technique=linear-light map=65 samples=2 lines=1 transition=linear",
         "technique=linear-light map=100 samples=5 lines=2 error=0",
+        "technique=traced",
+        "technique=traced samples=256",
+        "technique=traced samples=1024",
     ] {
         let textures: &[Option<bool>] =
             if words.contains("ray-march") { &[None, Some(false), Some(true)] } else { &[None] };
@@ -52,7 +56,7 @@ fn descriptions() -> Vec<(String, Description)> {
                 .flat_map(|formats| textures.iter().map(move |t| (formats, *t)))
         {
             let format = vk::Format::R8G8B8A8_UNORM;
-            let draws_all = ["many-lights", "occlusion-textures", "linear-light"];
+            let draws_all = ["many-lights", "occlusion-textures", "linear-light", "traced"];
             if occluder_maps.is_some() && draws_all.iter().any(|t| words.contains(t)) {
                 continue;
             }
@@ -101,11 +105,23 @@ fn disagreements(graph: &Graph, pass: &Pass) -> Vec<String> {
         Work::Raster { draw: Draw::Layer { .. }, .. } => {
             pass.push.bytes().len().max(size_of::<DepthPush>())
         }
+        Work::EachMesh { .. } => size_of::<MeshPush>(),
         _ => pass.push.bytes().len(),
     };
     for module in modules(pass) {
         let shader = interface(module);
-        for b in &shader.bindings {
+        // Set 1 has the host's positions and indices.
+        let of_mesh = |b: &&Binding| matches!(pass.work, Work::EachMesh { .. }) && b.set == 1;
+        let buffers = vk::DescriptorType::STORAGE_BUFFER;
+        if shader
+            .bindings
+            .iter()
+            .filter(of_mesh)
+            .any(|b| b.binding > 1 || b.writes || b.kind != buffers)
+        {
+            found.push(format!("{}: set 1 is no mesh", module.path));
+        }
+        for b in shader.bindings.iter().filter(|b| !of_mesh(b)) {
             seen.insert(b.binding);
             let used = pass.uses.iter().find(|u| u.binding.map(u32::from) == Some(b.binding));
             let Some(used) = used else {

@@ -11,7 +11,7 @@ fn a_line_is_refused_by_what_needs_an_area() {
     for name in Technique::NAMES {
         let d = of_technique(name);
         let planned = plan(&d, Limits::default(), &Frame { light: light.into(), ..frame(&meshes) });
-        if ["hard", "many-lights", "linear-light"].contains(name) {
+        if ["hard", "many-lights", "linear-light", "traced"].contains(name) {
             assert!(ran(&planned.unwrap()).len() > 1, "{name}");
         } else {
             let sentence = planned.unwrap_err().to_string();
@@ -61,7 +61,7 @@ fn an_outline_is_refused_by_what_knows_rectangles_alone() {
     for name in Technique::NAMES {
         let d = of_technique(name);
         let planned = plan(&d, Limits::default(), &Frame { light, ..frame(&meshes) });
-        if ["many-lights", "linear-light"].contains(name) {
+        if ["many-lights", "linear-light", "traced"].contains(name) {
             assert!(ran(&planned.unwrap()).len() > 1, "{name}");
         } else {
             let sentence = planned.unwrap_err().to_string();
@@ -94,7 +94,8 @@ fn shapes_are_refused_by_what_does_not_take_them() {
             planned.map(|plan| assert!(ran(&plan).len() > 1, "{name}")).map_err(|e| e.to_string())
         };
         for name in Technique::NAMES {
-            let taken = shape == "sun" || (shape == "disc" && *name == "many-lights");
+            let taken =
+                shape == "sun" || *name == "traced" || (shape == "disc" && *name == "many-lights");
             let others = if shape == "disc" { "many-lights, or " } else { "" };
             let sentence = format!(
                 "the light is a {shape}, and {name} takes no {shape}s; choose {others}traced, which takes every shape"

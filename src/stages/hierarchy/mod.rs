@@ -29,6 +29,8 @@ use smallvec::smallvec;
 pub const LEAF: u32 = 2;
 /// The binary logarithm of the images' width (`hierarchy/texels.glsl`).
 const TEXELS_BITS: u32 = 12;
+/// The texels before the first node (`hierarchy/texels.glsl`).
+const HEAD: u32 = 2;
 /// Boxes that one of the next level of the pyramid holds, and the most levels (`hierarchy/pyramid.glsl`).
 const WIDE: u32 = 8;
 const LEVELS: u32 = 9;
@@ -41,7 +43,7 @@ const CELLS: f64 = 1024.0;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct MeshPush {
-    /// Mesh space to the hierarchy's space, by row.
+    /// Mesh space to the hierarchy's space: a plane for each of x, y and z.
     pub rows: [[f32; 4]; 3],
     /// The least corner of the mesh's box, in mesh space.
     pub low: [f32; 4],
@@ -123,15 +125,13 @@ impl Sizes {
 /// A hierarchy as passes read it.
 #[derive(Clone, Copy, Debug)]
 pub struct Hierarchy {
-    /// The nodes in depth-first order: R32G32B32A32_UINT, one texel each.
+    /// The nodes in depth-first order, behind the root's box: R32G32B32A32_UINT, one texel each.
     pub nodes: ResourceId,
     /// The triangles, leaf by leaf: R32G32B32A32_SFLOAT, three texels each.
     pub triangles: ResourceId,
-    /// The least corner of the root's box and the steps of all boxes.
-    pub header: ResourceId,
 }
 
-/// The workgroups of 64 invocations for a number of them, in rows (`common/lists.glsl`).
+/// The workgroups of 64 invocations for a number of them, as `common/lists.glsl` numbers them.
 pub(crate) fn groups(invocations: u32) -> [u32; 3] {
     const A_ROW: u32 = 16384;
     let groups = invocations.div_ceil(64).max(1);
@@ -176,14 +176,13 @@ pub(crate) fn declare(graph: &mut Graph, sizes: Sizes, need: &Need) -> Hierarchy
         vk::Format::R32G32B32A32_SFLOAT,
         3 * capacity.next_multiple_of(LEAF),
     );
-    let nodes =
-        image(graph, "hierarchy.nodes", vk::Format::R32G32B32A32_UINT, 2 * capacity.div_ceil(LEAF));
+    let texels = HEAD + 2 * capacity.div_ceil(LEAF);
+    let nodes = image(graph, "hierarchy.nodes", vk::Format::R32G32B32A32_UINT, texels);
     let kept = |graph: &mut Graph, name, bytes, until| {
         let id = graph.buffer(name, bytes);
         graph.keep_until(id, until);
         id
     };
-    let header = kept(graph, "hierarchy.header", 32, Until::Moved);
     let places = kept(graph, "hierarchy.places", 4 * room, Until::Listed);
     let inner = kept(graph, "hierarchy.inner", 16 * leaves, Until::Listed);
     let parents = kept(graph, "hierarchy.parents", 8 * leaves, Until::Listed);
@@ -239,9 +238,8 @@ pub(crate) fn declare(graph: &mut Graph, sizes: Sizes, need: &Need) -> Hierarchy
             read(1, inner),
             read(2, order),
             Use::bound(3, nodes, Access::ImageWrite),
-            write(4, header),
         ],
         need,
     ));
-    Hierarchy { nodes, triangles, header }
+    Hierarchy { nodes, triangles }
 }

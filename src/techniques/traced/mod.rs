@@ -1,5 +1,6 @@
 //! The visible fraction from the blocking triangles themselves.
 
+pub mod constants;
 pub mod passes;
 pub mod settings;
 mod weights;
@@ -33,6 +34,10 @@ impl Room for Settings {
         Maps::own_views(NO_MAP)
     }
 
+    fn pixel_list(&self, extent: [u32; 2]) -> Option<(u64, &'static str)> {
+        Some((passes::slot_bytes(extent), "give it fewer than 8.3 million pixels"))
+    }
+
     fn reads_triangles(&self) -> bool {
         true
     }
@@ -40,7 +45,8 @@ impl Room for Settings {
     fn declare(&self, graph: &mut Graph, inputs: &PassInputs) -> Option<ResourceId> {
         let (sizes, _) = inputs.tree;
         let tree = hierarchy::declare(graph, *sizes, inputs.need);
-        passes::declare(graph, self, &tree, inputs);
+        let constants = constants::declare(graph, self, inputs);
+        passes::declare(graph, self, &tree, constants, inputs);
         None
     }
 }

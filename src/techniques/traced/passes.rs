@@ -1,13 +1,12 @@
-//! The passes over tiles and pixels, and their constants.
+//! The passes over tiles, shafts and pixels.
 
+use super::Settings;
 use super::settings::Samples;
-use super::{Settings, weights};
-use crate::graph::{Access, Graph, Pass, Push, ResourceId, Use, Uses, Work};
+use crate::graph::{Access, Graph, Pass, Push, ResourceId, STORAGE_BYTES, Use, Uses, Work};
 use crate::shaders::module;
 use crate::stages::hierarchy::{Hierarchy, groups};
 use crate::stages::visibility::grid;
 use crate::techniques::room::PassInputs;
-use crate::{Light, Shape};
 use bytemuck::{Pod, Zeroable};
 use smallvec::smallvec;
 
@@ -15,64 +14,13 @@ use smallvec::smallvec;
 const TILE_SIDE: u32 = 4;
 /// The shafts of a tile (`traced/frame.glsl`).
 const SHAFTS_A_TILE: u32 = 2;
-/// The leaves of each shaft that are written down as they are counted (`traced/frame.glsl`).
-const FIRST_LEAVES: u64 = 32;
 /// The slots of a block (`traced/lists.glsl`).
 const BLOCK: u32 = 256;
 /// The places in the lists of triangles for each pixel of the image, on average.
-const LISTED_A_PIXEL: u32 = 16;
-
-/// The first part of the frame's constants (`traced/frame.glsl`).
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub struct LightConstants {
-    /// Normalized device coordinates to the hierarchy's space, relative to the eye.
-    pub eye_from_ndc: [f32; 16],
-    /// Light space's x, y and z of a point of the hierarchy's space, each as a plane.
-    pub light_from_here: [[f32; 4]; 3],
-    /// Half the light's width and height, m; for a sun the tangents of half its angular size.
-    pub half_light: [f32; 2],
-    /// The depth of a pixel that shows no surface.
-    pub background: f32,
-    /// How far a pixel's depth may be from the surface's.
-    pub depth_step: f32,
-}
-
-/// The second part of the frame's constants (`traced/frame.glsl`).
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub struct PixelConstants {
-    /// The viewer.
-    pub eye: [f32; 4],
-    /// The direction towards an orthographic camera.
-    pub towards: [f32; 4],
-    /// The G-buffer's width and height.
-    pub extent: [i32; 2],
-    /// 1 where the G-buffer has a mask of roles.
-    pub masked: u32,
-    /// 0 for a light that shines to one side, 1 for a sun, 2 for one that shines to all sides.
-    pub kind: u32,
-    /// How many nodes the hierarchy has.
-    pub nodes: u32,
-    /// The most leaves that a shaft may hold.
-    pub most: u32,
-    /// How many triangles all lists hold together.
-    pub capacity: u32,
-    /// How many rays a pixel of a dense shaft sends.
-    pub samples: u32,
-    /// The sum of the samples' weights; 0 where all weigh the same.
-    pub weight: f32,
-    /// Samples along a side of the light.
-    pub side: u32,
-}
-
-/// A part of the samples' weights (`traced/frame.glsl`).
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub struct WeightConstants {
-    /// A quarter of the samples' weights, row by row.
-    pub weights: [[u16; 32]; 2],
-}
+const LISTED_A_PIXEL: u64 = 16;
+/// The bytes of a slot, its shaft and first leaves, and of a list's entry (`traced/lists.glsl`).
+const SLOT_BYTES: u64 = 128;
+const ENTRY_BYTES: u64 = 24;
 
 /// The push constants of the passes that make the lists (`traced/sums.comp`).
 #[repr(C)]
@@ -88,60 +36,69 @@ pub struct ListPush {
     pub capacity: u32,
 }
 
+/// The places in the lists of triangles for an image.
+pub(super) fn listed(extent: [u32; 2]) -> u32 {
+    let wished = LISTED_A_PIXEL * u64::from(extent[0]) * u64::from(extent[1]);
+    wished.min(STORAGE_BYTES / 4) as u32
+}
+
+/// The bytes of the shafts of an image.
+pub(super) fn slot_bytes(extent: [u32; 2]) -> u64 {
+    let [x, y] = extent.map(|e| u64::from(e.div_ceil(TILE_SIDE)));
+    u64::from(SHAFTS_A_TILE) * x * y * SLOT_BYTES
+}
+
 /// Adds the passes from the hierarchy to the visible fraction.
 pub(super) fn declare(
     graph: &mut Graph,
     settings: &Settings,
     tree: &Hierarchy,
+    constants: ResourceId,
     inputs: &PassInputs,
 ) {
     let PassInputs { gbuffer, need, visibility, .. } = *inputs;
     let extent = gbuffer.extent;
     let tiles = extent.map(|e| e.div_ceil(TILE_SIDE));
-    let slots = SHAFTS_A_TILE * tiles[0] * tiles[1];
-    let blocks = slots.div_ceil(BLOCK);
-    let capacity = LISTED_A_PIXEL * extent[0] * extent[1];
-    let push = Push::new(&ListPush { slots, blocks, most: settings.leaves, capacity });
+    let slot_count = SHAFTS_A_TILE * tiles[0] * tiles[1];
+    let blocks = slot_count.div_ceil(BLOCK);
+    let capacity = listed(extent);
+    let push = Push::new(&ListPush { slots: slot_count, blocks, most: settings.leaves, capacity });
 
-    let constants = graph.buffer("traced.constants", 720);
-    declare_constants(graph, settings, constants, capacity, inputs);
-    let of_slots = |bytes: u64| bytes * u64::from(slots);
-    let shafts = graph.buffer("traced.shafts", of_slots(64));
-    let counts = graph.buffer("traced.counts", of_slots(4));
+    let slots = graph.buffer("traced.slots", slot_bytes(extent));
     let sums = graph.buffer("traced.sums", 16 * u64::from(blocks));
-    let totals = graph.buffer("traced.totals", 16);
     let arguments = graph.buffer("traced.arguments", 48);
-    let listed = graph.buffer("traced.listed", of_slots(8));
-    let dense = graph.buffer("traced.dense", of_slots(4));
-    let found = graph.buffer("traced.found", of_slots(16));
-    let first_leaves = graph.buffer("traced.first_leaves", of_slots(4 * FIRST_LEAVES));
+    let entries = graph.buffer("traced.entries", 8 + ENTRY_BYTES * u64::from(slot_count));
     let lists = graph.buffer("traced.lists", 4 * u64::from(capacity));
 
     let read = |binding, id| Use::bound(binding, id, Access::BufferReadCompute);
     let write = |binding, id| Use::bound(binding, id, Access::BufferWriteCompute);
+    let update = |binding, id| Use::bound(binding, id, Access::BufferUpdate);
     let image = |binding, id| Use::bound(binding, id, Access::ImageRead);
-    let of_frame = || {
+    let shown = |binding| Use::bound(binding, visibility, Access::ImageUpdate);
+    let of_frame = |more: &[Use]| {
         let mut uses = Uses::from_slice(&gbuffer.bound());
         uses.push(read(2, constants));
+        uses.extend_from_slice(more);
         uses
     };
-    let mut uses = of_frame();
-    uses.extend([
-        image(3, tree.nodes),
-        read(4, tree.header),
-        write(5, shafts),
-        write(6, counts),
-        Use::bound(7, visibility, Access::ImageWrite),
-        write(8, first_leaves),
-    ]);
-    let (name, shader) = ("traced.tiles", module!("traced/tiles.comp"));
-    graph.push(Pass::compute(name, shader, grid(tiles), Push::NONE, uses, need));
+    graph.push(Pass::compute(
+        "traced.tiles",
+        module!("traced/tiles.comp"),
+        grid(tiles),
+        Push::NONE,
+        of_frame(&[
+            image(3, tree.nodes),
+            write(4, slots),
+            Use::bound(5, visibility, Access::ImageWrite),
+        ]),
+        need,
+    ));
     graph.push(Pass::compute(
         "traced.sums",
         module!("traced/sums.comp"),
         groups(blocks),
         push,
-        smallvec![read(0, counts), write(1, sums)],
+        smallvec![read(0, slots), write(1, sums)],
         need,
     ));
     graph.push(Pass::compute(
@@ -149,11 +106,7 @@ pub(super) fn declare(
         module!("traced/totals.comp"),
         [1, 1, 1],
         push,
-        smallvec![
-            Use::bound(0, sums, Access::BufferUpdate),
-            write(1, totals),
-            write(2, arguments),
-        ],
+        smallvec![update(0, sums), write(1, entries), write(2, arguments)],
         need,
     ));
     graph.push(Pass::compute(
@@ -161,119 +114,49 @@ pub(super) fn declare(
         module!("traced/list.comp"),
         groups(blocks),
         push,
-        smallvec![read(0, counts), read(1, sums), write(2, listed), write(3, dense)],
+        smallvec![read(0, slots), read(1, sums), update(2, entries)],
         need,
     ));
-    let mut uses = of_frame();
-    uses.extend([
-        image(3, tree.nodes),
-        read(4, tree.header),
-        read(5, shafts),
-        image(6, tree.triangles),
-        read(7, totals),
-        read(8, listed),
-        write(9, found),
-        write(10, lists),
-        read(11, counts),
-        read(12, first_leaves),
-        Use::bound(13, visibility, Access::ImageUpdate),
-        Use::fixed(arguments, Access::Indirect),
-    ]);
-    let shader = module!("traced/gather.comp");
-    let work = Work::Indirect { shader, arguments, offset: 0 };
-    graph.push(Pass { name: "traced.gather", uses, push: Push::NONE, work, need: *need });
-    let mut uses = of_frame();
-    uses.extend([
-        read(3, shafts),
-        image(4, tree.triangles),
-        read(5, totals),
-        read(6, listed),
-        read(7, found),
-        read(8, lists),
-        Use::bound(9, visibility, Access::ImageUpdate),
-        Use::fixed(arguments, Access::Indirect),
-    ]);
-    let shader = match settings.samples {
+    let mut over_list = |name, shader, offset, uses: &[Use]| {
+        let mut uses = of_frame(uses);
+        uses.push(Use::fixed(arguments, Access::Indirect));
+        let work = Work::Indirect { shader, arguments, offset };
+        graph.push(Pass { name, uses, push: Push::NONE, work, need: *need });
+    };
+    over_list(
+        "traced.gather",
+        module!("traced/gather.comp"),
+        0,
+        &[
+            image(3, tree.nodes),
+            image(4, tree.triangles),
+            read(5, slots),
+            update(6, entries),
+            write(7, lists),
+            shown(8),
+        ],
+    );
+    let cover = match settings.samples {
         Samples::Few => module!("traced/cover.comp"),
         Samples::Many => module!("traced/cover_many.comp"),
         Samples::Most => module!("traced/cover_most.comp"),
     };
-    let work = Work::Indirect { shader, arguments, offset: 16 };
-    graph.push(Pass { name: "traced.cover", uses, push: Push::NONE, work, need: *need });
-    let mut uses = of_frame();
-    uses.extend([
-        image(3, tree.nodes),
-        read(4, tree.header),
-        read(5, shafts),
-        image(6, tree.triangles),
-        read(7, totals),
-        read(8, dense),
-        Use::bound(9, visibility, Access::ImageUpdate),
-        Use::fixed(arguments, Access::Indirect),
-    ]);
-    let shader = module!("traced/rays.comp");
-    let work = Work::Indirect { shader, arguments, offset: 32 };
-    graph.push(Pass { name: "traced.rays", uses, push: Push::NONE, work, need: *need });
-}
-
-/// Adds the passes that write the frame's constants.
-fn declare_constants(
-    graph: &mut Graph,
-    settings: &Settings,
-    constants: ResourceId,
-    capacity: u32,
-    inputs: &PassInputs,
-) {
-    let PassInputs { gbuffer, need, .. } = *inputs;
-    let (_, space) = inputs.tree;
-    let shape = space.light.shape();
-    let half_light = half_of(&space.light);
-    let side = settings.samples.side();
-    let weights = weights::weights(shape, half_light, weights::MOST.min(side as usize));
-    let weight: u32 = weights.iter().flatten().map(|&w| u32::from(w)).sum();
-    // Four samples share a weight where there are more samples than weights.
-    let shared = (side as usize / weights::MOST).max(1).pow(2);
-    let row = |i: usize| space.light_from_here.row(i).as_vec4().to_array();
-    let first = LightConstants {
-        eye_from_ndc: space.eye_from_ndc.as_mat4().to_cols_array(),
-        light_from_here: [row(0), row(1), row(2)],
-        half_light: half_light.map(|half| half as f32),
-        background: gbuffer.background,
-        depth_step: space.depth_step,
-    };
-    graph.push(Pass::constants("traced.light", constants, 0, &first, need));
-    let second = PixelConstants {
-        eye: space.eye.as_vec3().extend(0.0).to_array(),
-        towards: space.towards.as_vec4().to_array(),
-        extent: gbuffer.extent.map(|e| e as i32),
-        masked: u32::from(gbuffer.mask.is_some()),
-        kind: match shape {
-            Shape::Sun { .. } => 1,
-            _ if space.light.is_round() => 2,
-            _ => 0,
-        },
-        nodes: space.nodes,
-        most: settings.leaves,
-        capacity,
-        samples: settings.rays.min(side * side),
-        weight: weight as f32 * shared as f32,
-        side,
-    };
-    graph.push(Pass::constants("traced.pixels", constants, 128, &second, need));
-    for (nth, part) in weights.unwrap_or([0; 256]).as_chunks::<64>().0.iter().enumerate() {
-        let part = WeightConstants { weights: bytemuck::cast(*part) };
-        let offset = 200 + 128 * nth as u64;
-        graph.push(Pass::constants("traced.weights", constants, offset, &part, need));
-    }
-}
-
-/// Half the width and height of the rectangle of the light's samples, m; of a sun the tangents of half its angular size.
-fn half_of(light: &Light) -> [f64; 2] {
-    match light.shape() {
-        Shape::Sun { angular_size } => [(0.5 * angular_size).tan(); 2],
-        Shape::Sphere { radius } => [radius; 2],
-        Shape::Capsule { half_length, radius } => [half_length + radius, radius],
-        Shape::Point => [0.0; 2],
-        _ => light.rectangle().half_extents(),
-    }
+    over_list(
+        "traced.cover",
+        cover,
+        16,
+        &[image(3, tree.triangles), read(4, slots), read(5, entries), read(6, lists), shown(7)],
+    );
+    over_list(
+        "traced.rays",
+        module!("traced/rays.comp"),
+        32,
+        &[
+            image(3, tree.nodes),
+            image(4, tree.triangles),
+            read(5, slots),
+            read(6, entries),
+            shown(7),
+        ],
+    );
 }
