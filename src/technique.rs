@@ -115,11 +115,14 @@ impl Technique {
         self.room().maps().side
     }
 
-    /// The technique with maps of another side, texels.
+    /// The technique with maps of another side, texels; a technique without maps stays as it is.
     ///
     /// # Errors
     /// [`Error::Setting`] for a side outside 1 to 4096.
     pub fn with_map(mut self, side: u32) -> Result<Self, Error> {
+        if self.get("map").is_none() {
+            return Ok(self);
+        }
         self.set("map", &side.to_string())?;
         Ok(self)
     }

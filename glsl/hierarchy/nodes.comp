@@ -33,6 +33,10 @@ Box box_of(uint first, uint end)
     uint start = 0u;
     uint count = push.leaves;
     for (uint level = 0u; level < LEVELS && first < end; ++level) {
+        if (count == 1u) {
+            box = with_box(box, start);
+            first = end;
+        }
         while (first < end && first % WIDE != 0u) {
             box = with_box(box, start + first);
             first += 1u;
@@ -46,12 +50,20 @@ Box box_of(uint first, uint end)
         end = (end + WIDE - 1u) / WIDE;
         start += count;
         count = (count + WIDE - 1u) / WIDE;
-        if (count == 1u && first < end) {
-            box = with_box(box, start);
-            first = end;
-        }
     }
     return box;
+}
+
+// The box of all leaves, which is the pyramid's last.
+Box root_box()
+{
+    uint start = 0u;
+    uint count = push.leaves;
+    for (uint level = 0u; level < LEVELS && count > 1u; ++level) {
+        start += count;
+        count = (count + WIDE - 1u) / WIDE;
+    }
+    return with_box(Box(NO_LOW, NO_HIGH), start);
 }
 
 void main()
@@ -60,7 +72,7 @@ void main()
     if (node > 2u * (push.leaves - 1u)) {
         return;
     }
-    Box root = box_of(0u, push.leaves);
+    Box root = root_box();
     bool is_leaf = node >= push.leaves - 1u;
     uint leaf = node - (push.leaves - 1u);
     uvec4 of = is_leaf ? uvec4(leaf, leaf, 0u, 0u) : inner[node];

@@ -6,6 +6,7 @@ use crate::{
     View, read_image,
 };
 use antumbra::auto::{Auto, Choice};
+use antumbra::frame::Capacity;
 use antumbra::graph::Scope;
 use antumbra::node::PlanObject;
 use antumbra::scene::{AreaLight, Instance, Scene};
@@ -121,6 +122,7 @@ impl Stage {
             technique: settings,
             frames_in_flight: 1,
             mask_format: Some(MASK),
+            capacity: Capacity::of(&self.instances),
             inspect: true,
             ..Description::new(self.gbuffer.depth.extent())
         };

@@ -55,7 +55,7 @@ use glam::DMat4;
 use std::borrow::Cow;
 
 /// The most techniques that a node may have: [`Description::technique`] and the others.
-pub(crate) const MOST_TECHNIQUES: usize = 8;
+pub(crate) const MOST_TECHNIQUES: usize = 16;
 
 /// What a node is made for: everything that stays the same from frame to frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,7 +66,7 @@ pub struct Description {
     pub technique: Technique,
     /// Which effects may be left out where they hardly matter; those that add less than 1/256 by default.
     pub omit: Omit,
-    /// Up to 7 further techniques that a frame may choose ([`Frame::technique_index`]), for lights that need another
+    /// Up to 15 further techniques that a frame may choose ([`Frame::technique_index`]), for lights that need another
     /// one or other settings. Each has its own pipelines, maps and buffers, which the lights that choose it share.
     pub other_techniques: Vec<Technique>,
     /// The number of lights, 1 to 64. Each light has its own frames ([`Frame::light_index`]) and its own layer of the
@@ -164,7 +164,7 @@ impl Description {
     pub fn check(&self) -> Result<(), Error> {
         if self.other_techniques.len() >= MOST_TECHNIQUES {
             return Err(Error::Frame(format!(
-                "{} other techniques are more than the 7 that a node may have",
+                "{} other techniques are more than the 15 that a node may have",
                 self.other_techniques.len()
             )));
         }

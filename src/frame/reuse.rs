@@ -9,7 +9,7 @@
 //! does. An image in which every pixel is lit already stays as it is whatever the revisions are.
 
 use super::triangles::TreeKey;
-use crate::graph::{Graph, Owner, ResourceId, Until, Why};
+use crate::graph::{Graph, Owner, Pass, ResourceId, Until, Why, Work};
 use crate::lent::Visibility;
 use ash::vk;
 
@@ -189,7 +189,7 @@ fn reuse_tree(
         let why = "no mesh that blocks has moved";
         graph.leave_out(|place| until[place] == Some(Until::Moved), why);
     }
-    let needed = |p: &crate::graph::Pass| graph.until(p).is_some() && p.need.is_yes();
+    let needed = |p: &Pass| graph.until(p).is_some() && p.need.is_yes();
     reuse.makes_tree = graph.passes().iter().any(needed).then_some(tree);
 }
 
@@ -213,8 +213,10 @@ impl CameraDependence {
         pixels.for_each(|id| depends[id.index()] = true);
         self.until.clear();
         self.until.extend(graph.passes().iter().map(|pass| graph.until(pass)));
+        // Constants are those of a frame, its camera among them.
+        let is_constant = |pass: &Pass| matches!(pass.work, Work::Constants { .. });
         self.passes.clear();
-        self.passes.resize(graph.passes().len(), false);
+        self.passes.extend(graph.passes().iter().map(is_constant));
         loop {
             let before = depends.clone();
             for (pass_depends, pass) in self.passes.iter_mut().zip(graph.passes()) {
@@ -260,7 +262,7 @@ impl CameraDependence {
 mod tests {
     use super::super::{Description, full_graph};
     use super::*;
-    use crate::graph::{Need, Pass, Push};
+    use crate::graph::{Need, Push};
     use crate::shaders;
     use smallvec::smallvec;
 

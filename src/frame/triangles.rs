@@ -26,6 +26,23 @@ impl Capacity {
     /// The largest capacity.
     pub const MOST: Self = Self { triangles: 5_000_000, meshes: 65_536 };
 
+    /// The capacity for some meshes, and at least [`Self::default`].
+    pub fn of<'a>(meshes: impl IntoIterator<Item = &'a MeshInstance>) -> Self {
+        let blocking = meshes.into_iter().filter(|m| m.role.blocks() && has_triangles(m));
+        let [triangles, count] = blocking.fold([0u64; 2], |[triangles, count], mesh| {
+            let of_mesh = match mesh.geometry {
+                Geometry::Buffers(buffers) => (buffers.count / 3).next_multiple_of(LEAF),
+                Geometry::HostDrawn(_) => 0,
+            };
+            [triangles + u64::from(of_mesh), count + 1]
+        });
+        let least = Self::default();
+        Self {
+            triangles: least.triangles.max(triangles.min(u64::from(Self::MOST.triangles)) as u32),
+            meshes: least.meshes.max(count.min(u64::from(Self::MOST.meshes)) as u32),
+        }
+    }
+
     /// Checks the capacity's ranges.
     pub(super) fn check(&self) -> Result<(), Error> {
         let Self { triangles, meshes } = *self;

@@ -51,7 +51,8 @@ fn what_is_kept_gives_the_same_pixels() {
         let setup = Setup::ground(&scene, 2.2, 64);
         let light = setup.light();
         let few = if words.contains("many-lights") { " samples=4" } else { "" };
-        let words = words + few + " map=64";
+        let map = if words.contains("traced") { "" } else { " map=64" };
+        let words = words + few + map;
         let mut stage = setup.stage(&device, &words);
         let numbers = |scene, view| {
             move |f: &mut Frame| (f.revision, f.view_revision) = (Some(scene), Some(view))
@@ -81,9 +82,12 @@ fn what_is_kept_gives_the_same_pixels() {
         for _ in 0..2 {
             assert_eq!(run(&mut stage, &idle), kept, "{words}: an idle frame changed the image");
         }
-        // Another number of light and meshes: everything is made anew.
+        // Another number of light and meshes: everything is made anew, but for the shape of a hierarchy over the same
+        // triangles.
         let next = plan(&mut stage, &light, 0.0, numbers(2, 1));
-        assert_eq!(next.plan().steps.len(), fresh.plan().steps.len(), "{words}");
+        let (steps, all) = (next.plan().steps.len(), fresh.plan().steps.len());
+        let fitted = words.contains("traced") && (moved.plan().steps.len()..all).contains(&steps);
+        assert!(steps == all || fitted, "{words}: {steps} of {all}");
         assert_eq!(run(&mut stage, &next), made, "{words}");
         let sentence = stage.run(&idle).unwrap_err().to_string();
         assert!(sentence.contains("plan the frame again"), "{sentence}");

@@ -10,12 +10,18 @@ fn has(technique: &Technique, key: &str) -> bool {
     technique.get(key).is_some()
 }
 
-/// The techniques that have a setting of this key.
-fn owners(key: &str) -> Vec<Technique> {
-    Technique::all().into_iter().filter(|t| has(t, key)).collect()
+/// The techniques that their settings' keys may mean: those with maps. Others are meant by their names alone.
+fn meant() -> Vec<Technique> {
+    Technique::all().into_iter().filter(|t| has(t, "map")).collect()
 }
 
-/// The one technique that has all of these settings; the default one where they are settings of every technique.
+/// The techniques that have a setting of this key.
+fn owners(key: &str) -> Vec<Technique> {
+    meant().into_iter().filter(|t| has(t, key)).collect()
+}
+
+/// The one technique that has all of these settings; the default one where they are settings of every technique with
+/// maps.
 ///
 /// # Errors
 /// A sentence where a key is no setting, where no technique has all of them, and where several have.
@@ -24,8 +30,8 @@ pub fn technique(keys: &[&str]) -> Result<Technique, String> {
         return Err(format!("no technique has {key}{}", similar(key)));
     }
     let telling: Vec<&str> =
-        keys.iter().copied().filter(|key| owners(key).len() < Technique::NAMES.len()).collect();
-    let mut with_all = Technique::all();
+        keys.iter().copied().filter(|key| owners(key).len() < meant().len()).collect();
+    let mut with_all = meant();
     with_all.retain(|t| telling.iter().all(|key| has(t, key)));
     match with_all[..] {
         _ if telling.is_empty() => Ok(Technique::default()),

@@ -1,4 +1,42 @@
-//! The visible fraction from the blocking triangles themselves.
+//! The visible fraction from the blocking triangles themselves: exact but for the light's samples, and without noise.
+//!
+//! ```text
+//!        light, n × n samples              1. a tile's receivers and the light make a shaft
+//!       ▔▔▔▔▔▔▔▔▔▔▔▔▔▔                    2. the hierarchy of triangles is walked once a shaft
+//!        \\    ◣      //                    3. each pixel tests what is in it against all samples at once:
+//!         \\  ◥█◣   //                        three planes through the pixel and a triangle's edges are three
+//!          \\  ▀▀ //                          lines across the samples, and between them the hidden samples
+//!           ▁▁▁▁▁▁                           of a row are an interval of bits
+//!         a tile of 4×4 pixels
+//! ```
+//! The hidden samples of all triangles are united by OR. Nothing is counted twice and nothing is missed, the order does
+//! not matter, and the image has the same bits in each run. Frusta of rays and masks of samples are the ray tracing
+//! literature's (Reshetov and others 2005; Laine and others 2005 mask the samples of an area light by silhouettes).
+//!
+//! **Samples.** They lie on a grid turned by a step in n, so that no two share a row or a column of the light: an edge
+//! along the light's sides, as floors and boxes have them, is as fine as n² steps and not n. Each counts for the share of
+//! its cell that the light's shape covers, so that a disc, a polygon, a sphere's disc or a capsule's stadium is nothing
+//! but weights. Measured at 480×360, mean error in % with 64 samples, first with straight rows whose columns differ, then
+//! on the turned grid: a furnished room 0.73 / 0.28, its window 1.60 / 0.90, a bunny 0.63 / 0.76, Suzanne 0.78 / 0.88.
+//!
+//! **No bias.** A receiver is moved towards the viewer by what its depth and the arithmetic may be off, so that it lies on
+//! the viewer's side of its own surface. What its surface hides then follows from the surface's own triangles, and no
+//! plane of the pixel is needed: creases and facets as small as a pixel make no dots. A triangle in whose plane a receiver
+//! lies, to within rounding, hides nothing from it.
+//!
+//! **Dense shafts.** A shaft's leaves are counted before anything else is done. Where there are too many, or where the
+//! lists of an image are full, its pixels send rays to the same samples through the same hierarchy (`segment.glsl`: does
+//! anything block this segment), so that the image does not change but by rounding.
+//!
+//! **Lights.** A sun is a shaft along directions, wherever the scene ends. A sphere or capsule turns the disc or stadium
+//! that it shows towards the receivers of each shaft. A light texture is refused.
+//!
+//! **What it costs.** A walk costs 30 to 40 ns a node and eight shafts side by side, a test some 55 ns for eight pixels,
+//! one triangle and 64 samples, on a core of the machine that `docs/accuracy.md` names; so the frame's time goes with the
+//! tiles and with the triangles in their shafts, which is their density times the light's area. 256 samples cost half as
+//! much again.
+//!
+//! **Limits.** Meshes that the host draws itself are no triangles to it, and are refused. Fine penumbrae show n² steps.
 
 pub mod constants;
 pub mod passes;

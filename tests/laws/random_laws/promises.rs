@@ -62,6 +62,8 @@ pub fn turned(settings: &Technique) -> Likeness {
         Technique::BackProjection(_) => Likeness::Mean(0.03),
         // Samples are put one after the other, the first of two as good ones first.
         Technique::LinearLight(_) => Likeness::Mean(0.03),
+        // The grid of samples is turned, and its mirror image is another.
+        Technique::Traced(s) => Likeness::Noise(s.rays.min(s.samples.side().pow(2))),
         other => panic!("{other}: no promise yet"),
     }
 }
@@ -89,6 +91,9 @@ pub fn with_another(settings: &Technique) -> Rise {
         {
             Rise::By(1.0 / 1024.0 + SUMMED)
         }
+        // Each triangle only adds to what is hidden. With it the hierarchy's origin moves, and a sample at the very edge of
+        // another triangle may be seen; and where its tile sends rays from then on, these must go to all samples.
+        Technique::Traced(s) if s.rays >= s.samples.side().pow(2) => Rise::By(4.0 / 64.0),
         _ => Rise::Hides,
     }
 }
@@ -112,6 +117,8 @@ pub fn halves(settings: &Technique) -> f64 {
         Technique::RayMarch(_) => 0.14,
         Technique::OcclusionTextures(_) => 0.15,
         Technique::LinearLight(_) => 0.08,
+        // Few rays may stand for the samples where a tile is dense.
+        Technique::Traced(_) => 0.08,
         other => panic!("{other}: no promise yet"),
     }
 }
