@@ -165,6 +165,7 @@ impl ShadowNode {
         }
         let mut cache = self.cache();
         if !cache.agrees(plan.cache_key(), &plan.reuse) {
+            cache.forget_planned();
             let why = "counts on maps or pixels that a frame recorded since has replaced";
             return Err(Error::StalePlan(why));
         }

@@ -39,6 +39,10 @@ struct Maps {
     planned: u64,
     /// The hierarchy of triangles, which serves all lights.
     tree: Option<TreeKey>,
+    /// The hierarchy that plans which are not recorded yet make; `None` where they make several.
+    planned_tree: Option<TreeKey>,
+    /// A bit for each light with such a plan.
+    tree_planned: u64,
 }
 
 /// What a node still holds from recorded frames.
@@ -81,15 +85,37 @@ impl Cache {
         let cached = self.get(key);
         let planned = self.maps.get(key.technique.0 as usize).map_or(0, |maps| maps.planned);
         let others = planned & !bit(key.light);
-        Cached { maps: cached.maps.filter(|_| others == 0), ..cached }
+        let maps = cached.maps.filter(|_| others == 0);
+        Cached { maps, tree: self.tree_for_plan(key), ..cached }
+    }
+
+    /// The hierarchy that a frame finds if it is recorded behind the plans that were made before it.
+    fn tree_for_plan(&self, key: CacheKey) -> Option<TreeKey> {
+        let maps = self.maps.get(key.technique.0 as usize)?;
+        match maps.tree_planned & !bit(key.light) {
+            0 => maps.tree,
+            _ => maps.planned_tree.filter(|tree| tree.moved.is_some()),
+        }
+    }
+
+    /// Forgets the plans that are not recorded yet: one of them was left out, and others counted on it.
+    pub fn forget_planned(&mut self) {
+        for maps in &mut self.maps {
+            (maps.planned, maps.tree_planned, maps.planned_tree) = (0, 0, None);
+        }
     }
 
     /// Notes that a plan was made, which will draw over a technique's maps.
     pub fn planned(&mut self, key: CacheKey, reuse: &Reuse) {
-        if let Some(maps) = self.maps.get_mut(key.technique.0 as usize)
-            && reuse.makes_maps.is_some()
-        {
+        let Some(maps) = self.maps.get_mut(key.technique.0 as usize) else { return };
+        if reuse.makes_maps.is_some() {
             maps.planned |= bit(key.light);
+        }
+        if reuse.makes_tree.is_some() {
+            let alone = maps.tree_planned & !bit(key.light) == 0;
+            let same = alone || maps.planned_tree == reuse.makes_tree;
+            maps.planned_tree = reuse.makes_tree.filter(|_| same);
+            maps.tree_planned |= bit(key.light);
         }
     }
 
@@ -106,7 +132,10 @@ impl Cache {
             *pixels = Pixels { written, lit: cached.lit };
         }
         // The light's earlier plans that were never recorded are not waited for any longer.
-        self.maps.iter_mut().for_each(|maps| maps.planned &= !bit(key.light));
+        for maps in &mut self.maps {
+            maps.planned &= !bit(key.light);
+            maps.tree_planned &= !bit(key.light);
+        }
         if let Some(maps) = self.maps.get_mut(key.technique.0 as usize) {
             maps.tree = cached.tree;
             if reuse.makes_maps.is_some() {

@@ -73,7 +73,7 @@ pub(crate) struct Reuse {
     /// The list of triangles whose tree the plan uses, and whether it uses their places too.
     pub uses_tree: Option<(TreeKey, bool)>,
     /// The hierarchy that the plan makes, or fits to where the meshes are.
-    makes_tree: Option<TreeKey>,
+    pub makes_tree: Option<TreeKey>,
     /// Whether the plan makes every pixel lit.
     makes_lit: bool,
     revisions: Revisions,

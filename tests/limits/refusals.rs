@@ -216,8 +216,8 @@ fn descriptions() {
         d("an error that is no number", |d| d.omit = Omit::Below(f64::NAN), &["omit", "NaN"]),
         d(
             "too many techniques",
-            |d| d.other_techniques = vec![d.technique; 8],
-            &["8 other techniques", "7"],
+            |d| d.other_techniques = vec![d.technique; 16],
+            &["16 other techniques", "15"],
         ),
         d(
             "no map",

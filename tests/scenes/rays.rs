@@ -40,7 +40,7 @@ fn fractions_are_as_near_the_truth_as_those_of_stratified_random_rays() {
         let receivers = ground(&scene);
         let (truth, rays) = (Tracer::new(&scene).unwrap(), RayTracer::new(&scene).unwrap());
         let of_truth = |sampling: Sampling| {
-            truth.visible_fractions(&light, &receivers, &sampling).unwrap().visible
+            truth.visible_fractions(light, &receivers, &sampling).unwrap().visible
         };
         let exact = of_truth(Sampling::new(2048, 1).unwrap());
         let summary = |image: &[f32]| ErrorSummary::between(&exact, image, None).unwrap();
@@ -79,11 +79,11 @@ fn hit_in_f64(truth: &Tracer, from: DVec3, to: DVec3) -> bool {
     let (x, y) = normal.any_orthonormal_pair();
     let sampling = Sampling::one_grid(1, 1).unwrap();
     let light = |at: DVec3| RectangleLight::new(at, x * 1e-9, y * -1e-9).unwrap();
-    let offset = truth.offset(&light(to), from, &sampling);
+    let offset = truth.offset(light(to), from, &sampling);
     // Rays end an offset before the light's plane, and begin an offset along the normal.
     let light = light(to - normal * offset);
     let receiver = Receiver { position: from - normal * offset, normal };
-    truth.visible_fraction(&light, &receiver, &sampling, 0).unwrap().visible < 0.5
+    truth.visible_fraction(light, &receiver, &sampling, 0).unwrap().visible < 0.5
 }
 
 #[test]

@@ -18,6 +18,8 @@ pub fn smooth(settings: &Technique) -> f64 {
     match settings {
         Technique::OcclusionTextures(s) if s.placement == Placement::Fitted => A_BIN,
         Technique::SoftShadowMap(s) => SMOOTH + 2.0 * f64::from(s.tolerance),
+        // A sample at the very edge of a triangle is seen or hidden.
+        Technique::Traced(s) => 2.0 / f64::from(s.rays.min(s.samples.side().pow(2))),
         _ => SMOOTH,
     }
 }
