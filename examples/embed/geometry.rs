@@ -49,8 +49,18 @@ impl Model {
         let [r, g, b] = object.albedo;
         use vk::BufferUsageFlags as Usage;
         Ok(Self {
-            vertices: Buffer::with(gpu, "vertices", &vertices, Usage::VERTEX_BUFFER)?,
-            indices: Buffer::with(gpu, "indices", &mesh.indices, Usage::INDEX_BUFFER)?,
+            vertices: Buffer::with(
+                gpu,
+                "vertices",
+                &vertices,
+                Usage::VERTEX_BUFFER | Usage::STORAGE_BUFFER,
+            )?,
+            indices: Buffer::with(
+                gpu,
+                "indices",
+                &mesh.indices,
+                Usage::INDEX_BUFFER | Usage::STORAGE_BUFFER,
+            )?,
             count: mesh.indices.len() as u32,
             albedo_role: [r, g, b, role],
             bounds: [least.map(|x| x - swell), largest.map(|x| x + swell)],

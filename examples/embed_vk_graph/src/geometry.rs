@@ -73,8 +73,14 @@ impl Uploaded {
             Ok(Arc::new(made))
         };
         Ok(Some(Self {
-            vertices: buffer(Usage::VERTEX_BUFFER, bytemuck::cast_slice(&vertices))?,
-            indices: buffer(Usage::INDEX_BUFFER, bytemuck::cast_slice(&mesh.indices))?,
+            vertices: buffer(
+                Usage::VERTEX_BUFFER | Usage::STORAGE_BUFFER,
+                bytemuck::cast_slice(&vertices),
+            )?,
+            indices: buffer(
+                Usage::INDEX_BUFFER | Usage::STORAGE_BUFFER,
+                bytemuck::cast_slice(&mesh.indices),
+            )?,
             count: mesh.indices.len() as u32,
             bounds: mesh.bounds(),
         }))

@@ -100,8 +100,16 @@ fn upload(gpu: &Gpu, mesh: &scene::Mesh) -> (wgpu::Buffer, wgpu::Buffer) {
         .map(|(&position, &normal)| Vertex { position, normal })
         .collect();
     (
-        buffer("vertices", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX),
-        buffer("indices", bytemuck::cast_slice(&mesh.indices), wgpu::BufferUsages::INDEX),
+        buffer(
+            "vertices",
+            bytemuck::cast_slice(&vertices),
+            wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::STORAGE,
+        ),
+        buffer(
+            "indices",
+            bytemuck::cast_slice(&mesh.indices),
+            wgpu::BufferUsages::INDEX | wgpu::BufferUsages::STORAGE,
+        ),
     )
 }
 
