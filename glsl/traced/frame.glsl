@@ -30,7 +30,7 @@ struct Frame {
     uint kind;          // LAMP, SUN or ROUND
     uint nodes;         // how many nodes the hierarchy has
     uint most;          // the most leaves that a shaft may hold
-    uint unused;
+    float snap;         // the step of the grid that a raster moves vertices to, in pixels
     uint samples;       // rays that a pixel of a dense shaft sends
     float weight;       // the sum of the samples' weights; 0 where all weigh the same
     uint side;          // samples along a side of the light: 8, 16 or 32
@@ -132,6 +132,18 @@ bool in_light(vec3 p)
     return dot(to, to) <= frame.half_light.y * frame.half_light.y;
 }
 
+// How much the depth changes from a pixel to the next along an axis: by more of the two sides where they are of one
+// surface, else by less.
+float slope_along(ivec2 pixel, float depth, ivec2 axis)
+{
+    ivec2 last = frame.extent - 1;
+    float before = abs(texelFetch(gbuffer_depth, clamp(pixel - axis, ivec2(0), last), 0).x - depth);
+    float after = abs(texelFetch(gbuffer_depth, clamp(pixel + axis, ivec2(0), last), 0).x - depth);
+    float less = min(before, after);
+    float more = max(before, after);
+    return more < 4.0 * less ? more : less;
+}
+
 // The receiver of a pixel, moved towards the viewer by as much as its depth and its position may be off: so it lies on
 // the viewer's side of its own surface.
 Receiver receiver_of(ivec2 pixel)
@@ -150,6 +162,8 @@ Receiver receiver_of(ivec2 pixel)
     vec4 p = at_zero + frame.eye_from_ndc[2] * depth;
     vec3 from_eye = p.xyz / p.w;
     float step = frame.depth_step > 0.0 ? frame.depth_step * depth : -frame.depth_step;
+    // A raster that moves vertices, by half a step of its grid at most, moves the surface.
+    step += 0.5 * frame.snap * (slope_along(pixel, depth, ivec2(1, 0)) + slope_along(pixel, depth, ivec2(0, 1)));
     vec4 q = p + frame.eye_from_ndc[2] * (frame.background == 0.0 ? step : -step);
     vec3 moved = from_eye - q.xyz / q.w;
     vec3 towards = frame.towards.w > 0.0 ? -normalize(from_eye) : frame.towards.xyz;

@@ -40,8 +40,8 @@ pub struct PixelConstants {
     pub nodes: u32,
     /// The most leaves that a shaft may hold.
     pub most: u32,
-    /// Keeps what follows in its place.
-    pub unused: u32,
+    /// The step of the grid that the raster moves vertices to, in pixels.
+    pub snap: f32,
     /// How many rays a pixel of a dense shaft sends.
     pub samples: u32,
     /// The sum of the samples' weights; 0 where all weigh the same.
@@ -91,7 +91,7 @@ pub(super) fn declare(graph: &mut Graph, settings: &Settings, inputs: &PassInput
         },
         nodes: space.nodes,
         most: settings.leaves,
-        unused: 0,
+        snap: inputs.snap,
         samples: settings.rays.min(side * side),
         weight: weight as f32 * shared as f32,
         side,
