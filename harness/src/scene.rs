@@ -32,7 +32,12 @@ impl SceneBuffers {
                 return Ok(None);
             }
             let vertices = |name, data| {
-                HostBuffer::with_data::<[f32; 3]>(device, name, data, Usage::VERTEX_BUFFER | Usage::STORAGE_BUFFER)
+                HostBuffer::with_data::<[f32; 3]>(
+                    device,
+                    name,
+                    data,
+                    Usage::VERTEX_BUFFER | Usage::STORAGE_BUFFER,
+                )
             };
             Ok(Some(OwnedMesh {
                 positions: vertices("positions", &mesh.positions)?,

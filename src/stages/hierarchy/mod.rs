@@ -76,7 +76,8 @@ impl MeshPush {
 
     /// Morton cells a unit of a box with these sides; none along a side of no length.
     pub fn cells_of(size: [f64; 3]) -> [f32; 4] {
-        let along = |s: f64| if s > 0.0 { (CELLS / s).min(f64::from(f32::MAX)) as f32 } else { 0.0 };
+        let along =
+            |s: f64| if s > 0.0 { (CELLS / s).min(f64::from(f32::MAX)) as f32 } else { 0.0 };
         [along(size[0]), along(size[1]), along(size[2]), 0.0]
     }
 
@@ -175,12 +176,8 @@ pub(crate) fn declare(graph: &mut Graph, sizes: Sizes, need: &Need) -> Hierarchy
         vk::Format::R32G32B32A32_SFLOAT,
         3 * capacity.next_multiple_of(LEAF),
     );
-    let nodes = image(
-        graph,
-        "hierarchy.nodes",
-        vk::Format::R32G32B32A32_UINT,
-        2 * capacity.div_ceil(LEAF),
-    );
+    let nodes =
+        image(graph, "hierarchy.nodes", vk::Format::R32G32B32A32_UINT, 2 * capacity.div_ceil(LEAF));
     let kept = |graph: &mut Graph, name, bytes, until| {
         let id = graph.buffer(name, bytes);
         graph.keep_until(id, until);
@@ -218,10 +215,7 @@ pub(crate) fn declare(graph: &mut Graph, sizes: Sizes, need: &Need) -> Hierarchy
     ));
     graph.push(Pass {
         name: "hierarchy.triangles",
-        uses: smallvec![
-            read(0, places),
-            Use::bound(1, triangles, Access::ImageWrite),
-        ],
+        uses: smallvec![read(0, places), Use::bound(1, triangles, Access::ImageWrite),],
         push: Push::NONE,
         work: Work::EachMesh { shader: module!("hierarchy/triangles.comp") },
         need: *need,
