@@ -61,7 +61,7 @@ impl PassObjects {
             }
             Work::EachMesh { .. } => (vk::ShaderStageFlags::COMPUTE, size_of::<MeshPush>()),
             // A command writes them into a buffer, and no shader sees them pushed.
-            Work::Constants { .. } => (vk::ShaderStageFlags::COMPUTE, 0),
+            Work::Constants { .. } | Work::FrameNumber => (vk::ShaderStageFlags::COMPUTE, 0),
             Work::Raster { draw: Draw::Layer { .. }, .. } => {
                 // Each mesh pushes its matrix; the pass's own push constants follow it.
                 (vk::ShaderStageFlags::VERTEX, pass.push.bytes().len().max(size_of::<DepthPush>()))
@@ -71,20 +71,19 @@ impl PassObjects {
                 pass.push.bytes().len(),
             ),
         };
-        let info =
-            LayoutsInfo {
-                bindings: &bindings,
-                push_stages: stages,
-                push_bytes: push_bytes as u32,
-                meshes: matches!(pass.work, Work::EachMesh { .. }),
-            };
+        let info = LayoutsInfo {
+            bindings: &bindings,
+            push_stages: stages,
+            push_bytes: push_bytes as u32,
+            meshes: matches!(pass.work, Work::EachMesh { .. }),
+        };
         let layouts = match &host.layouts {
             Some(shared) => shared.find(&host.device, &info, pass.name)?,
             None => PassLayouts::new(&mut maker.owner, &host.device, &info, pass.name)?,
         };
         let mut made = Self { layouts, push_stages: stages, ..Self::default() };
         match pass.work {
-            Work::Constants { .. } => {}
+            Work::Constants { .. } | Work::FrameNumber => {}
             Work::Dispatch { shader, .. }
             | Work::Indirect { shader, .. }
             | Work::EachMesh { shader } => {

@@ -28,9 +28,7 @@ pub use pass::{
 pub(crate) use plan::Compiler;
 pub use plan::{Barriers, Border, BoundaryUse, Plan, ResourceBarrier, Skipped, Step, compile};
 pub(crate) use resource::aspects;
-pub use resource::{
-    Owner, Resource, ResourceId, Shape, Until, is_color_format, is_depth_format,
-};
+pub use resource::{Owner, Resource, ResourceId, Shape, Until, is_color_format, is_depth_format};
 pub use show::Run;
 pub use why::{Part, Why};
 
@@ -84,6 +82,12 @@ impl Graph {
     pub fn buffer(&mut self, name: &'static str, bytes: u64) -> ResourceId {
         let shape = Shape::Buffer { bytes: bytes.max(16) };
         self.add(Resource { name, shape, owner: Owner::Transient, until: None })
+    }
+
+    /// Declares a buffer of at least 16 bytes that the node reads on the host once the device has completed the frame.
+    pub fn host_read_buffer(&mut self, name: &'static str, bytes: u64) -> ResourceId {
+        let shape = Shape::Buffer { bytes: bytes.max(16) };
+        self.add(Resource { name, shape, owner: Owner::HostRead, until: None })
     }
 
     /// Makes the content of a transient resource stay for later frames.

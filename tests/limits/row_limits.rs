@@ -100,7 +100,7 @@ fn modules(pass: &Pass) -> Vec<antumbra::shaders::Module> {
         Work::Dispatch { shader, .. }
         | Work::Indirect { shader, .. }
         | Work::EachMesh { shader } => vec![shader],
-        Work::Constants { .. } => Vec::new(),
+        Work::Constants { .. } | Work::FrameNumber => Vec::new(),
         Work::Raster { vertex, fragment, .. } => std::iter::once(vertex).chain(fragment).collect(),
     }
 }

@@ -84,7 +84,7 @@ fn modules(pass: &Pass) -> Vec<Module> {
         Work::Dispatch { shader, .. }
         | Work::Indirect { shader, .. }
         | Work::EachMesh { shader } => vec![shader],
-        Work::Constants { .. } => Vec::new(),
+        Work::Constants { .. } | Work::FrameNumber => Vec::new(),
         Work::Raster { vertex, fragment, .. } => std::iter::once(vertex).chain(fragment).collect(),
     }
 }
