@@ -9,7 +9,7 @@
 //! does. An image in which every pixel is lit already stays as it is whatever the revisions are.
 
 use super::triangles::TreeKey;
-use crate::graph::{Graph, Owner, ResourceId, Until, Why};
+use crate::graph::{Graph, Owner, ResourceId, Until, Why, Work};
 use crate::lent::Visibility;
 use ash::vk;
 
@@ -211,7 +211,9 @@ impl CameraDependence {
         loop {
             let before = depends.clone();
             for (pass_depends, pass) in self.passes.iter_mut().zip(graph.passes()) {
-                *pass_depends |= pass.uses.iter().any(|u| depends[u.resource.index()]);
+                // What constants a frame has is not in the graph; to write them costs nothing.
+                *pass_depends |= matches!(pass.work, Work::Constants { .. } | Work::FrameNumber)
+                    || pass.uses.iter().any(|u| depends[u.resource.index()]);
                 if *pass_depends {
                     pass.writes().for_each(|id| depends[id.index()] = true);
                 }
