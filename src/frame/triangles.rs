@@ -71,7 +71,8 @@ impl TriangleList {
     /// Lists the blocking meshes of a frame.
     ///
     /// # Errors
-    /// [`Error::Frame`] for meshes beyond the description's capacity, and for indices of 8 bits.
+    /// [`Error::Frame`] for meshes beyond the description's capacity, for indices of 8 bits, and for a blocking mesh that
+    /// the host draws itself where there is an audit.
     pub fn fill(
         &mut self,
         description: &Description,
@@ -80,6 +81,15 @@ impl TriangleList {
         let Capacity { triangles: capacity, meshes: most } = description.capacity;
         self.meshes.clear();
         let blocking = |m: &&MeshInstance| m.role.blocks() && has_triangles(m);
+        let drawn = |m: &MeshInstance| matches!(m.geometry, Geometry::HostDrawn(_));
+        if let Some(index) = meshes.iter().position(|m| m.role.blocks() && drawn(m))
+            && description.audit > 0
+        {
+            return bad(format!(
+                "mesh {index} is drawn by the host, which has no triangles for the audit to trace; give its buffers, \
+                 or set audit to 0"
+            ));
+        }
         let in_buffers = |m: &MeshInstance| match m.geometry {
             Geometry::Buffers(buffers) => Some((*m, buffers)),
             Geometry::HostDrawn(_) => None,
@@ -155,9 +165,9 @@ impl TriangleList {
     pub fn space(&self, frame: &Frame, description: &Description) -> Space {
         let camera = Camera::of(&frame.world_from_ndc);
         let near = if frame.far_depth() == 0.0 { 1.0 } else { 0.0 };
-        let eye = camera.eye.unwrap_or_else(|| {
-            frame.world_from_ndc.project_point3(DVec3::new(0.0, 0.0, near))
-        });
+        let eye = camera
+            .eye
+            .unwrap_or_else(|| frame.world_from_ndc.project_point3(DVec3::new(0.0, 0.0, near)));
         let towards = match camera.eye {
             Some(_) => DVec4::W,
             // Depth grows towards the viewer where it is reversed.

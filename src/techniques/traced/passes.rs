@@ -210,37 +210,56 @@ fn declare_constants(
     capacity: u32,
     inputs: &PassInputs,
 ) {
-    let PassInputs { gbuffer, need, .. } = *inputs;
+    let need = inputs.need;
     let (_, space) = inputs.tree;
-    let shape = space.light.shape();
-    let half_light = half_of(&space.light);
-    let weights = weights::weights(shape, half_light);
+    let weights = weights::weights(space.light.shape(), half_of(&space.light));
     let weight: u32 = weights.iter().flatten().map(|&w| u32::from(w)).sum();
-    let row = |i: usize| space.light_from_here.row(i).as_vec4().to_array();
-    let first = LightConstants {
-        eye_from_ndc: space.eye_from_ndc.as_mat4().to_cols_array(),
-        light_from_here: [row(0), row(1), row(2)],
-        half_light: half_light.map(|half| half as f32),
-        background: gbuffer.background,
-        depth_step: space.depth_step,
-    };
-    graph.push(Pass::constants("traced.light", constants, 0, &first, need));
+    graph.push(Pass::constants("traced.light", constants, 0, &LightConstants::of(inputs), need));
     let second = PixelConstants {
-        eye: space.eye.as_vec3().extend(0.0).to_array(),
-        towards: space.towards.as_vec4().to_array(),
-        extent: gbuffer.extent.map(|e| e as i32),
-        masked: u32::from(gbuffer.mask.is_some()),
-        sun: u32::from(matches!(shape, Shape::Sun { .. })),
-        nodes: space.nodes,
         most: settings.leaves,
         capacity,
         samples: settings.rays,
         weight: weight as f32,
+        ..PixelConstants::of(inputs)
     };
     graph.push(Pass::constants("traced.pixels", constants, 128, &second, need));
     let weights = weights.unwrap_or([0; 64]);
     let third = SampleConstants { weights: bytemuck::cast(weights) };
     graph.push(Pass::constants("traced.weights", constants, 196, &third, need));
+}
+
+impl LightConstants {
+    /// The first part of a frame's constants.
+    pub(crate) fn of(inputs: &PassInputs) -> Self {
+        let (_, space) = inputs.tree;
+        let row = |i: usize| space.light_from_here.row(i).as_vec4().to_array();
+        Self {
+            eye_from_ndc: space.eye_from_ndc.as_mat4().to_cols_array(),
+            light_from_here: [row(0), row(1), row(2)],
+            half_light: half_of(&space.light).map(|half| half as f32),
+            background: inputs.gbuffer.background,
+            depth_step: space.depth_step,
+        }
+    }
+}
+
+impl PixelConstants {
+    /// The second part of a frame's constants, with zeros for the technique's own.
+    pub(crate) fn of(inputs: &PassInputs) -> Self {
+        let (_, space) = inputs.tree;
+        Self {
+            eye: space.eye.as_vec3().extend(0.0).to_array(),
+            towards: space.towards.as_vec4().to_array(),
+            extent: inputs.gbuffer.extent.map(|e| e as i32),
+            masked: u32::from(inputs.gbuffer.mask.is_some()),
+            sun: u32::from(matches!(space.light.shape(), Shape::Sun { .. })),
+            nodes: space.nodes,
+            most: 0,
+            capacity: 0,
+            samples: 0,
+            weight: 0.0,
+        }
+    }
 }
 
 /// Half the width and height of the rectangle of the light's samples, m; of a sun the tangents of half its angular size.
