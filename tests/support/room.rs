@@ -33,12 +33,8 @@ pub fn room() -> Scene {
     }
     let ball = DMat4::from_translation(DVec3::new(0.0, 0.9, 0.1));
     scene.add("ball", generate::uv_sphere(0.12, 32, 16), ball, Role::Both);
-    let panel = RectangleLight::facing(
-        DVec3::new(0.4, 2.55, 0.2),
-        DVec3::NEG_Y,
-        DVec3::NEG_Z,
-        [0.9, 0.4],
-    );
+    let panel =
+        RectangleLight::facing(DVec3::new(0.4, 2.55, 0.2), DVec3::NEG_Y, DVec3::NEG_Z, [0.9, 0.4]);
     scene.lights.push(AreaLight {
         name: "panel".into(),
         light: panel.unwrap().into(),

@@ -5,9 +5,9 @@ use antumbra::audit::{ErrorWindow, MeasuredError};
 use antumbra::scene::{Camera, Role, Scene, generate};
 use antumbra::{LightIndex, Slot};
 use antumbra_harness::{HeadlessDevice, Stage, View};
+use antumbra_tests::device::unwatched;
 use antumbra_tests::measure::{Setup, model, settings, summary};
 use antumbra_tests::room;
-use antumbra_tests::device::unwatched;
 
 /// The image's size: a few pixels more or less than cells.
 const EXTENT: [u32; 2] = [157, 118];
