@@ -10,10 +10,13 @@
 const uint LISTED = 1u;
 const uint TRACED = 2u;
 
-// Candidates and pixels a block, and the invocations that send a pixel's rays (src/audit/passes.rs).
+// Candidates and pixels a block (src/audit/passes.rs), and pixels a workgroup (audit/trace.comp).
 const uint CANDIDATES_A_BLOCK = 256u;
 const uint PIXELS_A_BLOCK = 64u;
-const uint LANES = 16u;
+const uint PIXELS_A_GROUP = 16u;
+
+// What is written of a pixel whose walk was cut off; else the hidden samples, and in the upper half all samples.
+const uint CUT_OFF = 0xffffffffu;
 
 // A visible fraction below this is of shadow or penumbra (src/truth/metrics.rs).
 const float FULL = 1.0 - 1.0e-3;

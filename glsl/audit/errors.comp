@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "audit/candidates.glsl"
 
-// Compares what the technique wrote with what the rays found, and sums the errors of a block of pixels in their order. One
+// Compares what the technique wrote with the truth, and sums the errors of a block of pixels in their order. One
 // invocation handles one block.
 
 layout(local_size_x = 64) in;
@@ -37,18 +37,15 @@ void main()
     Sums sums = Sums(0u, 0.0, 0.0, 0.0, 0.0, uint[3](0u, 0u, 0u));
     uint end = min((block + 1u) * PIXELS_A_BLOCK, listed[0].x);
     for (uint nth = block * PIXELS_A_BLOCK; nth < end; ++nth) {
-        uint hidden = 0u;
-        uint sent = 0u;
-        for (uint i = 0u; i < 2u * LANES; ++i) {
-            uint part = parts[2u * LANES * nth + i];
-            hidden += part & 0xffffu;
-            sent += part >> 16;
-        }
+        uint part = parts[nth];
+        uint hidden = part & 0xffffu;
+        uint all = part >> 16;
+        bool whole = part != CUT_OFF;
         float v = uintBitsToFloat(listed[nth + 1u].y);
-        float truth = sent > 0u ? 1.0 - float(hidden) / float(sent) : 1.0;
+        float truth = all > 0u ? 1.0 - float(hidden) / float(all) : 1.0;
         // What is no number is as wrong as can be.
         float error = is_finite(v) ? v - truth : 1.0;
-        if (truth < FULL || !(is_finite(v) && v >= FULL)) {
+        if (whole && (truth < FULL || !(is_finite(v) && v >= FULL))) {
             sums.pixels += 1u;
             sums.size += abs(error);
             sums.square += error * error;

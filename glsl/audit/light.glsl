@@ -1,4 +1,4 @@
-// Entered from audit/choose.comp and audit/rays.comp.
+// Entered from audit/choose.comp and audit/trace.comp.
 //
 // The light as a pixel sees it: a figure in a plane, whose points all count the same (`antumbra::truth` has the table).
 
@@ -75,9 +75,10 @@ Figure figure_of(Receiver r)
         f.stadium = vec2(0.0, push.radius);
         return f;
     }
-    f.there = f.there && distance > 0.0;
     vec3 size = max(abs(r.position), abs(push.center));
-    f.end = max(1.0 - 16.0 * ROUNDING * max(max(size.x, size.y), size.z) / max(distance, 1.0e-30), 0.0);
+    float short_of = 16.0 * ROUNDING * max(max(size.x, size.y), size.z);
+    f.there = f.there && distance > 2.0 * short_of;
+    f.end = 1.0 - short_of / max(distance, 2.0 * short_of);
     return f;
 }
 

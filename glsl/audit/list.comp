@@ -49,7 +49,7 @@ void main()
     uint chosen = min(all, push.pixels);
     if (block == 0u) {
         listed[0] = uvec4(chosen, all, 0u, 0u);
-        groups[0] = (chosen + 1u) / 2u;
+        groups[0] = (chosen + PIXELS_A_GROUP - 1u) / PIXELS_A_GROUP;
         groups[1] = 1u;
         groups[2] = 1u;
     }

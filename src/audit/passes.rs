@@ -1,4 +1,4 @@
-//! The passes of an audit: candidates, a list of those that may be in shadow, their rays, and the figures.
+//! The passes of an audit: candidates, a list of those that may be in shadow, their exact fraction, and the figures.
 
 use super::FIGURE_BYTES;
 use crate::Shape;
@@ -13,14 +13,12 @@ use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 use smallvec::smallvec;
 
-/// Candidates for each pixel that is traced: so many, that a fourth of the image in shadow fills an audit.
-const CANDIDATES_A_PIXEL: u32 = 4;
+/// Candidates for each pixel that is traced: so many that shadow on an eighth of the image fills an audit.
+const CANDIDATES_A_PIXEL: u32 = 8;
 /// The candidates of a block (`audit/list.comp`).
 const CANDIDATES_A_BLOCK: u32 = 256;
 /// The traced pixels of a block (`audit/blocks.comp`).
 const PIXELS_A_BLOCK: u32 = 64;
-/// The invocations that send the rays of a pixel (`audit/rays.comp`).
-const LANES: u64 = 16;
 /// The corners of a polygon.
 const CORNERS: usize = 16;
 /// The largest whole number of a corner's coordinate (`audit/light.glsl`).
@@ -121,7 +119,7 @@ fn packed(corners: &[[f64; 2]], light: &Light) -> [u32; CORNERS] {
     packed
 }
 
-/// The workgroups of 64 invocations for a number of them: at most 2¹⁸, and so 4,096 along x.
+/// The workgroups of 64 invocations for a number of them: at most 2¹⁹, and so 8,192 along x.
 fn groups(invocations: u32) -> [u32; 3] {
     [invocations.div_ceil(64), 1, 1]
 }
@@ -147,7 +145,7 @@ pub(crate) fn declare(
     let sums = graph.buffer("audit.sums", 4 * u64::from(blocks));
     let listed = graph.buffer("audit.listed", 16 * (1 + u64::from(pixels)));
     let arguments = graph.buffer("audit.arguments", 16);
-    let parts = graph.buffer("audit.parts", 4 * 2 * LANES * u64::from(pixels));
+    let parts = graph.buffer("audit.parts", 4 * u64::from(pixels));
     let errors = graph.buffer("audit.errors", 32 * u64::from(pixel_blocks));
     let figures = graph.host_read_buffer("audit.figures", FIGURE_BYTES);
 
@@ -174,23 +172,19 @@ pub(crate) fn declare(
     let (name, shader) = ("audit.list", module!("audit/list.comp"));
     let uses = smallvec![read(0, chosen), read(1, sums), write(2, listed), write(3, arguments)];
     graph.push(Pass::compute(name, shader, groups(blocks), push, uses, need));
-    for (name, shader, access) in [
-        ("audit.rays", module!("audit/rays.comp"), Access::BufferWriteCompute),
-        ("audit.refine", module!("audit/rays_refine.comp"), Access::BufferUpdate),
-    ] {
-        let mut uses = Uses::from_slice(&inputs.gbuffer.bound());
-        uses.extend([
-            read(2, frame),
-            image(3, tree.nodes),
-            read(4, tree.header),
-            read(5, listed),
-            image(6, tree.triangles),
-            Use::bound(7, parts, access),
-            Use::fixed(arguments, Access::Indirect),
-        ]);
-        let work = Work::Indirect { shader, arguments, offset: 0 };
-        graph.push(Pass { name, uses, push: light, work, need: *need });
-    }
+    let mut uses = Uses::from_slice(&inputs.gbuffer.bound());
+    uses.extend([
+        read(2, frame),
+        image(3, tree.nodes),
+        read(4, tree.header),
+        read(5, listed),
+        image(6, tree.triangles),
+        write(7, parts),
+        Use::fixed(arguments, Access::Indirect),
+    ]);
+    let shader = module!("audit/trace.comp");
+    let work = Work::Indirect { shader, arguments, offset: 0 };
+    graph.push(Pass { name: "audit.trace", uses, push: light, work, need: *need });
     let push = Push::new(&ListPush { candidates, blocks: pixel_blocks, pixels });
     let (name, shader) = ("audit.errors", module!("audit/errors.comp"));
     let uses = smallvec![read(0, listed), read(1, parts), write(2, errors)];

@@ -1,0 +1,234 @@
+// Entry of the pass audit.trace (src/audit/passes.rs).
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "traced/frame.glsl"
+#include "audit/candidates.glsl"
+#include "audit/light.glsl"
+#include "audit/pyramid.glsl"
+
+// Counts the cells of the light, of 32 by 32, whose samples are hidden from a listed pixel: all triangles of its pyramid
+// are tested against all of them. One invocation handles one pixel.
+//
+// The samples lie on a turned grid, and what a triangle hides of a row of cells is an interval of bits, as in
+// traced/cover.glsl, which has the derivation for the light's own plane. Here the plane is that of the pixel's figure, and
+// a fourth line always bounds the interval: a segment ends before it has reached the triangle's plane.
+
+layout(local_size_x = 16) in;
+
+layout(set = 0, binding = 3, rgba32ui) readonly uniform uimage2D nodes;
+layout(set = 0, binding = 4, std430) readonly buffer Header { vec4 root_low; vec4 root_step; };
+layout(set = 0, binding = 5, std430) readonly buffer Listed { uvec4 listed[]; };
+layout(set = 0, binding = 6, rgba32f) readonly uniform image2D triangles;
+layout(set = 0, binding = 7, std430) writeonly buffer Parts { uint parts[]; };
+
+// Cells along a side of the light.
+const int SIDE = 32;
+
+const float FAR = 1.0e9;
+
+// A line's bounds on i in the jth row of cells, as x + y j.
+struct Bounds {
+    vec2 least;
+    vec2 most;
+    bool is_least;
+};
+
+// The bounds of what lies on the inner side of a plane, dot(n, s) + c >= 0 for a sample s from the figure's middle.
+Bounds bounds_of(Figure f, vec3 n, float c)
+{
+    const float TURN = 1.0 / float(SIDE);
+    vec2 slope = vec2(dot(n, f.u), dot(n, f.v)) * f.half_size;
+    vec2 cell = slope * (2.0 * TURN);
+    float k = c - slope.x - slope.y + dot(cell, vec2(0.5 * TURN, 1.0 - 0.5 * TURN));
+    float i = cell.x - cell.y * TURN;
+    float j = cell.y + cell.x * TURN;
+    // A plane along a row of cells bounds none of them, or all.
+    float least = 1.0e-7 * (abs(j) * float(SIDE) + abs(k)) + 1.0e-37;
+    i = abs(i) < least ? (i < 0.0 ? -least : least) : i;
+    vec2 at = vec2(-k, -j) / i;
+    return i > 0.0 ? Bounds(at, vec2(FAR, 0.0), true) : Bounds(vec2(-FAR, 0.0), at, false);
+}
+
+// The cells of a row from above `least` to `most`; a sample at the very edge of two triangles belongs to one.
+uint interval(float least, float most)
+{
+    int from = int(clamp(least + 1.0, 0.0, float(SIDE)));
+    int to = int(clamp(most + 1.0, 0.0, float(SIDE)));
+    return bitfieldInsert(0u, 0xffffffffu, from, max(to - from, 0));
+}
+
+// The light's cells, four rows of cells each.
+struct Cells {
+    uvec4 a;
+    uvec4 b;
+    uvec4 c;
+    uvec4 d;
+    uvec4 e;
+    uvec4 f;
+    uvec4 g;
+    uvec4 h;
+};
+
+// The bounds of a triangle's four lines, one a component.
+struct Lines {
+    vec4 least;
+    vec4 least_step;
+    vec4 most;
+    vec4 most_step;
+};
+
+uint row_within(Lines l, float j)
+{
+    vec4 from = l.least + l.least_step * j;
+    vec4 to = l.most + l.most_step * j;
+    return interval(max(max(from.x, from.y), max(from.z, from.w)), min(min(to.x, to.y), min(to.z, to.w)));
+}
+
+// Four rows of cells, the first of them the jth.
+uvec4 rows_within(Lines l, float j)
+{
+    return uvec4(row_within(l, j), row_within(l, j + 1.0), row_within(l, j + 2.0), row_within(l, j + 3.0));
+}
+
+// The cells that a triangle hides, with those that are hidden already.
+Cells with_hidden(Cells hidden, Figure f, vec3 tip, vec3 middle, uint triangle)
+{
+    vec4 corner = imageLoad(triangles, texel(3u * triangle));
+    vec3 a = corner.xyz - tip;
+    vec3 b = imageLoad(triangles, texel(3u * triangle + 1u)).xyz - tip;
+    vec3 c = imageLoad(triangles, texel(3u * triangle + 2u)).xyz - tip;
+    vec3 normal = cross(b - a, c - a);
+    float volume = dot(normal, a);
+    float side = volume < 0.0 ? -1.0 : 1.0;
+    vec3 ab = cross(a, b) * side;
+    vec3 bc = cross(b, c) * side;
+    vec3 ca = cross(c, a) * side;
+    Bounds e0 = bounds_of(f, ab, dot(ab, middle));
+    Bounds e1 = bounds_of(f, bc, dot(bc, middle));
+    Bounds e2 = bounds_of(f, ca, dot(ca, middle));
+    normal *= side;
+    float reach = push.kind == SUN ? 3.0e38 : dot(normal, middle) - abs(volume) / f.end;
+    Bounds own = bounds_of(f, push.kind == SUN ? vec3(0.0) : normal, reach);
+    // A receiver in the triangle's plane sees it edge-on. A triangle wholly before the receiver is bounded on both sides;
+    // where rounding leaves a sliver of it open, it hides nothing.
+    vec3 size = max(max(abs(a), abs(b)), abs(c)) + abs(tip);
+    bool flat_on = abs(volume) <= 2.0 * ROUNDING * length(normal) * (size.x + size.y + size.z);
+    bool open = e0.is_least == e1.is_least && e1.is_least == e2.is_least;
+    float nearest = min(min(-dot(f.normal, a), -dot(f.normal, b)), -dot(f.normal, c));
+    bool none = corner.w == 0.0 || flat_on || (open && nearest > 0.0);
+    Lines l;
+    l.least = vec4(none ? FAR : e0.least.x, e1.least.x, e2.least.x, own.least.x);
+    l.least_step = vec4(none ? 0.0 : e0.least.y, e1.least.y, e2.least.y, own.least.y);
+    l.most = vec4(e0.most.x, e1.most.x, e2.most.x, own.most.x);
+    l.most_step = vec4(e0.most.y, e1.most.y, e2.most.y, own.most.y);
+    hidden.a |= rows_within(l, 0.0);
+    hidden.b |= rows_within(l, 4.0);
+    hidden.c |= rows_within(l, 8.0);
+    hidden.d |= rows_within(l, 12.0);
+    hidden.e |= rows_within(l, 16.0);
+    hidden.f |= rows_within(l, 20.0);
+    hidden.g |= rows_within(l, 24.0);
+    hidden.h |= rows_within(l, 28.0);
+    return hidden;
+}
+
+// The cells of the jth row of cells whose samples are of the figure; `mirror` is -1 along the axes that are mirrored.
+uint cells_of(Figure f, vec2 mirror, int j)
+{
+    uint cells = 0u;
+    for (int i = 0; i < SIDE; ++i) {
+        vec2 at = vec2(i, j) + vec2(float(j) + 0.5, float(SIDE - i) - 0.5) / float(SIDE);
+        cells |= is_of(f, (at / float(SIDE) * 2.0 - 1.0) * mirror) ? 1u << i : 0u;
+    }
+    return cells;
+}
+
+// How many cells there are.
+uint count_of(uvec4 cells)
+{
+    ivec4 counts = bitCount(cells);
+    return uint(counts.x + counts.y + counts.z + counts.w);
+}
+
+// Four rows of cells whose samples are of the figure.
+uvec4 rows_of(Figure f, vec2 mirror, int j)
+{
+    return uvec4(cells_of(f, mirror, j), cells_of(f, mirror, j + 1), cells_of(f, mirror, j + 2),
+                 cells_of(f, mirror, j + 3));
+}
+
+void main()
+{
+    uint nth = gl_GlobalInvocationID.x;
+    if (nth >= listed[0].x) {
+        return;
+    }
+    uvec4 candidate = listed[nth + 1u];
+    Receiver r = receiver_of(ivec2(candidate.x & 0xffffu, candidate.x >> 16));
+    Figure f = figure_of(r);
+    Pyramid p = pyramid_of(r.position, f, root_low.xyz, root_step.xyz);
+    // Each pixel has one of four mirror images of the grid: what the grid gets wrong is not the same in all of them.
+    vec2 mirror = vec2((candidate.w & 1u) != 0u ? -1.0 : 1.0, (candidate.w & 2u) != 0u ? -1.0 : 1.0);
+    f.u *= mirror.x;
+    f.v *= mirror.y;
+    vec3 middle = f.base - r.position;
+    const uvec4 ALL = uvec4(0xffffffffu);
+    const uvec4 NONE = uvec4(0u);
+    Cells hidden = Cells(NONE, NONE, NONE, NONE, NONE, NONE, NONE, NONE);
+    uint at = (candidate.z & TRACED) != 0u ? 0u : frame.nodes;
+    int turns = MOST_TURNS;
+    bool open = true;
+    while (at < frame.nodes && open && turns > 0) {
+        // As in hierarchy/segment.glsl, leaves are collected before their triangles are tested.
+        uvec4 leaves = uvec4(0u);
+        int count = 0;
+        while (at < frame.nodes && count < 4 && turns > 0) {
+            Node node = unpacked_node(imageLoad(nodes, texel(at)));
+            bool inside = reaches(p, node);
+            bool leaf = inside && node.leaf;
+            leaves = leaf ? uvec4(node.link, leaves.xyz) : leaves;
+            count += leaf ? 1 : 0;
+            at = inside || node.leaf ? at + 1u : node.link;
+            --turns;
+        }
+        for (int i = 0; i < count * int(LEAF); ++i) {
+            hidden = with_hidden(hidden, f, p.tip, middle, leaves.x * LEAF + uint(i) % LEAF);
+            leaves = uint(i) % LEAF == LEAF - 1u ? leaves.yzww : leaves;
+            --turns;
+        }
+        open = (hidden.a & hidden.b & hidden.c & hidden.d & hidden.e & hidden.f & hidden.g & hidden.h) != ALL;
+    }
+    uint all = uint(SIDE * SIDE);
+    if (push.kind == POLYGON || f.stadium.y > 0.0) {
+        all = 0u;
+        uvec4 cells = rows_of(f, mirror, 0);
+        hidden.a &= cells;
+        all += count_of(cells);
+        cells = rows_of(f, mirror, 4);
+        hidden.b &= cells;
+        all += count_of(cells);
+        cells = rows_of(f, mirror, 8);
+        hidden.c &= cells;
+        all += count_of(cells);
+        cells = rows_of(f, mirror, 12);
+        hidden.d &= cells;
+        all += count_of(cells);
+        cells = rows_of(f, mirror, 16);
+        hidden.e &= cells;
+        all += count_of(cells);
+        cells = rows_of(f, mirror, 20);
+        hidden.f &= cells;
+        all += count_of(cells);
+        cells = rows_of(f, mirror, 24);
+        hidden.g &= cells;
+        all += count_of(cells);
+        cells = rows_of(f, mirror, 28);
+        hidden.h &= cells;
+        all += count_of(cells);
+    }
+    uint blocked = count_of(hidden.a) + count_of(hidden.b) + count_of(hidden.c) + count_of(hidden.d) +
+                   count_of(hidden.e) + count_of(hidden.f) + count_of(hidden.g) + count_of(hidden.h);
+    // A walk that was cut off says nothing.
+    parts[nth] = turns > 0 ? blocked | all << 16 : CUT_OFF;
+}
