@@ -7,7 +7,7 @@
 #include "audit/light.glsl"
 #include "audit/pyramid.glsl"
 
-// Counts the cells of the light, of 32 by 32, whose samples are hidden from a listed pixel: all triangles of its pyramid
+// Counts the cells of the light, of 32 by 16, whose samples are hidden from a listed pixel: all triangles of its pyramid
 // are tested against all of them. One invocation handles one pixel.
 //
 // The samples lie on a turned grid, and what a triangle hides of a row of cells is an interval of bits, as in
@@ -22,8 +22,9 @@ layout(set = 0, binding = 5, std430) readonly buffer Listed { uvec4 listed[]; };
 layout(set = 0, binding = 6, rgba32f) readonly uniform image2D triangles;
 layout(set = 0, binding = 7, std430) writeonly buffer Parts { uint parts[]; };
 
-// Cells along a side of the light.
-const int SIDE = 32;
+// Cells along the light's width and height: a row of cells is a word.
+const int COLUMNS = 32;
+const int ROWS = 16;
 
 const float FAR = 1.0e9;
 
@@ -37,14 +38,14 @@ struct Bounds {
 // The bounds of what lies on the inner side of a plane, dot(n, s) + c >= 0 for a sample s from the figure's middle.
 Bounds bounds_of(Figure f, vec3 n, float c)
 {
-    const float TURN = 1.0 / float(SIDE);
+    const vec2 CELLS = vec2(float(COLUMNS), float(ROWS));
     vec2 slope = vec2(dot(n, f.u), dot(n, f.v)) * f.half_size;
-    vec2 cell = slope * (2.0 * TURN);
-    float k = c - slope.x - slope.y + dot(cell, vec2(0.5 * TURN, 1.0 - 0.5 * TURN));
-    float i = cell.x - cell.y * TURN;
-    float j = cell.y + cell.x * TURN;
+    vec2 cell = slope * 2.0 / CELLS;
+    float k = c - slope.x - slope.y + dot(cell, vec2(0.5 / CELLS.y, 1.0 - 0.5 / CELLS.x));
+    float i = cell.x - cell.y / CELLS.x;
+    float j = cell.y + cell.x / CELLS.y;
     // A plane along a row of cells bounds none of them, or all.
-    float least = 1.0e-7 * (abs(j) * float(SIDE) + abs(k)) + 1.0e-37;
+    float least = 1.0e-7 * (abs(j) * CELLS.y + abs(k)) + 1.0e-37;
     i = abs(i) < least ? (i < 0.0 ? -least : least) : i;
     vec2 at = vec2(-k, -j) / i;
     return i > 0.0 ? Bounds(at, vec2(FAR, 0.0), true) : Bounds(vec2(-FAR, 0.0), at, false);
@@ -53,8 +54,8 @@ Bounds bounds_of(Figure f, vec3 n, float c)
 // The cells of a row from above `least` to `most`; a sample at the very edge of two triangles belongs to one.
 uint interval(float least, float most)
 {
-    int from = int(clamp(least + 1.0, 0.0, float(SIDE)));
-    int to = int(clamp(most + 1.0, 0.0, float(SIDE)));
+    int from = int(clamp(least + 1.0, 0.0, float(COLUMNS)));
+    int to = int(clamp(most + 1.0, 0.0, float(COLUMNS)));
     return bitfieldInsert(0u, 0xffffffffu, from, max(to - from, 0));
 }
 
@@ -64,10 +65,6 @@ struct Cells {
     uvec4 b;
     uvec4 c;
     uvec4 d;
-    uvec4 e;
-    uvec4 f;
-    uvec4 g;
-    uvec4 h;
 };
 
 // The bounds of a triangle's four lines, one a component.
@@ -126,10 +123,6 @@ Cells with_hidden(Cells hidden, Figure f, vec3 tip, vec3 middle, uint triangle)
     hidden.b |= rows_within(l, 4.0);
     hidden.c |= rows_within(l, 8.0);
     hidden.d |= rows_within(l, 12.0);
-    hidden.e |= rows_within(l, 16.0);
-    hidden.f |= rows_within(l, 20.0);
-    hidden.g |= rows_within(l, 24.0);
-    hidden.h |= rows_within(l, 28.0);
     return hidden;
 }
 
@@ -137,9 +130,10 @@ Cells with_hidden(Cells hidden, Figure f, vec3 tip, vec3 middle, uint triangle)
 uint cells_of(Figure f, vec2 mirror, int j)
 {
     uint cells = 0u;
-    for (int i = 0; i < SIDE; ++i) {
-        vec2 at = vec2(i, j) + vec2(float(j) + 0.5, float(SIDE - i) - 0.5) / float(SIDE);
-        cells |= is_of(f, (at / float(SIDE) * 2.0 - 1.0) * mirror) ? 1u << i : 0u;
+    const vec2 CELLS = vec2(float(COLUMNS), float(ROWS));
+    for (int i = 0; i < COLUMNS; ++i) {
+        vec2 at = vec2(i, j) + vec2(float(j) + 0.5, CELLS.x - 0.5 - float(i)) / CELLS.yx;
+        cells |= is_of(f, (at / CELLS * 2.0 - 1.0) * mirror) ? 1u << i : 0u;
     }
     return cells;
 }
@@ -175,7 +169,7 @@ void main()
     vec3 middle = f.base - r.position;
     const uvec4 ALL = uvec4(0xffffffffu);
     const uvec4 NONE = uvec4(0u);
-    Cells hidden = Cells(NONE, NONE, NONE, NONE, NONE, NONE, NONE, NONE);
+    Cells hidden = Cells(NONE, NONE, NONE, NONE);
     uint at = (candidate.z & TRACED) != 0u ? 0u : frame.nodes;
     int turns = MOST_TURNS;
     bool open = true;
@@ -197,9 +191,9 @@ void main()
             leaves = uint(i) % LEAF == LEAF - 1u ? leaves.yzww : leaves;
             --turns;
         }
-        open = (hidden.a & hidden.b & hidden.c & hidden.d & hidden.e & hidden.f & hidden.g & hidden.h) != ALL;
+        open = (hidden.a & hidden.b & hidden.c & hidden.d) != ALL;
     }
-    uint all = uint(SIDE * SIDE);
+    uint all = uint(COLUMNS * ROWS);
     if (push.kind == POLYGON || f.stadium.y > 0.0) {
         all = 0u;
         uvec4 cells = rows_of(f, mirror, 0);
@@ -214,21 +208,8 @@ void main()
         cells = rows_of(f, mirror, 12);
         hidden.d &= cells;
         all += count_of(cells);
-        cells = rows_of(f, mirror, 16);
-        hidden.e &= cells;
-        all += count_of(cells);
-        cells = rows_of(f, mirror, 20);
-        hidden.f &= cells;
-        all += count_of(cells);
-        cells = rows_of(f, mirror, 24);
-        hidden.g &= cells;
-        all += count_of(cells);
-        cells = rows_of(f, mirror, 28);
-        hidden.h &= cells;
-        all += count_of(cells);
     }
-    uint blocked = count_of(hidden.a) + count_of(hidden.b) + count_of(hidden.c) + count_of(hidden.d) +
-                   count_of(hidden.e) + count_of(hidden.f) + count_of(hidden.g) + count_of(hidden.h);
+    uint blocked = count_of(hidden.a) + count_of(hidden.b) + count_of(hidden.c) + count_of(hidden.d);
     // A walk that was cut off says nothing.
     parts[nth] = turns > 0 ? blocked | all << 16 : CUT_OFF;
 }

@@ -5,7 +5,7 @@
 //!   a cell of the image a candidate        lit for sure    ──► left out, unless the technique shadows it
 //!   ┌─┬─┬─┬─┐  a random pixel of each      (its shaft is empty)
 //!   ├·┼─┼·┼─┤  cell, another one each  ──►                 ┌──► at most `audit` of the others, evenly spread:
-//!   └─┴·┴─┴·┘  frame                       the others  ────┘    1,024 samples of the light, error, figures
+//!   └─┴·┴─┴·┘  frame                       the others  ────┘    512 samples of the light; their error; figures
 //! ```
 //! [`Description::audit`](crate::Description::audit) is the number of pixels that are traced in a frame, for any
 //! technique; [`ShadowNode::measured_error`](crate::ShadowNode::measured_error) has the figures once the device has
@@ -19,7 +19,7 @@
 //!
 //! A traced pixel is the tip of a pyramid over the light. The hierarchy of the blocking triangles
 //! ([`crate::stages::hierarchy`]), which a technique that reads it shares, has those in the pyramid, and each is tested
-//! against 32 by 32 samples of the light. No technique's map is involved, so an audit sees what a technique does not know of itself: leaks,
+//! against 32 by 16 samples of the light. No technique's map is involved, so an audit sees what a technique does not know of itself: leaks,
 //! occluders outside of a map, bounds that are too small.
 //!
 //! **Limits.** Blocking meshes that the host draws itself have no triangles, and lent occluder maps and textured lights
