@@ -90,9 +90,9 @@ void main()
     Receiver r = receiver_of(pixel);
     float v = imageLoad(visibility, pixel).x;
     Figure f = figure_of(r);
-    bool judged = r.receives && f.there;
+    bool judged = is_lit(r) && f.there;
     // Beyond its reach a light adds nothing, and it does not matter what was written.
-    bool counts = !r.receives || within_reach(r.position);
+    bool counts = !is_lit(r) || within_reach(r.position);
     bool traced = counts && judged && may_be_shadowed(pyramid_of(r.position, f, root_low.xyz, root_step.xyz));
     bool listed = traced || (counts && !(is_finite(v) && v >= FULL));
     uint flags = (listed ? LISTED : 0u) | (traced ? TRACED : 0u);

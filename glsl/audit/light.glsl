@@ -35,6 +35,14 @@ struct Figure {
     float end;     // the share of the way to it at which a segment ends: short of what lies in its plane
 };
 
+// Whether a pixel shows a receiver that the light may reach: in front of its plane, where it shines to one side.
+bool is_lit(Receiver r)
+{
+    bool all_sides = push.kind == SPHERE || push.kind == CAPSULE || push.kind == POINT;
+    // A pixel without a receiver has no position.
+    return r.receives || (all_sides && any(notEqual(r.in_light, vec3(0.0))));
+}
+
 bool within_reach(vec3 p)
 {
     vec3 away = p - push.center;
