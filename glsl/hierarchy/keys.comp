@@ -1,4 +1,4 @@
-// Entry of the pass hierarchy.keys (src/stages/hierarchy/mod.rs).
+// Entry of the pass hierarchy.keys (src/stages/hierarchy/sort.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "hierarchy/mesh.glsl"

@@ -146,10 +146,9 @@ pub(super) fn apply(
         return reuse;
     }
     if let Some(tree) = tree {
-        reuse_tree(graph, tree, cached, &mut reuse);
+        reuse_tree(graph, camera, tree, cached, &mut reuse);
     }
-    let of_tree: Vec<bool> = graph.passes().iter().map(|p| graph.until(p).is_some()).collect();
-    let in_light_space = |place: usize| !camera.passes[place] && !of_tree[place];
+    let in_light_space = |place: usize| !camera.passes[place] && camera.until[place].is_none();
     let passes = graph.passes().iter().enumerate();
     let needed = passes.filter(|(place, p)| in_light_space(*place) && p.need.is_yes());
     // Without a set of their passes, maps could not be compared later: they are then drawn each frame.
@@ -171,30 +170,34 @@ pub(super) fn apply(
 }
 
 /// Leaves out the passes of the hierarchy whose results the cache still holds.
-fn reuse_tree(graph: &mut Graph, tree: TreeKey, cached: &Cached, reuse: &mut Reuse) {
+fn reuse_tree(
+    graph: &mut Graph,
+    camera: &CameraDependence,
+    tree: TreeKey,
+    cached: &Cached,
+    reuse: &mut Reuse,
+) {
     let kept = cached.tree.filter(|kept| kept.list == tree.list);
     let places = tree.moved.is_some() && kept == Some(tree);
     reuse.uses_tree = kept.map(|_| (tree, places));
-    let of = |graph: &Graph, until| -> Vec<bool> {
-        graph.passes().iter().map(|p| graph.until(p) == Some(until)).collect()
-    };
+    let of = |until| move |place: usize| camera.until[place] == Some(until);
     if kept.is_some() {
-        let which = of(graph, Until::Listed);
-        graph.leave_out(|place| which[place], "the same triangles block as before");
+        graph.leave_out(of(Until::Listed), "the same triangles block as before");
     }
     if places {
-        let which = of(graph, Until::Moved);
-        graph.leave_out(|place| which[place], "no mesh that blocks has moved");
+        graph.leave_out(of(Until::Moved), "no mesh that blocks has moved");
     }
     let needed = |p: &crate::graph::Pass| graph.until(p).is_some() && p.need.is_yes();
     reuse.makes_tree = graph.passes().iter().any(needed).then_some(tree);
 }
 
-/// Which passes and resources of a graph depend on the camera.
+/// Which passes and resources of a graph depend on the camera, and which on the blocking meshes alone.
 #[derive(Clone, Debug, Default)]
 pub(super) struct CameraDependence {
     /// For each pass, whether it reads or writes anything that depends on the camera.
     passes: Vec<bool>,
+    /// For each pass, how long its results are valid where they depend on the blocking meshes alone.
+    until: Vec<Option<Until>>,
     /// The transient resources that passes in light space write and passes that depend on the camera read.
     maps: Vec<ResourceId>,
 }
@@ -206,6 +209,8 @@ impl CameraDependence {
         let mut depends: Vec<bool> =
             resources.map(|id| graph.resource(id).owner.is_result()).collect();
         pixels.for_each(|id| depends[id.index()] = true);
+        self.until.clear();
+        self.until.extend(graph.passes().iter().map(|p| graph.until(p)));
         self.passes.clear();
         self.passes.resize(graph.passes().len(), false);
         loop {
