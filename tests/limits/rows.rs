@@ -3,6 +3,7 @@
 use antumbra::graph::{Draw, Graph, INVOCATIONS, PUSH_BYTES, Pass, Work};
 use antumbra::shaders::Module;
 use antumbra::stages::depth_layers::DepthPush;
+use antumbra::stages::hierarchy::MeshPush;
 use antumbra::{Description, LightTexture, frame};
 use antumbra_tests::example::root;
 use antumbra_tests::headers;
@@ -72,6 +73,13 @@ fn descriptions() -> Vec<(String, Description)> {
             ));
         }
     }
+    for words in ["technique=hard", "technique=pcss taps=8"] {
+        let plain = Description::new([641, 479]);
+        let mask_format = Some(vk::Format::R8_UNORM);
+        let description =
+            Description { technique: settings(words), mask_format, audit: 1000, ..plain };
+        all.push((format!("{words}, audited"), description));
+    }
     all
 }
 
@@ -101,11 +109,14 @@ fn disagreements(graph: &Graph, pass: &Pass) -> Vec<String> {
         Work::Raster { draw: Draw::Layer { .. }, .. } => {
             pass.push.bytes().len().max(size_of::<DepthPush>())
         }
+        Work::EachMesh { .. } => size_of::<MeshPush>(),
         _ => pass.push.bytes().len(),
     };
     for module in modules(pass) {
         let shader = interface(module);
-        for b in &shader.bindings {
+        // Set 1 has the host's own buffers, which no pass declares.
+        let of_meshes = matches!(pass.work, Work::EachMesh { .. });
+        for b in shader.bindings.iter().filter(|b| b.set == 0 || !of_meshes) {
             seen.insert(b.binding);
             let used = pass.uses.iter().find(|u| u.binding.map(u32::from) == Some(b.binding));
             let Some(used) = used else {

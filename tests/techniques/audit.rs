@@ -6,6 +6,7 @@ use antumbra::scene::{Camera, Role, Scene, generate};
 use antumbra::truth::{Sampling, Tracer};
 use antumbra::{Description, Frame, Light, LightIndex, Slot};
 use antumbra_harness::{HeadlessDevice, Stage, View};
+use antumbra_tests::device;
 use antumbra_tests::device::unwatched;
 use antumbra_tests::measure::{Setup, model, settings, summary};
 use antumbra_tests::room;
@@ -216,6 +217,35 @@ fn what_was_not_measured_is_none() {
         assert_eq!(node.measured_error(Slot(1), LightIndex(0)), None);
         assert_eq!(node.measured_error(Slot(0), LightIndex(1)), None);
     }
+}
+
+/// Each light of each slot has figures of its own, of its own last frame. The device is under the validation layer.
+#[test]
+fn lights_and_slots_have_their_own_figures() {
+    let device = device();
+    let (scene, camera) = (room::room(), room::camera());
+    let setup = seen(&scene, &camera);
+    let mut stage = setup.stage(&device, "technique=pcss map=64");
+    let made = stage.configure_with(settings("technique=pcss map=64"), |d| {
+        (d.audit, d.lights, d.frames_in_flight) = (64, 2, 2);
+    });
+    made.unwrap();
+    let light = scene.lights[0].light;
+    let mut last = [None; 4];
+    for nth in 0..6 {
+        let (slot, index) = (Slot(nth / 2 % 2), LightIndex(nth % 2));
+        let place = |f: &mut Frame| (f.slot, f.light_index) = (slot, index);
+        let plan = stage.plan_with(light, place).unwrap();
+        stage.run(&plan).unwrap();
+        last[(2 * slot.0 + index.0) as usize] = stage.node().unwrap().measured_error(slot, index);
+    }
+    for (place, one) in (0..4).zip(last) {
+        let again = stage.node().unwrap().measured_error(Slot(place / 2), LightIndex(place % 2));
+        assert!(one.is_some() && again == one, "{last:?}");
+        assert_eq!(last.iter().filter(|other| **other == one).count(), 1, "{last:?}");
+    }
+    let memory = stage.node().unwrap().memory();
+    assert!(memory.iter().any(|r| r.name == "audit.figures" && r.bytes >= 256), "{memory:?}");
 }
 
 /// Every shape of a light, as the truth has it; what `traced` makes of the shape does not matter.
