@@ -18,7 +18,7 @@ layout(set = 0, binding = 4, std430) readonly buffer Header { vec4 root_low; vec
 layout(set = 0, binding = 5, r32f) readonly uniform image2D visibility;
 layout(set = 0, binding = 6, rgba32f) readonly uniform image2D triangles;
 layout(set = 0, binding = 7, std430) readonly buffer Number { uint frame_number; uint light_index; };
-layout(set = 0, binding = 8, std430) writeonly buffer Candidates { uvec4 candidates[]; };
+layout(set = 0, binding = 8, std430) buffer Candidates { uvec4 candidates[]; };
 
 float furthest(Side side, vec3 a, vec3 b, vec3 c)
 {

@@ -20,7 +20,7 @@ struct Sums {
 
 layout(set = 0, binding = 0, std430) readonly buffer Listed { uvec4 listed[]; };
 layout(set = 0, binding = 1, std430) readonly buffer Parts { uint parts[]; };
-layout(set = 0, binding = 2, std430) writeonly buffer Errors { Sums errors[]; };
+layout(set = 0, binding = 2, std430) buffer Errors { Sums errors[]; };
 
 layout(push_constant) uniform Push {
     uint candidates;

@@ -21,7 +21,7 @@ struct Sums {
 layout(set = 0, binding = 0, std430) readonly buffer Listed { uvec4 listed[]; };
 layout(set = 0, binding = 1, std430) readonly buffer Errors { Sums errors[]; };
 layout(set = 0, binding = 2, std430) readonly buffer Number { uint frame_number; uint light_index; };
-layout(set = 0, binding = 3, std430) writeonly buffer Figures { uint figures[16]; };
+layout(set = 0, binding = 3, std430) buffer Figures { uint figures[16]; };
 
 layout(push_constant) uniform Push {
     uint candidates;

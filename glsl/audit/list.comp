@@ -10,8 +10,8 @@ layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0, std430) readonly buffer Candidates { uvec4 candidates[]; };
 layout(set = 0, binding = 1, std430) readonly buffer Sums { uint sums[]; };
-layout(set = 0, binding = 2, std430) writeonly buffer Listed { uvec4 listed[]; };
-layout(set = 0, binding = 3, std430) writeonly buffer Arguments { uint groups[4]; };
+layout(set = 0, binding = 2, std430) buffer Listed { uvec4 listed[]; };
+layout(set = 0, binding = 3, std430) buffer Arguments { uint groups[4]; };
 
 layout(push_constant) uniform Push {
     uint candidates;

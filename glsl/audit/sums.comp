@@ -8,7 +8,7 @@
 layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0, std430) readonly buffer Candidates { uvec4 candidates[]; };
-layout(set = 0, binding = 1, std430) writeonly buffer Sums { uint sums[]; };
+layout(set = 0, binding = 1, std430) buffer Sums { uint sums[]; };
 
 layout(push_constant) uniform Push {
     uint candidates;

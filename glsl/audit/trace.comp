@@ -20,7 +20,7 @@ layout(set = 0, binding = 3, rgba32ui) readonly uniform uimage2D nodes;
 layout(set = 0, binding = 4, std430) readonly buffer Header { vec4 root_low; vec4 root_step; };
 layout(set = 0, binding = 5, std430) readonly buffer Listed { uvec4 listed[]; };
 layout(set = 0, binding = 6, rgba32f) readonly uniform image2D triangles;
-layout(set = 0, binding = 7, std430) writeonly buffer Parts { uint parts[]; };
+layout(set = 0, binding = 7, std430) buffer Parts { uint parts[]; };
 
 // Cells along the light's width and height: a row of cells is a word.
 const int COLUMNS = 32;
@@ -141,7 +141,7 @@ uint cells_of(Figure f, vec2 mirror, int j)
 // How many cells there are.
 uint count_of(uvec4 cells)
 {
-    ivec4 counts = bitCount(cells);
+    ivec4 counts = bitCount(ivec4(cells));
     return uint(counts.x + counts.y + counts.z + counts.w);
 }
 
