@@ -48,7 +48,14 @@ Bounds bounds_of(Figure f, vec3 n, float c)
     float least = 1.0e-7 * (abs(j) * CELLS.y + abs(k)) + 1.0e-37;
     i = abs(i) < least ? (i < 0.0 ? -least : least) : i;
     vec2 at = vec2(-k, -j) / i;
-    return i > 0.0 ? Bounds(at, vec2(FAR, 0.0), true) : Bounds(vec2(-FAR, 0.0), at, false);
+    bvec2 least_side = bvec2(i > 0.0);
+    return Bounds(mix(vec2(-FAR, 0.0), at, least_side), mix(at, vec2(FAR, 0.0), least_side), i > 0.0);
+}
+
+// The first cells of a row; a shift by all 32 bits is not the same everywhere, and neither is a field of them.
+uint first_cells(int count)
+{
+    return (0xffffffffu >> COLUMNS - max(count, 1)) * uint(min(count, 1));
 }
 
 // The cells of a row from above `least` to `most`; a sample at the very edge of two triangles belongs to one.
@@ -56,7 +63,7 @@ uint interval(float least, float most)
 {
     int from = int(clamp(least + 1.0, 0.0, float(COLUMNS)));
     int to = int(clamp(most + 1.0, 0.0, float(COLUMNS)));
-    return bitfieldInsert(0u, 0xffffffffu, from, max(to - from, 0));
+    return first_cells(to) & ~first_cells(from);
 }
 
 // The light's cells, four rows of cells each.
