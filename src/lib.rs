@@ -63,8 +63,10 @@
 //! | follow a technique | its module: the idea, the paper's sections, where it departs, its limits |
 //! | see what a frame does | [`FramePlan::explain`], [`FramePlan::doubts`], [`graph::Plan::table`], [`graph::Plan::graphviz`] |
 //! | load or make scenes | [`scene`] |
+//! | measure a frame's error while it runs | [`audit`], [`ShadowNode::measured_error`] |
 //! | measure error | `truth` (feature `truth`) |
 
+pub mod audit;
 pub mod auto;
 pub mod effects;
 #[doc = include_str!("../docs/embedding.md")]
@@ -90,6 +92,7 @@ pub mod techniques;
 pub mod truth;
 
 pub use ash;
+pub use audit::{ErrorWindow, MeasuredError};
 pub use effects::Omit;
 pub use error::Error;
 pub use frame::{Description, Doubt, Frame, FramePlan, FramePlans, LightTexture};

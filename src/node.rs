@@ -5,6 +5,7 @@ mod shown;
 pub use shown::{Inspected, LayerPass, PassTime, PlanObject, VisibilityImage};
 
 use crate::Error;
+use crate::audit::MeasuredError;
 use crate::auto::{self, Auto, Choice};
 use crate::frame::{
     self, Cache, CacheKey, Description, Frame, FramePlan, FramePlans, Limits, Memory, Stamp,
@@ -281,6 +282,13 @@ impl ShadowNode {
     pub fn timings(&self, slot: Slot, light: LightIndex) -> Option<Vec<PassTime>> {
         let sums = self.objects.timings(&self.host, slot, light)?;
         Some(sums.into_iter().map(|(kind, ms)| PassTime { name: self.kinds[kind], ms }).collect())
+    }
+
+    /// The error of a light's last frame that was recorded for `slot`, as its audit measured it
+    /// ([`Description::audit`]). `None` while the device has not completed that frame, and where it ran no audit: the
+    /// description has none, nothing can be shadowed, or the image stayed as it was. Never waits.
+    pub fn measured_error(&self, slot: Slot, light: LightIndex) -> Option<MeasuredError> {
+        self.objects.measured_error(slot, light)
     }
 
     /// The node's own images that a plan uses, with the layouts they are in after it. They can be copied out where

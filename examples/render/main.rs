@@ -10,7 +10,9 @@ mod report;
 
 use antumbra::Error;
 use antumbra::Omit;
+use antumbra::audit::ErrorWindow;
 use antumbra::auto::Auto;
+use antumbra::frame::Capacity;
 use antumbra::scene::{Camera, Scene, from_gltf};
 use antumbra_harness::shade;
 use antumbra_harness::{FrameTimes, HeadlessDevice, HeadlessOptions, Stage, View, technique};
@@ -63,6 +65,15 @@ fn load(options: &Options) -> Result<Scene, Stop> {
     Ok(scene)
 }
 
+/// Room for a scene's triangles, an even number a mesh.
+fn capacity(scene: &Scene, usual: Capacity) -> Capacity {
+    let triangles = scene.triangles() + scene.instances.len();
+    Capacity {
+        triangles: usual.triangles.max(triangles.min(Capacity::MOST.triangles as usize) as u32),
+        meshes: usual.meshes.max(scene.instances.len().min(Capacity::MOST.meshes as usize) as u32),
+    }
+}
+
 fn render(options: &Options) -> Result<String, Stop> {
     let scene = load(options)?;
     let light = scene.light(options.light.as_deref()).map_err(|e| {
@@ -95,6 +106,8 @@ fn render(options: &Options) -> Result<String, Stop> {
     };
     stage.configure_with(settings, |description| {
         description.omit = options.max_error.map_or(description.omit, Omit::Below);
+        description.audit = options.audit;
+        description.capacity = capacity(&scene, description.capacity);
     })?;
     let plan = stage.plan_under(light, None)?;
     for note in notes::of(options, &scene, light, &plan, choice.as_ref()) {
@@ -102,8 +115,13 @@ fn render(options: &Options) -> Result<String, Stop> {
     }
     // The first frame is not timed: drivers compile shaders when they first run.
     stage.run(&plan)?;
-    let frames: Vec<FrameTimes> =
-        (0..options.repeat).map(|_| stage.run(&plan)).collect::<Result<_, _>>()?;
+    let mut frames: Vec<FrameTimes> = Vec::new();
+    let mut window = ErrorWindow::new();
+    for _ in 0..options.repeat {
+        frames.push(stage.run(&plan)?);
+        let measured = stage.node()?.measured_error(plan.slot(), plan.light_index());
+        measured.iter().for_each(|error| window.add(error));
+    }
 
     let visibility = stage.visibility()?;
     let positions = stage.gbuffer().positions()?;
@@ -118,6 +136,7 @@ fn render(options: &Options) -> Result<String, Stop> {
         plan: &plan,
         frames,
         memory,
+        measured: (options.audit > 0).then(|| window.error()),
     };
 
     let mut files = Files::default();

@@ -37,6 +37,10 @@ struct Arguments {
     /// Frames to time, behind one that is not timed; the report has their median
     #[arg(long, value_name = "K", default_value_t = 1)]
     repeat: u32,
+    /// Pixels a frame whose exact visible fraction is traced, 16 to 65536; the report then has the measured error of all
+    /// timed frames together
+    #[arg(long, value_name = "P", default_value_t = 0, hide_default_value = true)]
+    audit: u32,
     /// Run under the validation layer with synchronization checks; any message fails the run
     #[arg(long)]
     validate: bool,
@@ -63,6 +67,8 @@ pub struct Options {
     pub light: Option<String>,
     pub roles: Vec<(String, Role)>,
     pub repeat: u32,
+    /// The pixels of each frame that are traced to measure its error; 0 for none.
+    pub audit: u32,
     pub validate: bool,
 }
 
@@ -149,6 +155,11 @@ pub fn parse(arguments: impl Iterator<Item = OsString>) -> Result<Options, Stop>
     if a.repeat == 0 {
         return Err(wrong("--repeat", "0 frames cannot be timed; give 1 or more"));
     }
+    if a.audit != 0 && !(16..=65_536).contains(&a.audit) {
+        let problem =
+            format!("{} pixels cannot be audited; give 16 to 65536, or 0 for none", a.audit);
+        return Err(wrong("--audit", problem));
+    }
     Ok(Options {
         scene: a.scene,
         out: a.out,
@@ -159,6 +170,7 @@ pub fn parse(arguments: impl Iterator<Item = OsString>) -> Result<Options, Stop>
         light: a.light,
         roles,
         repeat: a.repeat,
+        audit: a.audit,
         validate: a.validate,
     })
 }

@@ -2,6 +2,7 @@
 
 use crate::notes;
 use crate::options::Options;
+use antumbra::audit::MeasuredError;
 use antumbra::auto::Choice;
 use antumbra::effects::Outcome;
 use antumbra::knob::Knob;
@@ -25,6 +26,8 @@ pub struct Report<'a> {
     pub plan: &'a FramePlan,
     pub frames: Vec<FrameTimes>,
     pub memory: Vec<ResourceBytes>,
+    /// The error of all frames together; `None` without an audit.
+    pub measured: Option<MeasuredError>,
 }
 
 fn median(mut values: Vec<f64>) -> f64 {
@@ -44,6 +47,15 @@ fn settings_of(technique: &Technique) -> Map<String, Value> {
         Some((knob.key.to_string(), value))
     };
     technique.knobs().into_iter().filter_map(entry).collect()
+}
+
+/// A measured error for people.
+fn measured(error: &MeasuredError) -> String {
+    let [mean, low, high] = [error.mean, error.low, error.high].map(notes::percent);
+    match error.pixels {
+        0 => ", no shadow to measure an error in".into(),
+        pixels => format!(", error {mean} measured ({low} to {high}, at {pixels} pixels)"),
+    }
 }
 
 impl Report<'_> {
@@ -124,7 +136,7 @@ impl Report<'_> {
                 "problem": c.problem,
             })
         });
-        let report = json!({
+        let mut report = json!({
             "driver": self.device.name(),
             "auto": model,
             "effects": effects,
@@ -140,6 +152,10 @@ impl Report<'_> {
             "triangles": self.scene.triangles(),
             "lights": self.scene.lights.len(),
         });
+        if let (Some(e), Some(report)) = (&self.measured, report.as_object_mut()) {
+            let error = json!({ "mean": e.mean, "low": e.low, "high": e.high, "pixels": e.pixels });
+            report.insert("measured_error".into(), error);
+        }
         format!("{report:#}\n")
     }
 
@@ -154,11 +170,12 @@ impl Report<'_> {
         let error = self.choice.and_then(|c| c.error);
         let promised = error.map(|e| format!(", error ≤ {} promised", notes::percent(e)));
         format!(
-            "{}: {} triangles, {width}×{height} pixels, {}{}, {:.1} ms ({frames}{}) on {}, {:.1} MB",
+            "{}: {} triangles, {width}×{height} pixels, {}{}{}, {:.1} ms ({frames}{}) on {}, {:.1} MB",
             self.options.out.join("shaded.png").display(),
             self.scene.triangles(),
             self.settings,
             promised.unwrap_or_default(),
+            self.measured.as_ref().map(measured).unwrap_or_default(),
             self.frame_ms(),
             foretold.unwrap_or_default(),
             self.device.name(),

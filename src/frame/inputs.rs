@@ -54,6 +54,7 @@ pub(super) fn frame_inputs<'a>(
         noise: frame.noise,
         ndc_from_light: from_light.to_cols_array(),
         background: frame.far_depth(),
+        reach: frame.reach,
         tree: (triangles.sizes, triangles.space(frame, description)),
     };
     Ok((inputs, verdicts))

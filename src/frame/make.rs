@@ -117,10 +117,10 @@ pub(crate) fn plan_into(
     let Memory { fit, camera, built, drawn } = memory;
     fit.update(description, &FitRequest::of(&description.technique), frame, mesh_boxes)?;
     plan.triangles.meshes.clear();
-    if room.reads_triangles() {
+    if description.has_hierarchy() {
         plan.triangles.fill(description, frame.meshes)?;
     }
-    let tree = room.reads_triangles().then(|| TreeKey::of(&plan.triangles, frame));
+    let tree = description.has_hierarchy().then(|| TreeKey::of(&plan.triangles, frame));
     let (inputs, verdicts) = frame_inputs(description, frame, fit, &plan.triangles)?;
     graph.clear();
     let ids = build(graph, description, limits, light.rectangle(), &inputs);

@@ -57,6 +57,9 @@ use std::borrow::Cow;
 /// The most techniques that a node may have: [`Description::technique`] and the others.
 pub(crate) const MOST_TECHNIQUES: usize = 16;
 
+/// The pixels that an audit may trace in a frame.
+const AUDITED: std::ops::RangeInclusive<u32> = 16..=65_536;
+
 /// What a node is made for: everything that stays the same from frame to frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Description {
@@ -93,6 +96,9 @@ pub struct Description {
     pub light_texture: Option<LightTexture>,
     /// The most triangles and meshes that block light, where a technique works with the triangles themselves.
     pub capacity: Capacity,
+    /// How many pixels a frame are traced through the blocking triangles to measure the error of what the technique
+    /// wrote ([`crate::audit`]): 0 for no audit, the default, or 16 to 65,536. The image is the same with it and without.
+    pub audit: u32,
 }
 
 /// The description of an image of a light's emission over its surface.
@@ -154,6 +160,7 @@ impl Description {
             occluder_maps: None,
             light_texture: None,
             capacity: Capacity::default(),
+            audit: 0,
         }
     }
 
@@ -193,6 +200,7 @@ impl Description {
             )));
         }
         self.capacity.check()?;
+        self.check_audit()?;
         let formats = [Some(self.depth_format), self.occluder_maps];
         for (format, whose) in
             formats.into_iter().zip(["the G-buffer's depth", "the occluder maps'"])
@@ -216,6 +224,32 @@ impl Description {
             ))),
             None => Ok(()),
         }
+    }
+
+    /// Checks the number of audited pixels, and that their exact fraction can be traced.
+    ///
+    /// # Errors
+    /// See [`Self::check`].
+    fn check_audit(&self) -> Result<(), Error> {
+        let refuse = |what: &str| Err(Error::Frame(format!("{what}; set audit to 0")));
+        match self.audit {
+            0 => Ok(()),
+            _ if self.occluder_maps.is_some() => refuse(
+                "an audit traces triangles, and where the host lends occluder maps the node has none",
+            ),
+            _ if self.light_texture.is_some() => {
+                refuse("an audit traces lights of uniform emission, and the light has a texture")
+            }
+            pixels if AUDITED.contains(&pixels) => Ok(()),
+            pixels => Err(Error::Frame(format!(
+                "an audit of {pixels} pixels a frame is outside 16 to 65,536, and is 0 for none"
+            ))),
+        }
+    }
+
+    /// Whether frames have the hierarchy of the blocking triangles.
+    pub(crate) fn has_hierarchy(&self) -> bool {
+        self.audit > 0 || self.technique.room().reads_triangles()
     }
 
     /// Checks one of the techniques, by itself and with the rest of the description.

@@ -2,10 +2,11 @@
 
 use super::{Description, Space};
 use crate::RectangleLight;
+use crate::audit::passes::{self as audit, Audited};
 use crate::effects::{Effect, Verdicts};
 use crate::graph::{Graph, Need, Owner, ResourceId, Why};
 use crate::stages::depth_layers::{self, Eye, HostMapView, LightLayers, MapView};
-use crate::stages::hierarchy::Sizes;
+use crate::stages::hierarchy::{self, Sizes};
 use crate::stages::views::Views;
 use crate::stages::visibility::{self, GBuffer};
 use crate::techniques::hard::{self, Filter};
@@ -60,6 +61,8 @@ pub(super) struct FrameInputs<'a> {
     pub ndc_from_light: [f32; 16],
     pub noise: u32,
     pub background: f32,
+    /// How far the light reaches, m.
+    pub reach: Option<f64>,
     /// The sizes of the hierarchy, and how the pixels see its space.
     pub tree: (Sizes, Space),
 }
@@ -177,6 +180,7 @@ pub(crate) fn all_passes(description: &Description, limits: Limits) -> Graph {
         ndc_from_light: DMat4::IDENTITY.as_mat4().to_cols_array(),
         noise: 0,
         background: 0.0,
+        reach: None,
         tree: (Sizes { capacity: description.capacity.triangles, triangles: 0 }, Space::default()),
     };
     let mut graph = Graph::new();
@@ -220,6 +224,10 @@ pub(super) fn build(
         },
     };
     let color = description.has_color();
+    // A hard shadow may stand in for the technique.
+    let shadowed = if hard.is_yes() { hard } else { need };
+    let of_technique = room.reads_triangles();
+    let tree = of_technique.then(|| hierarchy::declare(graph, frame.tree.0, shadowed));
     let inputs = PassInputs {
         light,
         occluders: &frame.occluders,
@@ -237,6 +245,7 @@ pub(super) fn build(
         need,
         filter,
         tree: &frame.tree,
+        hierarchy: tree,
     };
     let nearest = room.declare(graph, &inputs);
     if hardens(description) {
@@ -249,6 +258,11 @@ pub(super) fn build(
     };
     let lit = graph.need(&lit);
     visibility::lit(graph, visibility, extent, color, lit);
+    if description.audit > 0 {
+        let tree = tree.unwrap_or_else(|| hierarchy::declare(graph, frame.tree.0, shadowed));
+        let audited = Audited { pixels: description.audit, reach: frame.reach };
+        audit::declare(graph, audited, &tree, &inputs, shadowed);
+    }
     ids
 }
 

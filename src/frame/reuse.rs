@@ -193,7 +193,7 @@ fn reuse_tree(
     reuse.makes_tree = graph.passes().iter().any(needed).then_some(tree);
 }
 
-/// Which passes and resources of a graph depend on the camera.
+/// Which passes and resources of a graph depend on the camera, and which on the blocking meshes alone.
 #[derive(Clone, Debug, Default)]
 pub(super) struct CameraDependence {
     /// For each pass, whether it reads or writes anything that depends on the camera.
@@ -220,7 +220,9 @@ impl CameraDependence {
         loop {
             let before = depends.clone();
             for (pass_depends, pass) in self.passes.iter_mut().zip(graph.passes()) {
-                *pass_depends |= pass.uses.iter().any(|u| depends[u.resource.index()]);
+                // What constants a frame has is not in the graph; to write them costs nothing.
+                *pass_depends |= matches!(pass.work, Work::Constants { .. } | Work::FrameNumber)
+                    || pass.uses.iter().any(|u| depends[u.resource.index()]);
                 if *pass_depends {
                     pass.writes().for_each(|id| depends[id.index()] = true);
                 }

@@ -88,7 +88,8 @@ impl TriangleList {
     /// Lists the blocking meshes of a frame.
     ///
     /// # Errors
-    /// [`Error::Frame`] for meshes beyond the description's capacity, and for indices of 8 bits.
+    /// [`Error::Frame`] for meshes beyond the description's capacity, for indices of 8 bits, and for a blocking mesh that
+    /// the host draws itself where there is an audit.
     pub fn fill(
         &mut self,
         description: &Description,
@@ -97,6 +98,15 @@ impl TriangleList {
         let Capacity { triangles: capacity, meshes: most } = description.capacity;
         self.meshes.clear();
         let blocking = |m: &&MeshInstance| m.role.blocks() && has_triangles(m);
+        let drawn = |m: &MeshInstance| matches!(m.geometry, Geometry::HostDrawn(_));
+        if let Some(index) = meshes.iter().position(|m| m.role.blocks() && drawn(m))
+            && description.audit > 0
+        {
+            return bad(format!(
+                "mesh {index} is drawn by the host, which has no triangles for the audit to trace; give its buffers, \
+                 or set audit to 0"
+            ));
+        }
         let in_buffers = |m: &MeshInstance| match m.geometry {
             Geometry::Buffers(buffers) => Some((*m, buffers)),
             Geometry::HostDrawn(_) => None,

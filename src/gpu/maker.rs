@@ -1,7 +1,7 @@
 //! Creates Vulkan objects for an owner, and undoes the creation where it fails.
 
 use super::host::Host;
-use super::memory::{Allocator, MemoryRequest};
+use super::memory::{Allocator, Mapped, MemoryRequest};
 use super::owner::{Made, ObjectOwner};
 use crate::Error;
 use ash::vk;
@@ -37,15 +37,15 @@ impl<'a> Maker<'a> {
     }
 
     /// Keeps an image or a buffer, and allocates its memory, which the caller binds: the memory object,
-    /// and the offset in it.
+    /// the offset in it, and the address where it is mapped.
     pub fn allocate(
         &mut self,
         handle: impl Into<Made>,
         request: &MemoryRequest,
-    ) -> Result<(vk::DeviceMemory, u64), Error> {
+    ) -> Result<(vk::DeviceMemory, u64, Option<Mapped>), Error> {
         let (block, place) = match self.allocator.allocate(request) {
             Ok(block) => {
-                let place = (block.memory, block.offset);
+                let place = (block.memory, block.offset, block.mapped);
                 (Some(block), Ok(place))
             }
             Err(e) => (None, Err(e)),

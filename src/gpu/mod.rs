@@ -9,6 +9,7 @@ mod graph_objects;
 mod host;
 mod layouts;
 mod maker;
+mod measured;
 mod memory;
 mod mesh_sets;
 mod node_objects;
@@ -22,7 +23,7 @@ mod timing;
 
 pub use host::{Host, Requirements};
 pub use layouts::SharedLayouts;
-pub use memory::{Allocator, MemoryBlock, MemoryRequest, ResourceBytes};
+pub use memory::{Allocator, Mapped, MemoryBlock, MemoryRequest, ResourceBytes};
 pub(crate) use node_objects::NodeObjects;
 pub(crate) use objects::Object;
 pub use record::HostDraw;

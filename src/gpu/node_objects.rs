@@ -3,6 +3,7 @@
 use super::graph_objects::GraphObjects;
 use super::host::Host;
 use super::maker::Maker;
+use super::measured::Measured;
 use super::memory::{Allocator, ResourceBytes};
 use super::objects::Object;
 use super::owner::{Made, ObjectOwner};
@@ -10,6 +11,7 @@ use super::record::{HostDraw, Recorder};
 use super::result::ResultImage;
 use super::timing::Timing;
 use crate::Error;
+use crate::audit::MeasuredError;
 use crate::frame::{Description, FramePlan};
 use crate::graph::{Graph, ResourceId};
 use crate::lent::{LightIndex, Slot, TechniqueIndex};
@@ -20,6 +22,7 @@ pub(crate) struct NodeObjects {
     result: Option<ResultImage>,
     settings: Vec<GraphObjects>,
     timing: Option<Timing>,
+    measured: Option<Measured>,
     slots: u32,
     lights: u32,
     owner: ObjectOwner,
@@ -36,15 +39,16 @@ impl NodeObjects {
     ) -> Result<Self, Error> {
         let (slots, lights) = (description.frames_in_flight, description.lights);
         let places = slots * lights;
-        let ((result, settings, timing), owner) = Maker::run(host, allocator, |maker| {
+        let ((result, settings, timing, measured), owner) = Maker::run(host, allocator, |maker| {
             let result = ResultImage::new(maker, description)?;
             let settings = graphs.iter().map(|g| GraphObjects::new(maker, g, description, places));
             let settings = settings.collect::<Result<Vec<_>, _>>()?;
             let passes = graphs.iter().map(|g| g.passes().len()).max().unwrap_or(0);
             let timing = Timing::new(maker, places, kinds_of(&settings), passes)?;
-            Ok((result, settings, timing))
+            let measured = Measured::new(maker, graphs, description)?;
+            Ok((result, settings, timing, measured))
         })?;
-        Ok(Self { result, settings, timing, slots, lights, owner })
+        Ok(Self { result, settings, timing, measured, slots, lights, owner })
     }
 
     /// The place of the descriptor sets and timestamps of a light in a frame slot.
@@ -121,6 +125,8 @@ impl NodeObjects {
             descriptors: &settings.descriptors,
             mesh_sets: &settings.mesh_sets,
             timing: self.timing.as_ref(),
+            measured: self.measured.as_ref(),
+            number: 0,
             place: self.place(plan.slot(), plan.light_index()),
             first_kind: kinds_of(&self.settings[..index]),
             draw,
@@ -146,9 +152,17 @@ impl NodeObjects {
         self.timing.as_ref().filter(|_| there)?.read(host, self.place(slot, light))
     }
 
-    /// Name and bytes of each image and buffer in device memory: the visibility image, then technique by technique.
+    /// The error of the last frame that a light recorded for a slot; `None` until the device has completed it.
+    pub fn measured_error(&self, slot: Slot, light: LightIndex) -> Option<MeasuredError> {
+        let there = slot.0 < self.slots && light.0 < self.lights;
+        self.measured.as_ref().filter(|_| there)?.read(self.place(slot, light))
+    }
+
+    /// Name and bytes of each image and buffer in device memory: the visibility image, what the host reads, then
+    /// technique by technique.
     pub fn memory(&self) -> Vec<ResourceBytes> {
         let result = self.result.iter().map(ResultImage::memory);
+        let result = result.chain(self.measured.iter().map(Measured::memory));
         result.chain(self.settings.iter().flat_map(|s| s.objects.memory())).collect()
     }
 

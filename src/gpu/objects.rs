@@ -2,7 +2,7 @@
 
 use super::host::Host;
 use super::maker::Maker;
-use super::memory::{MemoryRequest, ResourceBytes};
+use super::memory::{Mapped, MemoryRequest, ResourceBytes};
 use super::owner::Made;
 use crate::Error;
 use crate::graph::{Graph, Owner, Resource, ResourceId, Shape};
@@ -147,8 +147,8 @@ impl Backed {
             unsafe { host.device.create_image(&create, None) }.map_err(Error::vulkan(doing()))?;
         // SAFETY: the image was just made by this device.
         let requirements = unsafe { host.device.get_image_memory_requirements(image) };
-        let request = MemoryRequest { name: text, requirements, linear: false };
-        let (memory, offset) = maker.allocate(image, &request)?;
+        let request = MemoryRequest { name: text, requirements, linear: false, mapped: false };
+        let (memory, offset, _) = maker.allocate(image, &request)?;
         // SAFETY: the image is unbound, and the memory was allocated for its requirements.
         unsafe { host.device.bind_image_memory(image, memory, offset) }
             .map_err(Error::vulkan(doing()))?;
@@ -180,23 +180,35 @@ impl Backed {
         bytes: u64,
         usage: vk::BufferUsageFlags,
     ) -> Result<Self, Error> {
-        let host = maker.host;
-        let Resource { name: text, shape, .. } = *resource;
-        let doing = || format!("creating {text}");
-        let create = vk::BufferCreateInfo::default().size(bytes).usage(usage);
-        // SAFETY: the device is valid (Host::borrow), and no pass uses a buffer of no bytes.
-        let buffer =
-            unsafe { host.device.create_buffer(&create, None) }.map_err(Error::vulkan(doing()))?;
-        // SAFETY: the buffer was just made by this device.
-        let requirements = unsafe { host.device.get_buffer_memory_requirements(buffer) };
-        let request = MemoryRequest { name: text, requirements, linear: true };
-        let (memory, offset) = maker.allocate(buffer, &request)?;
-        // SAFETY: the buffer is unbound, and the memory was allocated for its requirements.
-        unsafe { host.device.bind_buffer_memory(buffer, memory, offset) }
-            .map_err(Error::vulkan(doing()))?;
-        name(host, buffer, text);
-        Ok(Self { object: Object::Buffer(buffer), name: text, bytes: requirements.size, shape })
+        let Resource { name, shape, .. } = *resource;
+        let (buffer, bytes, _) = new_buffer(maker, name, bytes, usage, false)?;
+        Ok(Self { object: Object::Buffer(buffer), name, bytes, shape })
     }
+}
+
+/// Creates a buffer in device memory, or in mapped memory: the buffer, the bytes of its memory, and its address.
+pub(super) fn new_buffer(
+    maker: &mut Maker,
+    text: &'static str,
+    bytes: u64,
+    usage: vk::BufferUsageFlags,
+    mapped: bool,
+) -> Result<(vk::Buffer, u64, Option<Mapped>), Error> {
+    let host = maker.host;
+    let doing = || format!("creating {text}");
+    let create = vk::BufferCreateInfo::default().size(bytes).usage(usage);
+    // SAFETY: the device is valid (Host::borrow), and no pass uses a buffer of no bytes.
+    let buffer =
+        unsafe { host.device.create_buffer(&create, None) }.map_err(Error::vulkan(doing()))?;
+    // SAFETY: the buffer was just made by this device.
+    let requirements = unsafe { host.device.get_buffer_memory_requirements(buffer) };
+    let request = MemoryRequest { name: text, requirements, linear: true, mapped };
+    let (memory, offset, address) = maker.allocate(buffer, &request)?;
+    // SAFETY: the buffer is unbound, and the memory was allocated for its requirements.
+    unsafe { host.device.bind_buffer_memory(buffer, memory, offset) }
+        .map_err(Error::vulkan(doing()))?;
+    name(host, buffer, text);
+    Ok((buffer, requirements.size, address))
 }
 
 /// The range of an image's only mip level and all of its layers.

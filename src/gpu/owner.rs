@@ -149,7 +149,8 @@ mod tests {
                 return Err(Error::Memory { resource, bytes: 0, problem });
             }
             let token: Box<dyn Any + Send + Sync> = Box::new(self.next);
-            Ok(MemoryBlock { memory: vk::DeviceMemory::from_raw(self.next), offset: 0, token })
+            let memory = vk::DeviceMemory::from_raw(self.next);
+            Ok(MemoryBlock { memory, offset: 0, mapped: None, token })
         }
 
         fn free(&mut self, block: MemoryBlock) {
@@ -162,7 +163,8 @@ mod tests {
     fn images(maker: &mut Maker, numbers: &[u64]) -> Result<(), Error> {
         for &number in numbers {
             let requirements = vk::MemoryRequirements::default();
-            let request = MemoryRequest { name: "an image", requirements, linear: false };
+            let request =
+                MemoryRequest { name: "an image", requirements, linear: false, mapped: false };
             maker.allocate(vk::Image::from_raw(number), &request)?;
             maker.keep(vk::ImageView::from_raw(number));
         }

@@ -61,7 +61,7 @@ impl PassObjects {
             }
             Work::EachMesh { .. } => (vk::ShaderStageFlags::COMPUTE, size_of::<MeshPush>()),
             // A command writes them into a buffer, and no shader sees them pushed.
-            Work::Constants { .. } => (vk::ShaderStageFlags::COMPUTE, 0),
+            Work::Constants { .. } | Work::FrameNumber => (vk::ShaderStageFlags::COMPUTE, 0),
             Work::Raster { draw: Draw::Layer { .. }, .. } => {
                 // Each mesh pushes its matrix; the pass's own push constants follow it.
                 (vk::ShaderStageFlags::VERTEX, pass.push.bytes().len().max(size_of::<DepthPush>()))
@@ -83,7 +83,7 @@ impl PassObjects {
         };
         let mut made = Self { layouts, push_stages: stages, ..Self::default() };
         match pass.work {
-            Work::Constants { .. } => {}
+            Work::Constants { .. } | Work::FrameNumber => {}
             Work::Dispatch { shader, .. }
             | Work::Indirect { shader, .. }
             | Work::EachMesh { shader } => {

@@ -4,6 +4,7 @@
 
 use super::descriptors::Descriptors;
 use super::host::Host;
+use super::measured::Measured;
 use super::mesh_sets::MeshSets;
 use super::objects::{Object, Objects, layers, whole};
 use super::pipeline::{PassObjects, variant};
@@ -11,7 +12,8 @@ use super::result::ResultImage;
 use super::timing::Timing;
 use crate::frame::{Faces, FramePlan, MeshDraw};
 use crate::graph::{
-    self, COLOR_ATTACHMENTS, Draw, Layer, Pass, ResourceBarrier, ResourceId, Target, Use, Work,
+    self, COLOR_ATTACHMENTS, Draw, Layer, Owner, Pass, ResourceBarrier, ResourceId, Step, Target,
+    Use, Work,
 };
 use crate::lent::{Geometry, MeshBuffers};
 use ash::vk;
@@ -48,6 +50,10 @@ pub(crate) struct Recorder<'a> {
     pub descriptors: &'a Descriptors,
     pub mesh_sets: &'a MeshSets,
     pub timing: Option<&'a Timing>,
+    /// The figures of the audit; `None` where the description has none.
+    pub measured: Option<&'a Measured>,
+    /// The number of this frame among the light's; 0 for one without an audit.
+    pub number: u32,
     /// The place of this frame's descriptor sets and timestamps.
     pub place: usize,
     /// The number of the first of `kinds` among the kinds of all techniques.
@@ -65,6 +71,11 @@ impl Recorder<'_> {
                 true => timing.nothing(self.place),
                 false => timing.begin(self.host, self.cmd, self.place),
             }
+        }
+        if let Some(measured) = self.measured {
+            let runs = |s: &Step| matches!(plan.graph.passes()[s.pass].work, Work::FrameNumber);
+            let audited = plan.steps.iter().any(runs);
+            self.number = measured.begin(self.place, frame.light_index(), audited);
         }
         if !frame.triangles.meshes.is_empty() {
             self.mesh_sets.write(self.host, &frame.triangles, self.place);
@@ -93,7 +104,8 @@ impl Recorder<'_> {
             Work::Dispatch { .. }
             | Work::Indirect { .. }
             | Work::EachMesh { .. }
-            | Work::Constants { .. } => vk::PipelineBindPoint::COMPUTE,
+            | Work::Constants { .. }
+            | Work::FrameNumber => vk::PipelineBindPoint::COMPUTE,
             Work::Raster { .. } => vk::PipelineBindPoint::GRAPHICS,
         };
         if let Some(set) = set {
@@ -106,12 +118,18 @@ impl Recorder<'_> {
             };
         }
         let pushed = pass.push.bytes();
-        if let Work::Constants { offset } = pass.work {
+        let number = [self.number, frame.light_index().0];
+        let constants = match pass.work {
+            Work::Constants { offset } => Some((offset, pushed)),
+            Work::FrameNumber => Some((0, bytemuck::cast_slice(&number))),
+            _ => None,
+        };
+        if let Some((offset, bytes)) = constants {
             let target = pass.uses.first().map_or(Object::None, |u| objects.get(u.resource));
             if let Object::Buffer(buffer) = target {
                 // SAFETY: Host::borrow's promise: cmd is recording outside a render pass; the buffer has
                 // TRANSFER_DST usage, and holds these bytes from a multiple of 4 on.
-                unsafe { device.cmd_update_buffer(cmd, buffer, offset, pushed) };
+                unsafe { device.cmd_update_buffer(cmd, buffer, offset, bytes) };
             }
             return;
         }
@@ -129,7 +147,7 @@ impl Recorder<'_> {
                 // that its accesses need were recorded before it.
                 unsafe { device.cmd_dispatch(cmd, x, y, z) };
             }
-            Work::Constants { .. } => {}
+            Work::Constants { .. } | Work::FrameNumber => {}
             Work::EachMesh { .. } => self.each_mesh(frame, made),
             Work::Indirect { arguments, offset, .. } => {
                 let Object::Buffer(buffer) = objects.get(arguments) else { return };
@@ -318,9 +336,12 @@ impl Recorder<'_> {
         if let Some((_, host)) = frame.imports.iter().find(|(r, _)| *r == id) {
             return Object::Image { image: host.image, view: host.view };
         }
-        match self.result.filter(|_| id == frame.visibility) {
-            Some(result) => result.layer(frame.light_index().0),
-            None => self.objects.get(id),
+        if let Some(result) = self.result.filter(|_| id == frame.visibility) {
+            return result.layer(frame.light_index().0);
+        }
+        match frame.plan.graph.resource(id).owner {
+            Owner::HostRead => self.measured.map_or(Object::None, |m| m.object(self.place)),
+            _ => self.objects.get(id),
         }
     }
 

@@ -120,6 +120,12 @@ impl Scope {
         vk::AccessFlags::SHADER_WRITE,
         vk::ImageLayout::GENERAL,
     );
+    /// Memory that the host reads once the device has completed the commands: `HOST`, `HOST_READ`.
+    pub(crate) const HOST_READ: Self = Self::of(
+        vk::PipelineStageFlags::HOST,
+        vk::AccessFlags::HOST_READ,
+        vk::ImageLayout::UNDEFINED,
+    );
     /// The source of a copy: `TRANSFER`, `TRANSFER_READ`, `TRANSFER_SRC_OPTIMAL`.
     pub const COPIED_FROM: Self = Self::of(
         vk::PipelineStageFlags::TRANSFER,

@@ -84,6 +84,12 @@ impl Graph {
         self.add(Resource { name, shape, owner: Owner::Transient, until: None })
     }
 
+    /// Declares a buffer of at least 16 bytes that the node reads on the host once the device has completed the frame.
+    pub fn host_read_buffer(&mut self, name: &'static str, bytes: u64) -> ResourceId {
+        let shape = Shape::Buffer { bytes: bytes.max(16) };
+        self.add(Resource { name, shape, owner: Owner::HostRead, until: None })
+    }
+
     /// Makes the content of a transient resource stay for later frames.
     pub fn keep(&mut self, id: ResourceId) {
         if let Some(resource) = self.resources.get_mut(id.index()) {

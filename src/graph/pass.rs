@@ -174,6 +174,9 @@ pub enum Work {
         /// Where in the buffer, in bytes: a multiple of 4.
         offset: u64,
     },
+    /// Writes which frame it is into the one buffer that the pass uses: the number of the light's recorded frames, from
+    /// 1 up, and the light's index, 32 bits each.
+    FrameNumber,
     /// A draw into attachments.
     Raster {
         /// The vertex shader.
@@ -196,7 +199,7 @@ impl Work {
             Self::Dispatch { shader, .. }
             | Self::Indirect { shader, .. }
             | Self::EachMesh { shader } => Some(shader),
-            Self::Raster { .. } | Self::Constants { .. } => None,
+            Self::Raster { .. } | Self::Constants { .. } | Self::FrameNumber => None,
         }
     }
 }
@@ -268,6 +271,12 @@ impl Pass {
         let uses = smallvec::smallvec![Use::fixed(buffer, Access::TransferWrite)];
         let work = Work::Constants { offset };
         Self { name, uses, push: Push::new(bytes), work, need: *need }
+    }
+
+    /// A pass that writes which frame it is into a buffer.
+    pub fn frame_number(name: &'static str, buffer: ResourceId, need: &Need) -> Self {
+        let uses = smallvec::smallvec![Use::fixed(buffer, Access::TransferWrite)];
+        Self { name, uses, push: Push::NONE, work: Work::FrameNumber, need: *need }
     }
 
     /// Whether `other`, a pass of the same name, can be recorded with the objects that were made for this one.

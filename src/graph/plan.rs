@@ -183,9 +183,8 @@ impl Compiler {
             let written = uses().any(|u| u.resource == id && u.access.writes());
             self.states.push(match resource.owner {
                 Owner::Kept if !written => State::left_in(readers(graph, id)),
-                Owner::Kept => State::forgotten(everything(graph, id)),
-                Owner::Transient => State::forgotten(everything(graph, id)),
-                Owner::Imported | Owner::Exported | Owner::Lent => {
+                owner if !owner.is_shared() => State::forgotten(everything(graph, id)),
+                _ => {
                     let border = borders.iter().find(|b| b.resource == id);
                     match border {
                         Some(border) => State::left_in(border.before),
@@ -218,8 +217,8 @@ impl Compiler {
                 let border = borders.iter().find(|b| b.resource == u.resource);
                 let scope =
                     scope_at(u.access, border.filter(|_| resource.owner == Owner::Imported));
-                let host_owned = !matches!(resource.owner, Owner::Transient | Owner::Kept);
-                let first = host_owned && !boundary.iter().any(|b| b.resource == u.resource);
+                let seen = |b: &BoundaryUse| b.resource == u.resource;
+                let first = resource.owner.is_shared() && !boundary.iter().any(seen);
                 if first {
                     let entry = if resource.owner == Owner::Imported {
                         // No pass writes it, so that one barrier serves all of its readers.
@@ -274,11 +273,11 @@ impl Compiler {
             b.exit = states[b.resource.index()].scope();
         }
         handover.clear();
-        // A kept resource is left ready for its readers in later frames.
+        // A kept resource is left ready for its readers in later frames, and figures for the host.
         for (index, resource) in graph.resources().iter().enumerate() {
             let (id, state) = (ResourceId(index as u16), &mut states[index]);
-            let mut passes = self.kept.iter().map(|&p| &graph.passes()[p]);
-            if resource.owner == Owner::Kept && passes.any(|p| p.writes().any(|r| r == id)) {
+            let mut written = self.kept.iter().flat_map(|&p| graph.passes()[p].writes());
+            if resource.owner.is_read_later() && written.any(|r| r == id) {
                 let barrier = state.touch(readers(graph, id), false);
                 handover.extend(barrier.map(|barrier| ResourceBarrier { resource: id, barrier }));
             }
@@ -368,7 +367,8 @@ fn everything(graph: &Graph, id: ResourceId) -> Scope {
 /// The scope of all reads of a resource, in the layout of the last of them.
 fn readers(graph: &Graph, id: ResourceId) -> Scope {
     let reads = graph.uses_of(id).filter(|access| !access.writes()).map(Access::scope);
-    reads.fold(Scope::UNUSED, |all, one| Scope {
+    let host = (graph.resource(id).owner == Owner::HostRead).then_some(Scope::HOST_READ);
+    reads.chain(host).fold(Scope::UNUSED, |all, one| Scope {
         stage: if all == Scope::UNUSED { one.stage } else { all.stage | one.stage },
         access: all.access | one.access,
         layout: one.layout,

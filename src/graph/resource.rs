@@ -26,12 +26,25 @@ pub enum Owner {
     Exported,
     /// The host owns it and reads it after the frame's last pass; the node overwrites all of it.
     Lent,
+    /// The node owns it, a buffer in memory that the host sees for each light of each frame slot; the node reads it on
+    /// the host once the device has completed the frame.
+    HostRead,
 }
 
 impl Owner {
-    /// Whether the host reads the resource after the node.
+    /// Whether the resource is read after the node's last pass.
     pub fn is_result(self) -> bool {
-        matches!(self, Self::Exported | Self::Lent)
+        matches!(self, Self::Exported | Self::Lent | Self::HostRead)
+    }
+
+    /// Whether later frames or the node's host side read the resource.
+    pub fn is_read_later(self) -> bool {
+        matches!(self, Self::Kept | Self::HostRead)
+    }
+
+    /// Whether the host and the node both use the resource on the device, so that the host says how.
+    pub fn is_shared(self) -> bool {
+        matches!(self, Self::Imported | Self::Exported | Self::Lent)
     }
 }
 

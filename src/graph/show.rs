@@ -102,6 +102,7 @@ fn work_of(graph: &Graph, work: &Work) -> String {
         }
         Work::EachMesh { .. } => "dispatch a mesh".into(),
         Work::Constants { .. } => "write constants".into(),
+        Work::FrameNumber => "write the frame's number".into(),
         Work::Raster { draw: super::Draw::Layer { layer, .. }, .. } => {
             format!("draw {:?}", layer.meshes()).to_lowercase()
         }

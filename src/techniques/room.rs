@@ -9,7 +9,7 @@ use crate::knob::Tune;
 use crate::lent::MeshBounds;
 use crate::light::{Light, RectangleLight, Shape};
 use crate::stages::depth_layers::{self, DepthLayers, LightLayers, MapView, Projection, Wanted};
-use crate::stages::hierarchy::Sizes;
+use crate::stages::hierarchy::{Hierarchy, Sizes};
 use crate::stages::views::Views;
 use crate::stages::visibility::GBuffer;
 use crate::{Error, graph};
@@ -224,6 +224,8 @@ pub struct PassInputs<'a> {
     pub filter: &'a Need,
     /// The sizes of the hierarchy of blocking triangles, and how the pixels see its space.
     pub tree: &'a (Sizes, Space),
+    /// That hierarchy, where the technique works with the triangles.
+    pub hierarchy: Option<Hierarchy>,
 }
 
 impl PassInputs<'_> {

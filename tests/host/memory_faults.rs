@@ -3,6 +3,7 @@
 //!
 //! The device is under the validation layer: an object that nobody destroyed is told when it is.
 
+use antumbra::frame::Capacity;
 use antumbra::graph::{Graph, Owner};
 use antumbra::{Description, Error, LightTexture, Requirements, ShadowNode, Technique, frame};
 use antumbra_tests::TestDevice;
@@ -16,17 +17,19 @@ fn pieces(description: &Description) -> usize {
         let ids = (0..graph.resources().len()).map(|index| graph.id(index));
         ids.filter(|&id| {
             let owner = graph.resource(id).owner;
-            owner == Owner::Transient && graph.uses_of(id).next().is_some()
+            matches!(owner, Owner::Transient | Owner::Kept) && graph.uses_of(id).next().is_some()
         })
         .count()
     };
+    let places = (description.lights * description.frames_in_flight) as usize;
+    let figures = if description.audit > 0 { places } else { 0 };
     let alone = |s: &Technique| Description {
         technique: *s,
         other_techniques: Vec::new(),
         ..description.clone()
     };
     let graphs = description.all_techniques().map(|s| of(&frame::full_graph(&alone(s))));
-    graphs.sum::<usize>() + usize::from(!description.lent_visibility)
+    graphs.sum::<usize>() + usize::from(!description.lent_visibility) + figures
 }
 
 /// What adds resources to a technique, beside [`SMALLEST`].
@@ -36,6 +39,9 @@ const MORE: &[Described] = &[
         d.light_texture = Some(LightTexture { format: vk::Format::R8G8B8A8_UNORM, color: true });
     }),
     ("technique=hard map=16", |d| (d.lights, d.inspect) = (3, true)),
+    ("technique=hard map=16", |d| {
+        (d.audit, d.lights, d.capacity) = (16, 2, Capacity { triangles: 512, meshes: 8 });
+    }),
     ("technique=hard map=16", |d| d.other_techniques.push(settings("technique=hard map=32"))),
 ];
 

@@ -84,6 +84,27 @@ fn a_model_gives_every_file_and_a_whole_report() {
 }
 
 #[test]
+fn an_audit_says_what_it_measured() {
+    let out = folder("audit");
+    let scene = root().join("scenes/bunny.glb");
+    let options = ["--size", "96x64", "--technique", "pcss", "--validate", "--repeat", "3"];
+    let output = run(&scene, &out, &options);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(report(&out).get("measured_error"), None);
+    let visibility = fs::read(out.join("visibility.exr")).unwrap();
+    let output = run(&scene, &out, &[&options[..], &["--audit", "64"]].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let error = report(&out)["measured_error"].clone();
+    let of = |key: &str| error[key].as_f64().unwrap();
+    assert!(0.0 <= of("low") && of("low") < of("mean") && of("mean") < of("high"), "{error}");
+    assert!(of("high") < 0.2 && (30.0..=192.0).contains(&of("pixels")), "{error}");
+    let told = String::from_utf8(output.stdout).unwrap();
+    assert!(told.contains(" % measured (") && told.contains(" pixels)"), "{told}");
+    assert!(visibility == fs::read(out.join("visibility.exr")).unwrap(), "another image");
+    fs::remove_dir_all(out).unwrap();
+}
+
+#[test]
 fn a_role_on_the_command_line_counts() {
     let out = folder("roles");
     let scene = root().join("scenes/bunny.glb");

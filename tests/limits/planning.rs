@@ -56,18 +56,19 @@ fn frames(meshes: &[MeshInstance], moment: u32, stays: bool) -> [Frame<'_>; 4] {
 
 #[test]
 fn planning_takes_no_memory_after_the_first_frame() {
-    for words in [
-        "technique=soft-shadow-map",
-        "technique=soft-shadow-map receivers=map accumulate=blend",
-        "technique=ray-march",
-        "technique=occlusion-textures",
-        "technique=pcss",
-        "technique=hard",
-        "technique=back-projection",
-        "technique=traced",
+    for (words, audit) in [
+        ("technique=soft-shadow-map", 0),
+        ("technique=soft-shadow-map receivers=map accumulate=blend", 0),
+        ("technique=ray-march", 0),
+        ("technique=occlusion-textures", 0),
+        ("technique=pcss", 0),
+        ("technique=pcss", 64),
+        ("technique=hard", 0),
+        ("technique=back-projection", 0),
+        ("technique=traced", 0),
     ] {
-        let description =
-            Description { technique: settings(words), lights: 4, ..Description::new([64; 2]) };
+        let plain = Description::new([64; 2]);
+        let description = Description { technique: settings(words), lights: 4, audit, ..plain };
         for stays in [false, true] {
             let mut plans = FramePlans::new();
             // To and fro: where more meshes matter than ever before, their list grows.

@@ -280,6 +280,22 @@ fn descriptions() {
             Described(|d| d.technique = technique("pcss")),
             &["pcss", "choose ray-march"],
         ),
+        d("an audit of few", |d| d.audit = 15, &["audit of 15 pixels", "16 to 65,536"]),
+        d("an audit of all", |d| d.audit = 65_537, &["audit of 65537 pixels", "16 to 65,536"]),
+        (
+            "an audit without triangles",
+            Maps,
+            "",
+            Described(|d| d.audit = 64),
+            &["an audit traces triangles", "set audit to 0"],
+        ),
+        (
+            "an audit of a texture",
+            Texture,
+            "",
+            Described(|d| d.audit = 64),
+            &["the light has a texture", "set audit to 0"],
+        ),
         (
             "a texture of whole numbers",
             Texture,

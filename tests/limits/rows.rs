@@ -76,6 +76,13 @@ fn descriptions() -> Vec<(String, Description)> {
             ));
         }
     }
+    for words in ["technique=hard", "technique=pcss taps=8"] {
+        let plain = Description::new([641, 479]);
+        let mask_format = Some(vk::Format::R8_UNORM);
+        let description =
+            Description { technique: settings(words), mask_format, audit: 1000, ..plain };
+        all.push((format!("{words}, audited"), description));
+    }
     all
 }
 
@@ -88,7 +95,7 @@ fn modules(pass: &Pass) -> Vec<Module> {
         Work::Dispatch { shader, .. }
         | Work::Indirect { shader, .. }
         | Work::EachMesh { shader } => vec![shader],
-        Work::Constants { .. } => Vec::new(),
+        Work::Constants { .. } | Work::FrameNumber => Vec::new(),
         Work::Raster { vertex, fragment, .. } => std::iter::once(vertex).chain(fragment).collect(),
     }
 }

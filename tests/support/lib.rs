@@ -17,6 +17,7 @@ pub mod permutations;
 pub mod random;
 pub mod reflect;
 pub mod rig;
+pub mod room;
 mod signature;
 mod skip;
 pub mod tables;

@@ -4,6 +4,7 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
 mod accuracy;
+mod audit;
 mod baseline;
 mod disc_light;
 mod forward;

@@ -61,40 +61,21 @@ pub struct WeightConstants {
 /// Adds the passes that write the frame's constants, and returns the buffer that holds them.
 pub(super) fn declare(graph: &mut Graph, settings: &Settings, inputs: &PassInputs) -> ResourceId {
     let constants = graph.buffer("traced.constants", 720);
-    let PassInputs { gbuffer, need, .. } = *inputs;
+    let need = inputs.need;
     let (_, space) = inputs.tree;
-    let shape = space.light.shape();
-    let half_light = half_of(&space.light);
+    graph.push(Pass::constants("traced.light", constants, 0, &LightConstants::of(inputs), need));
     let side = settings.samples.side();
-    let weights = weights::weights(shape, half_light, weights::MOST.min(side as usize));
+    let cells = weights::MOST.min(side as usize);
+    let weights = weights::weights(space.light.shape(), half_of(&space.light), cells);
     let weight: u32 = weights.iter().flatten().map(|&w| u32::from(w)).sum();
     // Four samples share a weight where there are more samples than weights.
     let shared = (side as usize / weights::MOST).max(1).pow(2);
-    let row = |i: usize| space.light_from_here.row(i).as_vec4().to_array();
-    let first = LightConstants {
-        eye_from_ndc: space.eye_from_ndc.as_mat4().to_cols_array(),
-        light_from_here: [row(0), row(1), row(2)],
-        half_light: half_light.map(|half| half as f32),
-        background: gbuffer.background,
-        depth_step: space.depth_step,
-    };
-    graph.push(Pass::constants("traced.light", constants, 0, &first, need));
     let second = PixelConstants {
-        eye: space.eye.as_vec3().extend(0.0).to_array(),
-        towards: space.towards.as_vec4().to_array(),
-        extent: gbuffer.extent.map(|e| e as i32),
-        masked: u32::from(gbuffer.mask.is_some()),
-        kind: match shape {
-            Shape::Sun { .. } => 1,
-            _ if space.light.is_round() => 2,
-            _ => 0,
-        },
-        nodes: space.nodes,
         most: settings.leaves,
-        snap: inputs.snap,
         samples: settings.rays.min(side * side),
         weight: weight as f32 * shared as f32,
         side,
+        ..PixelConstants::of(inputs)
     };
     graph.push(Pass::constants("traced.pixels", constants, 128, &second, need));
     for (nth, part) in weights.unwrap_or([0; 256]).as_chunks::<64>().0.iter().enumerate() {
@@ -103,6 +84,45 @@ pub(super) fn declare(graph: &mut Graph, settings: &Settings, inputs: &PassInput
         graph.push(Pass::constants("traced.weights", constants, offset, &part, need));
     }
     constants
+}
+
+impl LightConstants {
+    /// The first part of a frame's constants.
+    pub(crate) fn of(inputs: &PassInputs) -> Self {
+        let (_, space) = inputs.tree;
+        let row = |i: usize| space.light_from_here.row(i).as_vec4().to_array();
+        Self {
+            eye_from_ndc: space.eye_from_ndc.as_mat4().to_cols_array(),
+            light_from_here: [row(0), row(1), row(2)],
+            half_light: half_of(&space.light).map(|half| half as f32),
+            background: inputs.gbuffer.background,
+            depth_step: space.depth_step,
+        }
+    }
+}
+
+impl PixelConstants {
+    /// The second part of a frame's constants, with zeros for the technique's own.
+    pub(crate) fn of(inputs: &PassInputs) -> Self {
+        let (_, space) = inputs.tree;
+        Self {
+            eye: space.eye.as_vec3().extend(0.0).to_array(),
+            towards: space.towards.as_vec4().to_array(),
+            extent: inputs.gbuffer.extent.map(|e| e as i32),
+            masked: u32::from(inputs.gbuffer.mask.is_some()),
+            kind: match space.light.shape() {
+                Shape::Sun { .. } => 1,
+                _ if space.light.is_round() => 2,
+                _ => 0,
+            },
+            nodes: space.nodes,
+            most: 0,
+            snap: inputs.snap,
+            samples: 0,
+            weight: 0.0,
+            side: 0,
+        }
+    }
 }
 
 /// Half the width and height of the rectangle of the light's samples, m; of a sun the tangents of half its angular size.

@@ -47,7 +47,6 @@ pub use settings::Settings;
 
 use super::room::{HostDraws, Maps, PassInputs, Room, Shapes, Shows, Takes};
 use crate::graph::{Graph, ResourceId};
-use crate::stages::hierarchy;
 
 /// The side of the maps that the technique does not have; a placeholder's.
 const NO_MAP: u32 = 16;
@@ -81,10 +80,8 @@ impl Room for Settings {
     }
 
     fn declare(&self, graph: &mut Graph, inputs: &PassInputs) -> Option<ResourceId> {
-        let (sizes, _) = inputs.tree;
-        let tree = hierarchy::declare(graph, *sizes, inputs.need);
         let constants = constants::declare(graph, self, inputs);
-        passes::declare(graph, self, &tree, constants, inputs);
+        passes::declare(graph, self, &inputs.hierarchy?, constants, inputs);
         None
     }
 }

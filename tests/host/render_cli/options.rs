@@ -18,6 +18,7 @@ fn wrong_options_are_one_sentence() {
     );
     refuse("size", &bunny, &["--size", "0x10"], "WxH");
     refuse("repeat", &bunny, &["--repeat", "0"], "--repeat");
+    refuse("audit", &bunny, &["--audit", "5"], "--audit: 5 pixels");
     refuse("light", &bunny, &["--light", "sun"], "sun");
     refuse("role", &bunny, &["--role", "ground=wall"], "wall");
     refuse("node", &bunny, &["--role", "nobody=both"], "nobody");

@@ -193,3 +193,22 @@ fn meshes() {
         ),
     ]);
 }
+
+/// What the host draws itself has no triangles to trace; it may receive, and block where nothing is audited.
+#[test]
+fn meshes_that_an_audit_cannot_trace() {
+    let plan = |audit, role| {
+        let mut given = Given::new(Lends::GBuffer, "");
+        given.description.audit = audit;
+        given.meshes[1].geometry = Geometry::HostDrawn(5);
+        given.meshes[1].role = role;
+        given.plan(Lends::GBuffer, |_| {})
+    };
+    let sentence = plan(64, Role::Both).unwrap_err().to_string();
+    println!("{sentence}");
+    for word in ["mesh 1 is drawn by the host", "audit", "give its buffers"] {
+        assert!(sentence.contains(word), "{sentence}");
+    }
+    plan(64, Role::Receiver).unwrap();
+    plan(0, Role::Both).unwrap();
+}
