@@ -105,9 +105,9 @@ fn every_bad_number_of_lights_or_techniques_is_one_sentence() {
         let sentence = Description { lights, ..d.clone() }.check().unwrap_err().to_string();
         assert!(sentence.contains(&format!("1 to 64 lights, not for {lights}")), "{sentence}");
     }
-    let other_techniques = vec![Technique::default(); 8];
+    let other_techniques = vec![Technique::default(); 16];
     let sentence = Description { other_techniques, ..d.clone() }.check().unwrap_err().to_string();
-    assert!(sentence.contains("8 other techniques are more than the 7"), "{sentence}");
+    assert!(sentence.contains("16 other techniques are more than the 15"), "{sentence}");
     // Each of the techniques is held against the rest of the description, and against its frames.
     let many = "many-lights".parse().unwrap();
     let d = Description { other_techniques: vec![many], ..d };
