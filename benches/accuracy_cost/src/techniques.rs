@@ -91,6 +91,7 @@ pub const CURVES: &[Curve] = &[
     curve(["ray-march", "ray march, 16 rays"], "rays=16 map={}", "64 128 512", "", ""),
     curve(["occlusion-textures", "occlusion textures"], "slices={}", "4 8 16", "4 8 16", "8"),
     curve(["linear-light", "linear light"], "error={}", "0.05 0.02 0.01", "0.05 0.02", "0.02"),
+    curve(["traced", "triangles, traced"], "samples={}", "64 256", "64 256", "64"),
 ];
 
 /// How a visible fraction is to be computed.

@@ -6,10 +6,10 @@ pub use axis::Axis;
 use maud::{Markup, html};
 
 /// Colors that every kind of color vision tells apart (Okabe and Ito 2008), their yellow replaced by
-/// one that shows on white, a gray, and a brown that its mark and dash must help.
-pub const PALETTE: [&str; 10] = [
+/// one that shows on white, a gray, and a brown and a violet that their mark and dash must help.
+pub const PALETTE: [&str; 11] = [
     "#0072b2", "#000000", "#7a6a00", "#e69f00", "#009e73", "#d55e00", "#cc79a7", "#56b4e9",
-    "#8c8c8c", "#8c564b",
+    "#8c8c8c", "#8c564b", "#6a3d9a",
 ];
 
 /// How a curve is drawn: color, dash and mark, so that no two depend on color alone.
