@@ -134,15 +134,15 @@ void main()
         Mask hidden1 = whole_mask(mine1 ? 0u : 0xffffffffu);
         for (uint i = 0u; i < entry.plain && !(is_full(hidden0) && is_full(hidden1)); ++i) {
             Triangle t = triangle_of(lists[entry.plain_first + i], middle);
-            hidden0 = with_both(hidden0, hidden_by(t, eye0, about, word), false);
-            hidden1 = with_both(hidden1, hidden_by(t, eye1, about, word), false);
+            hidden0 = either(hidden0, hidden_by(t, eye0, about, word));
+            hidden1 = either(hidden1, hidden_by(t, eye1, about, word));
         }
         for (uint i = 0u; i < entry.crossing && !(is_full(hidden0) && is_full(hidden1)); ++i) {
             Triangle t = triangle_of(lists[entry.crossing_first + i], middle);
-            Mask by0 = with_both(hidden_by(t, eye0, about, word), behind_plane(t, eye0, about, word), true);
-            Mask by1 = with_both(hidden_by(t, eye1, about, word), behind_plane(t, eye1, about, word), true);
-            hidden0 = with_both(hidden0, by0, false);
-            hidden1 = with_both(hidden1, by1, false);
+            Mask by0 = both(hidden_by(t, eye0, about, word), behind_plane(t, eye0, about, word));
+            Mask by1 = both(hidden_by(t, eye1, about, word), behind_plane(t, eye1, about, word));
+            hidden0 = either(hidden0, by0);
+            hidden1 = either(hidden1, by1);
         }
         seen += vec2(seen_of(hidden0, m * MASK_WORDS), seen_of(hidden1, m * MASK_WORDS));
     }

@@ -56,7 +56,7 @@ Bounds bounds_of(Line a, Line b, Line c, bool none)
     bvec3 least = bvec3(a.least, b.least, c.least);
     vec3 at = vec3(a.at.x, b.at.x, c.at.x) + 1.0;
     vec3 step = vec3(a.at.y, b.at.y, c.at.y);
-    return Bounds(none ? vec3(FAR) : mix(vec3(-FAR), at, least), mix(vec3(0.0), step, least),
+    return Bounds(mix(mix(vec3(-FAR), at, least), vec3(FAR), bvec3(none)), mix(vec3(0.0), step, least),
                   mix(at, vec3(FAR), least), mix(step, vec3(0.0), least));
 }
 
@@ -69,8 +69,9 @@ uint samples_of(Bounds b, float j)
     int from = min(max(max(least.x, least.y), max(least.z, 0)), SIDE);
     int to = max(min(min(most.x, most.y), min(most.z, SIDE)), 0);
 #if SIDE == 32
-    uint before = to == 32 ? 0xffffffffu : (1u << to) - 1u;
-    return from == 32 ? 0u : before & 0xffffffffu << from;
+    // Shifts by 32 are undefined: two by a half each.
+    uint before = (1u << (to >> 1) << to - (to >> 1)) - 1u;
+    return before & 0xffffffffu << (from >> 1) << from - (from >> 1);
 #else
     return (1u << to) - 1u & 0xffffffffu << from;
 #endif
@@ -105,9 +106,14 @@ Mask samples_between(Bounds b, float j)
         samples_of(b, 4.0) | samples_of(b, 5.0) << 8 | samples_of(b, 6.0) << 16 | samples_of(b, 7.0) << 24));
 }
 
-Mask with_both(Mask a, Mask b, bool and)
+Mask either(Mask a, Mask b)
 {
-    return Mask(and ? a.words & b.words : a.words | b.words);
+    return Mask(a.words | b.words);
+}
+
+Mask both(Mask a, Mask b)
+{
+    return Mask(a.words & b.words);
 }
 
 #define MASK_WORDS 2
@@ -155,9 +161,14 @@ Mask samples_between(Bounds b, float first)
                       word_between(b, first + 6.0), word_between(b, first + 7.0)));
 }
 
-Mask with_both(Mask a, Mask b, bool and)
+Mask either(Mask a, Mask b)
 {
-    return and ? Mask(a.low & b.low, a.high & b.high) : Mask(a.low | b.low, a.high | b.high);
+    return Mask(a.low | b.low, a.high | b.high);
+}
+
+Mask both(Mask a, Mask b)
+{
+    return Mask(a.low & b.low, a.high & b.high);
 }
 
 #define MASK_WORDS 8
