@@ -16,13 +16,18 @@ layout(set = 0, binding = 5, r32f) writeonly uniform image2D visibility;
 
 #include "traced/shaft.glsl"
 
+// The turns of a walk: with all other loops of the passes that do it, fewer than the 65,535 after which some drivers end
+// loops without a word.
+const int MOST_TURNS = 40000;
+
 // Counts the leaves that a shaft holds, up to one more than a list may have, and writes down the first of them.
 uint leaves_in(Shaft shaft, uint slot)
 {
     Planes planes = planes_of(shaft);
     uint found = 0u;
     uint at = 0u;
-    while (at < frame.nodes && found <= frame.most) {
+    int turns = MOST_TURNS;
+    while (at < frame.nodes && found <= frame.most && turns > 0) {
         Node node = node_at(at);
         bool inside = meets(planes, node);
         if (inside && node.leaf && found < FIRST_LEAVES) {
@@ -30,8 +35,10 @@ uint leaves_in(Shaft shaft, uint slot)
         }
         found += inside && node.leaf ? 1u : 0u;
         at = inside || node.leaf ? at + 1u : node.link;
+        --turns;
     }
-    return found;
+    // A walk that is longer than some drivers let loops be is left to rays.
+    return at < frame.nodes ? frame.most + 1u : found;
 }
 
 // A shaft whose light faces its own receivers.
