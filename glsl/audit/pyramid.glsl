@@ -73,7 +73,7 @@ Pyramid pyramid_of(vec3 tip, Figure f, vec3 low, vec3 step)
     p.c = edge_of(p.corner[2], p.corner[3], middle, tip, low, step);
     p.d = edge_of(p.corner[3], p.corner[0], middle, tip, low, step);
     // Behind a sun there is nothing.
-    p.base = push.kind == SUN ? Side(vec3(0.0), -1.0, vec3(0.0), vec3(0.0), 1.0)
+    p.base = push.kind == SUN_DISC ? Side(vec3(0.0), -1.0, vec3(0.0), vec3(0.0), 1.0)
                               : side_of(f.normal, dot(f.normal, middle), tip, low, step);
     return p;
 }

@@ -30,7 +30,7 @@ struct Frame {
     uint kind;          // LAMP, SUN or ROUND
     uint nodes;         // how many nodes the hierarchy has
     uint most;          // the most leaves that a shaft may hold
-    float snap;         // the step of the grid that a raster moves vertices to, in pixels
+    float snap;         // how much coarser than 8 bits the grid is that a raster moves vertices to, in pixels
     uint samples;       // rays that a pixel of a dense shaft sends
     float weight;       // the sum of the samples' weights; 0 where all weigh the same
     uint side;          // samples along a side of the light: 8, 16 or 32
@@ -132,6 +132,9 @@ bool in_light(vec3 p)
     return dot(to, to) <= frame.half_light.y * frame.half_light.y;
 }
 
+// The most that a surface's distance counts as changing from a pixel to the next, in pixels.
+const float STEEP = 8.0;
+
 // How much the depth changes from a pixel to the next along an axis: by more of the two sides where they are of one
 // surface, else by less.
 float slope_along(ivec2 pixel, float depth, ivec2 axis)
@@ -162,13 +165,17 @@ Receiver receiver_of(ivec2 pixel)
     vec4 p = at_zero + frame.eye_from_ndc[2] * depth;
     vec3 from_eye = p.xyz / p.w;
     float step = frame.depth_step > 0.0 ? frame.depth_step * depth : -frame.depth_step;
-    // A raster that moves vertices, by half a step of its grid at most, moves the surface.
-    step += 0.5 * frame.snap * (slope_along(pixel, depth, ivec2(1, 0)) + slope_along(pixel, depth, ivec2(0, 1)));
     vec4 q = p + frame.eye_from_ndc[2] * (frame.background == 0.0 ? step : -step);
     vec3 moved = from_eye - q.xyz / q.w;
     vec3 towards = frame.towards.w > 0.0 ? -normalize(from_eye) : frame.towards.xyz;
     vec3 size = abs(frame.eye.xyz) + abs(from_eye);
-    float off = 2.0 * length(moved) + 16.0 * ROUNDING * max(max(size.x, size.y), size.z);
+    // A raster that moves vertices, by half a step of its grid at most, moves the surface: by as much as the depth changes
+    // over that, but no more than it does on a surface whose distance changes by STEEP pixels a pixel.
+    float slope = slope_along(pixel, depth, ivec2(1, 0)) + slope_along(pixel, depth, ivec2(0, 1));
+    vec4 sloped = p + frame.eye_from_ndc[2] * (frame.background == 0.0 ? slope : -slope);
+    float footprint = length(frame.eye_from_ndc[0].xyz) * 2.0 / (float(frame.extent.x) * abs(p.w));
+    float snapped = 0.5 * frame.snap * min(length(from_eye - sloped.xyz / sloped.w), STEEP * footprint);
+    float off = snapped + 2.0 * length(moved) + 8.0 * ROUNDING * max(max(size.x, size.y), size.z);
     r.position = frame.eye.xyz + from_eye + towards * off;
     r.in_light = in_light_space(r.position);
     // At the plane of a lamp and behind it there is nothing to hide, nor within a round light.

@@ -6,6 +6,9 @@ use crate::techniques::room::PassInputs;
 use crate::{Light, Shape};
 use bytemuck::{Pod, Zeroable};
 
+/// A raster's grid of 8 sub-pixel bits: what it moves surfaces by is within what receivers are moved for rounding.
+const FINE: f32 = 1.0 / 256.0;
+
 /// The first part of the frame's constants (`traced/frame.glsl`).
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -40,7 +43,7 @@ pub struct PixelConstants {
     pub nodes: u32,
     /// The most leaves that a shaft may hold.
     pub most: u32,
-    /// The step of the grid that the raster moves vertices to, in pixels.
+    /// How much coarser than [`FINE`] the grid is that the raster moves vertices to, in pixels.
     pub snap: f32,
     /// How many rays a pixel of a dense shaft sends.
     pub samples: u32,
@@ -117,7 +120,7 @@ impl PixelConstants {
             },
             nodes: space.nodes,
             most: 0,
-            snap: inputs.snap,
+            snap: (inputs.snap - FINE).max(0.0),
             samples: 0,
             weight: 0.0,
             side: 0,
