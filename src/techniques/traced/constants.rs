@@ -43,7 +43,7 @@ pub struct PixelConstants {
     pub nodes: u32,
     /// The most leaves that a shaft may hold.
     pub most: u32,
-    /// How much coarser than [`FINE`] the grid is that the raster moves vertices to, in pixels.
+    /// How much coarser than 8 sub-pixel bits the grid is that the raster moves vertices to, in pixels.
     pub snap: f32,
     /// How many rays a pixel of a dense shaft sends.
     pub samples: u32,
