@@ -32,7 +32,7 @@ pub struct LightPush {
     pub center: [f32; 3],
     /// How far it reaches, m; 0 for a light without limit.
     pub reach: f32,
-    /// Its kind: 0 rectangle or line, 1 stadium in its plane, 2 polygon, 3 sphere, 4 capsule, 5 point, 6 sun.
+    /// The light's kind: 0 rectangle or line, 1 stadium in its plane, 2 polygon, 3 sphere, 4 capsule, 5 point, 6 sun.
     pub kind: u32,
     /// How many corners a polygon has.
     pub corner_count: u32,
