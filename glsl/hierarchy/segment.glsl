@@ -1,15 +1,12 @@
 // Entered from traced/rays.comp.
 //
 // Whether anything blocks a segment: the one function that a device with ray queries would answer by itself. The including
-// shader declares `nodes` and `triangles`.
+// shader declares `nodes`, `triangles` and ROUNDING, the rounding of the arithmetic on positions as a share of their size.
 
 #ifndef HIERARCHY_SEGMENT_GLSL
 #define HIERARCHY_SEGMENT_GLSL
 
 #include "hierarchy/tree.glsl"
-
-// The rounding of the arithmetic on positions, as a share of their size.
-const float SEGMENT_ROUNDING = 1.0 / 4194304.0;
 
 // A segment, and what is the same for all nodes that it meets.
 struct Segment {
@@ -38,7 +35,7 @@ bool meets(Segment s, Node node)
     vec3 leave = max(a, b);
     float first = max(max(enter.x, enter.y), max(enter.z, 0.0));
     float last = min(min(leave.x, leave.y), leave.z);
-    return first <= last * (1.0 + 4.0 * SEGMENT_ROUNDING) && first * s.ends <= 1.0;
+    return first <= last * (1.0 + 4.0 * ROUNDING) && first * s.ends <= 1.0;
 }
 
 // Whether a triangle blocks the segment, as traced/cover.glsl has it for all samples at once.
@@ -55,7 +52,7 @@ bool crosses(Segment s, uint triangle)
     float inside = min(min(edges.x, edges.y), edges.z);
     float reach = dot(normal, s.along) * side;
     vec3 size = max(max(abs(a), abs(b)), abs(c)) + s.size;
-    float sharp = 0.5 * SEGMENT_ROUNDING * length(normal) * (size.x + size.y + size.z);
+    float sharp = 0.5 * ROUNDING * length(normal) * (size.x + size.y + size.z);
     return corner.w > 0.0 && inside >= 0.0 && reach * s.ends >= abs(volume) * s.ends && abs(volume) > sharp;
 }
 

@@ -49,9 +49,9 @@ Triangle triangle_of(uint nth, vec3 about)
     return t;
 }
 
-// What the planes through a receiver are seen from: `to` is where segments to the light begin, or for a sun (0, 0, 1).
+// A receiver, from which the planes through a triangle's edges go to the light.
 struct Eye {
-    vec3 q;      // the receiver, relative to the same point
+    vec3 q;      // the receiver, relative to the same point as the triangle
     vec3 beyond; // that once more; nothing for a sun
 };
 

@@ -84,8 +84,8 @@ void main()
             at = inside || node.leaf ? at + 1u : node.link;
         }
     }
-    // Then their triangles, in the leaves' second half of the list's room: those that cross the light's plane from its
-    // end on backwards.
+    // Then their triangles, behind the leaves: those that cross the light's plane from the end of the list's room on
+    // backwards.
     uint room = leaves * (LEAF + 1u);
     uint plain = 0u;
     uint crossing = 0u;

@@ -213,16 +213,15 @@ impl CameraDependence {
         pixels.for_each(|id| depends[id.index()] = true);
         self.until.clear();
         self.until.extend(graph.passes().iter().map(|pass| graph.until(pass)));
-        // Constants are those of a frame, its camera among them.
-        let is_constant = |pass: &Pass| matches!(pass.work, Work::Constants { .. });
+        // What constants a frame has is not in the graph, and its camera may be among them; to write them costs nothing.
+        let of_frame =
+            |pass: &Pass| matches!(pass.work, Work::Constants { .. } | Work::FrameNumber);
         self.passes.clear();
-        self.passes.extend(graph.passes().iter().map(is_constant));
+        self.passes.extend(graph.passes().iter().map(of_frame));
         loop {
             let before = depends.clone();
             for (pass_depends, pass) in self.passes.iter_mut().zip(graph.passes()) {
-                // What constants a frame has is not in the graph; to write them costs nothing.
-                *pass_depends |= matches!(pass.work, Work::Constants { .. } | Work::FrameNumber)
-                    || pass.uses.iter().any(|u| depends[u.resource.index()]);
+                *pass_depends |= pass.uses.iter().any(|u| depends[u.resource.index()]);
                 if *pass_depends {
                     pass.writes().for_each(|id| depends[id.index()] = true);
                 }

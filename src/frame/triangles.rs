@@ -13,7 +13,7 @@ use glam::{DMat3, DMat4, DVec3, DVec4};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// The most triangles and meshes that block light in any frame, for which a node has memory where a technique works
-/// with the triangles themselves: some 140 bytes a triangle.
+/// with the triangles themselves: some 120 bytes a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Capacity {
     /// The most triangles, 1 to 5,000,000; the number of triangles of each mesh counts as even.
@@ -58,7 +58,7 @@ impl Capacity {
 }
 
 impl Default for Capacity {
-    /// 131,072 triangles in 1,024 meshes: some 18 MB.
+    /// 131,072 triangles in 1,024 meshes: some 16 MB.
     fn default() -> Self {
         Self { triangles: 1 << 17, meshes: 1 << 10 }
     }

@@ -61,9 +61,15 @@ pub struct WeightConstants {
     pub weights: [[u16; 32]; 2],
 }
 
+/// Where the second part and the weights begin in the frame's constants, in bytes.
+const PIXELS: u64 = size_of::<LightConstants>() as u64;
+const WEIGHTS: u64 = PIXELS + size_of::<PixelConstants>() as u64;
+/// The bytes of all of them; a shader's structure with a vector of four ends at a multiple of 16.
+const BYTES: u64 = (WEIGHTS + 4 * size_of::<WeightConstants>() as u64).next_multiple_of(16);
+
 /// Adds the passes that write the frame's constants, and returns the buffer that holds them.
 pub(super) fn declare(graph: &mut Graph, settings: &Settings, inputs: &PassInputs) -> ResourceId {
-    let constants = graph.buffer("traced.constants", 720);
+    let constants = graph.buffer("traced.constants", BYTES);
     let need = inputs.need;
     let (_, space) = inputs.tree;
     graph.push(Pass::constants("traced.light", constants, 0, &LightConstants::of(inputs), need));
@@ -80,10 +86,10 @@ pub(super) fn declare(graph: &mut Graph, settings: &Settings, inputs: &PassInput
         side,
         ..PixelConstants::of(inputs)
     };
-    graph.push(Pass::constants("traced.pixels", constants, 128, &second, need));
+    graph.push(Pass::constants("traced.pixels", constants, PIXELS, &second, need));
     for (nth, part) in weights.unwrap_or([0; 256]).as_chunks::<64>().0.iter().enumerate() {
         let part = WeightConstants { weights: bytemuck::cast(*part) };
-        let offset = 200 + 128 * nth as u64;
+        let offset = WEIGHTS + (size_of::<WeightConstants>() * nth) as u64;
         graph.push(Pass::constants("traced.weights", constants, offset, &part, need));
     }
     constants

@@ -32,7 +32,7 @@ pub struct ListPush {
     pub blocks: u32,
     /// The most leaves that a shaft may hold.
     pub most: u32,
-    /// How many triangles all lists hold together.
+    /// How many places all lists have together.
     pub capacity: u32,
 }
 
