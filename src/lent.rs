@@ -1,5 +1,9 @@
 //! What the host lends for a frame: images, meshes, ready-made occluder maps.
 
+mod normals;
+
+pub use normals::{NormalEncoding, Normals};
+
 use crate::Error;
 use crate::error::quoted;
 use crate::graph::Scope;

@@ -101,7 +101,7 @@ pub use gpu::{Allocator, Host, HostDraw, Requirements, ResourceBytes, RetireQueu
 pub use graph::{Layer, Scope};
 pub use lent::{
     BorderBarriers, Geometry, HostImage, LightIndex, MeshBounds, MeshBuffers, MeshInstance,
-    OccluderMaps, Role, Slot, TechniqueIndex, Visibility,
+    NormalEncoding, Normals, OccluderMaps, Role, Slot, TechniqueIndex, Visibility,
 };
 pub use light::{Light, RectangleLight, Shape};
 pub use node::{LayerPass, PassTime, ShadowNode, VisibilityImage};

@@ -13,6 +13,26 @@
 #define COMMON_LIGHT_SPACE_GLSL
 
 // ---------------------------------------------------------------------------------------------
+// Unit vectors as two numbers: the octahedron's surface, unfolded into [-1, 1]^2 (Meyer et al. 2010).
+
+vec2 over_the_edge(vec2 flat_n)
+{
+    return (1.0 - abs(flat_n.yx)) * vec2(flat_n.x < 0.0 ? -1.0 : 1.0, flat_n.y < 0.0 ? -1.0 : 1.0);
+}
+
+vec2 folded(vec3 n)
+{
+    vec2 flat_n = n.xy / max(abs(n.x) + abs(n.y) + abs(n.z), 1.0e-30);
+    return n.z < 0.0 ? over_the_edge(flat_n) : flat_n;
+}
+
+vec3 unfolded(vec2 flat_n)
+{
+    float z = 1.0 - abs(flat_n.x) - abs(flat_n.y);
+    return normalize(vec3(z < 0.0 ? over_the_edge(flat_n) : flat_n, z));
+}
+
+// ---------------------------------------------------------------------------------------------
 // Receivers from the host's G-buffer: depth alone gives the position and the geometric plane.
 
 struct Receiver {
@@ -66,15 +86,32 @@ vec3 plane_normal(vec3 along_x, vec3 along_y, vec3 to_viewer)
 }
 
 #ifdef GBUFFER
-layout(set = 0, binding = 0) uniform texture2D gbuffer_depth;
-layout(set = 0, binding = 1) uniform texture2D gbuffer_mask;
-
-struct GBuffer {
+#define GBUFFER_CONSTANTS
+#endif
+#ifdef GBUFFER_CONSTANTS
+// The numbers of camera and G-buffer, which all passes over the pixels read.
+layout(set = 0, binding = 19, std140) uniform Constants {
     mat4 light_from_ndc;
-    ivec2 extent;
-    float background; // the depth of a pixel that shows no surface
-    bool masked;      // gbuffer_mask holds the receivers' roles
-};
+    mat3 light_from_normal; // turns lent normals
+    ivec2 extent;           // the G-buffer's width and height
+    float background;       // the depth of a pixel that shows no surface
+    int flags;              // bit 0: masked; bits 1 to 3: how normals are lent
+} gbuffer;
+#endif
+
+#ifdef GBUFFER
+layout(set = 0, binding = 0) uniform texture2D gbuffer_depth;
+layout(set = 0, binding = 1) uniform texture2D gbuffer_mask;   // roles, where bit 0 of the flags is set
+layout(set = 0, binding = 18) uniform texture2D gbuffer_normal; // lent normals, where the flags have an encoding
+
+// The encodings of lent normals in the flags.
+const int NOT_LENT = 0;
+const int SIGNED = 1;
+const int UNSIGNED = 2;
+const int OCTAHEDRAL_SIGNED = 3;
+const int OCTAHEDRAL_UNSIGNED = 4;
+
+int encoding() { return gbuffer.flags >> 1 & 7; }
 
 float depth_at(ivec2 p)
 {
@@ -82,30 +119,44 @@ float depth_at(ivec2 p)
 }
 
 // A depth for the arithmetic below: background and pixels outside the image are far off any plane.
-float depth_or_far(GBuffer g, ivec2 p)
+float depth_or_far(ivec2 p)
 {
-    bool outside = any(lessThan(p, ivec2(0))) || any(greaterThanEqual(p, g.extent));
-    float depth = outside ? g.background : depth_at(p);
-    return depth == g.background ? 1.0e30 : depth;
+    bool outside = any(lessThan(p, ivec2(0))) || any(greaterThanEqual(p, gbuffer.extent));
+    float depth = outside ? gbuffer.background : depth_at(p);
+    return depth == gbuffer.background ? 1.0e30 : depth;
+}
+
+// The normal that the host lends for a pixel, of unit length; 0 where it is no number, has no length or looks away
+// from the viewer.
+vec3 lent_normal(ivec2 p, vec3 to_viewer)
+{
+    vec3 c = texelFetch(gbuffer_normal, p, 0).xyz;
+    bool is_unsigned = encoding() == UNSIGNED || encoding() == OCTAHEDRAL_UNSIGNED;
+    c = is_unsigned ? 2.0 * c - 1.0 : c;
+    vec3 n = gbuffer.light_from_normal * (encoding() >= OCTAHEDRAL_SIGNED ? unfolded(c.xy) : c);
+    float size = dot(n, n);
+    // What is no number is in no order.
+    bool usable = size > 1.0e-12 && size < 1.0e12 && dot(n, to_viewer) > 0.0;
+    return usable ? n * inversesqrt(size) : vec3(0.0);
 }
 
 // The plane of the facet that a pixel shows. A plane's depth is linear over the image, so of the four
 // quadrants around the pixel this uses the one whose depths bend least, along both axes and across.
-vec3 facet_normal(GBuffer g, ivec2 p, float depth, vec3 position)
+vec3 facet_normal(ivec2 p, float depth, vec3 position, vec3 to_viewer)
 {
     // The depths of the neighbours along x and y, after and before, and how much depth bends behind them.
     vec4 near;
     vec4 bend;
     for (int i = 0; i < 4; ++i) {
         ivec2 axis = (i < 2 ? ivec2(1, 0) : ivec2(0, 1)) * (1 - 2 * (i & 1));
-        near[i] = depth_or_far(g, p + axis);
-        bend[i] = abs(2.0 * near[i] - depth_or_far(g, p + 2 * axis) - depth);
+        near[i] = depth_or_far(p + axis);
+        bend[i] = abs(2.0 * near[i] - depth_or_far(p + 2 * axis) - depth);
     }
     ivec2 best = ivec2(0);
     float least = 3.0e38;
     for (int i = 0; i < 4; ++i) {
         ivec2 q = ivec2(i & 1, i >> 1);
-        float corner = depth_or_far(g, p + 1 - 2 * q);
+        float corner = depth_or_far(p + 1 - 2 * q);
         float twist = abs(near[q.x] + near[2 + q.y] - corner - depth);
         float score = bend[q.x] + bend[2 + q.y] + twist;
         if (score < least) {
@@ -117,38 +168,45 @@ vec3 facet_normal(GBuffer g, ivec2 p, float depth, vec3 position)
     // A pixel without neighbours on its surface has a plane that faces the viewer.
     float depth_x = near[best.x] > 1.0e29 ? depth : near[best.x];
     float depth_y = near[2 + best.y] > 1.0e29 ? depth : near[2 + best.y];
-    vec2 extent = vec2(g.extent);
+    vec2 extent = vec2(gbuffer.extent);
     vec2 pixel = vec2(p);
     vec3 x = dehomogenize(
-        unproject(g.light_from_ndc, pixel + vec2(side.x, 0.0), extent, depth_x));
+        unproject(gbuffer.light_from_ndc, pixel + vec2(side.x, 0.0), extent, depth_x));
     vec3 y = dehomogenize(
-        unproject(g.light_from_ndc, pixel + vec2(0.0, side.y), extent, depth_y));
-    return plane_normal(x - position, y - position,
-                        towards_viewer(g.light_from_ndc, position, g.background));
+        unproject(gbuffer.light_from_ndc, pixel + vec2(0.0, side.y), extent, depth_y));
+    return plane_normal(x - position, y - position, to_viewer);
+}
+
+// The normal of the plane that a pixel shows, on the viewer's side: the lent one, or without it that of the depths.
+vec3 receiver_normal(ivec2 p, vec3 position)
+{
+    vec3 to_viewer = towards_viewer(gbuffer.light_from_ndc, position, gbuffer.background);
+    vec3 lent = encoding() == NOT_LENT ? vec3(0.0) : lent_normal(p, to_viewer);
+    return lent == vec3(0.0) ? facet_normal(p, depth_at(p), position, to_viewer) : lent;
 }
 
 // The receiver that a pixel shows, without its normal.
-Receiver receiver_without_normal(GBuffer g, ivec2 p)
+Receiver receiver_without_normal(ivec2 p)
 {
     Receiver r = Receiver(false, false, vec3(0.0), vec3(0.0));
-    if (p.x >= g.extent.x || p.y >= g.extent.y) {
+    if (p.x >= gbuffer.extent.x || p.y >= gbuffer.extent.y) {
         return r;
     }
     float depth = depth_at(p);
-    if (depth == g.background) {
+    if (depth == gbuffer.background) {
         return r;
     }
-    float role = g.masked ? texelFetch(gbuffer_mask, p, 0).x : 1.0;
+    float role = (gbuffer.flags & 1) != 0 ? texelFetch(gbuffer_mask, p, 0).x : 1.0;
     r.receives = role > 0.25;
     r.blocks = role > 0.75;
-    r.position = dehomogenize(unproject(g.light_from_ndc, vec2(p), vec2(g.extent), depth));
+    r.position = dehomogenize(unproject(gbuffer.light_from_ndc, vec2(p), vec2(gbuffer.extent), depth));
     return r;
 }
 
-Receiver receiver_at(GBuffer g, ivec2 p)
+Receiver receiver_at(ivec2 p)
 {
-    Receiver r = receiver_without_normal(g, p);
-    r.normal = r.blocks ? facet_normal(g, p, depth_at(p), r.position) : TOWARDS_LIGHT;
+    Receiver r = receiver_without_normal(p);
+    r.normal = r.blocks ? receiver_normal(p, r.position) : TOWARDS_LIGHT;
     return r;
 }
 #endif

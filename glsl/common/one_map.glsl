@@ -10,24 +10,15 @@
 #include "common/light_space.glsl"
 
 layout(push_constant) uniform Push {
-    mat4 light_from_ndc;
     vec2 texels_per_uv; // map texels a unit of u and v
     vec2 first;         // texel coordinates of u = v = 0
     vec2 half_light;    // half the light's width and height, m
-    ivec2 extent;       // the G-buffer's width and height
-    float background;
     float inv_near;     // 1 over the map's near plane, 1/m; no occluder is nearer
     float snap;         // how far a raster moves a vertex, in texels
     float depth_error;  // how far off an occluder's w may be beyond its rounding, 1/m
     int map;            // the map's side in texels
-    int masked;
     int count;          // taps or levels
 } push;
-
-GBuffer gbuffer()
-{
-    return GBuffer(push.light_from_ndc, push.extent, push.background, push.masked != 0);
-}
 
 #ifndef NO_MAP
 #include "common/compare.glsl"
@@ -39,7 +30,7 @@ layout(set = 0, binding = 3, r32f) writeonly uniform image2D visibility;
 
 Receiver pixel_receiver(ivec2 p)
 {
-    Receiver r = receiver_at(gbuffer(), p);
+    Receiver r = receiver_at(p);
     // Behind the light's plane there is nothing to hide.
     r.receives = r.receives && r.position.z > 0.0;
     return r;

@@ -13,7 +13,7 @@
 void main()
 {
     ivec2 p = ivec2(gl_GlobalInvocationID.xy);
-    if (p.x >= push.extent.x || p.y >= push.extent.y) {
+    if (p.x >= gbuffer.extent.x || p.y >= gbuffer.extent.y) {
         return;
     }
     Receiver r = pixel_receiver(p);

@@ -32,10 +32,10 @@ void main()
     r.blocks = mesh.role > 0.75;
     // A G-buffer would hold this very depth.
     r.position = dehomogenize(
-        unproject(push.light_from_ndc, vec2(p), vec2(push.extent), gl_FragCoord.z));
+        unproject(gbuffer.light_from_ndc, vec2(p), vec2(gbuffer.extent), gl_FragCoord.z));
     r.normal = vec3(0.0);
     fragment_normal = plane_normal(dFdx(r.position), dFdy(r.position),
-                                   towards_viewer(push.light_from_ndc, r.position, push.background));
+                                   towards_viewer(gbuffer.light_from_ndc, r.position, gbuffer.background));
     float v;
     Reach reach;
     if (is_open(p, r, v, reach)) {

@@ -17,14 +17,10 @@ layout(set = 0, binding = 4, r32f) writeonly uniform image2D visibility;
 #include "linear_light/line.glsl"
 
 layout(push_constant) uniform Push {
-    mat4 light_from_ndc;
-    ivec2 extent; // the G-buffer's width and height
-    float background;
     float snap;   // how far a raster moves a vertex, in texels
     int map;      // the maps' side in texels
     int most;     // the most samples of a line: its layers of `maps`
     int lines;
-    int masked;
 } push;
 
 // A line of the light: the windows of its maps, its length in metres, and its row of `places`.
@@ -108,11 +104,10 @@ float part_of(Line line, int count, vec3 position, vec3 normal, bool blocks)
 void main()
 {
     ivec2 p = ivec2(gl_GlobalInvocationID.xy);
-    if (p.x >= push.extent.x || p.y >= push.extent.y) {
+    if (p.x >= gbuffer.extent.x || p.y >= gbuffer.extent.y) {
         return;
     }
-    GBuffer g = GBuffer(push.light_from_ndc, push.extent, push.background, push.masked != 0);
-    Receiver r = receiver_at(g, p);
+    Receiver r = receiver_at(p);
     float v = 1.0;
     // Behind the light's plane there is nothing to hide.
     if (r.receives && r.position.z > 0.0) {

@@ -14,21 +14,13 @@ layout(set = 0, binding = 4, r32f) writeonly uniform image2D hidden_points;
 #define GBUFFER
 #include "common/light_space.glsl"
 
-layout(push_constant) uniform Push {
-    mat4 light_from_ndc;
-    ivec2 extent; // the G-buffer's width and height
-    float background;
-    int masked;
-} push;
-
 void main()
 {
     ivec2 p = ivec2(gl_GlobalInvocationID.xy);
-    if (p.x >= push.extent.x || p.y >= push.extent.y) {
+    if (p.x >= gbuffer.extent.x || p.y >= gbuffer.extent.y) {
         return;
     }
-    Receiver r = receiver_at(
-        GBuffer(push.light_from_ndc, push.extent, push.background, push.masked != 0), p);
+    Receiver r = receiver_at(p);
     // 0: nothing to hide; 1: receives only; 2: its own surface blocks.
     float kind = r.receives && r.position.z > 0.0 ? (r.blocks ? 2.0 : 1.0) : 0.0;
     imageStore(positions, p, vec4(r.position, kind));

@@ -116,7 +116,7 @@ void main()
 {
     ivec2 tile = ivec2(gl_GlobalInvocationID.xy);
     classify_tile(tile);
-    if (all(lessThan(tile * TILE, push.extent))) {
-        met[tile.y * tiles_a_row(push.extent) + tile.x] = met_here;
+    if (all(lessThan(tile * TILE, gbuffer.extent))) {
+        met[tile.y * tiles_a_row(gbuffer.extent) + tile.x] = met_here;
     }
 }

@@ -113,23 +113,22 @@ void main()
     if (at >= count) {
         return;
     }
-    uint meets = tile_may_be_shadowed(tiles[at]) ? met[nth_tile(tiles[at], push.extent)] : 0u;
+    uint meets = tile_may_be_shadowed(tiles[at]) ? met[nth_tile(tiles[at], gbuffer.extent)] : 0u;
     ivec2 p = first_pixel(tiles[at]) + ivec2(gl_LocalInvocationID.xy);
 #else
     uint meets = all_slices();
     ivec2 p = ivec2(gl_GlobalInvocationID.xy);
 #endif
-    if (p.x >= push.extent.x || p.y >= push.extent.y) {
+    if (p.x >= gbuffer.extent.x || p.y >= gbuffer.extent.y) {
         return;
     }
-    GBuffer g = gbuffer();
-    Receiver r = receiver_without_normal(g, p);
+    Receiver r = receiver_without_normal(p);
     float v = 1.0;
     // Behind the light's plane there is nothing to hide.
     if (r.receives && r.position.z > 0.0) {
         if (r.blocks) {
             // The part of the light above the pixel's own plane.
-            r.normal = facet_normal(g, p, depth_at(p), r.position);
+            r.normal = receiver_normal(p, r.position);
             v = fraction_above(r.normal.xy * push.half_light, dot(r.normal, r.position));
         }
         if (meets != 0u && v > 0.0) {

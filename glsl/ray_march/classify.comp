@@ -20,10 +20,10 @@ layout(set = 0, binding = 6, FRACTION_FORMAT) writeonly uniform image2D halfway;
 void main()
 {
     ivec2 p = ivec2(gl_GlobalInvocationID.xy);
-    if (p.x >= push.extent.x || p.y >= push.extent.y) {
+    if (p.x >= gbuffer.extent.x || p.y >= gbuffer.extent.y) {
         return;
     }
-    Receiver r = receiver_without_normal(gbuffer(), p);
+    Receiver r = receiver_without_normal(p);
     float v;
     Reach reach;
     bool open = is_open(p, r, v, reach);

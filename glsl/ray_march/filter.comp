@@ -7,6 +7,7 @@
 
 layout(local_size_x = 64) in;
 
+#define GBUFFER_CONSTANTS
 #include "ray_march/noise.glsl"
 #include "common/lists.glsl"
 
@@ -28,14 +29,9 @@ layout(set = 0, binding = 3, FRACTION_FORMAT) writeonly uniform image2D halfway;
 layout(set = 0, binding = 5) uniform texture2D surfaces;
 #endif
 
-layout(push_constant) uniform Push {
-    mat4 light_from_ndc;
-    ivec2 extent; // the G-buffer's width and height
-} push;
-
 vec3 position_at(ivec2 p)
 {
-    return position_of(push.light_from_ndc, vec2(p), push.extent, texelFetch(gbuffer_depth, p, 0).x);
+    return position_of(gbuffer.light_from_ndc, vec2(p), gbuffer.extent, texelFetch(gbuffer_depth, p, 0).x);
 }
 
 // The value to filter, below 0 where the pixel receives nothing.
@@ -85,11 +81,11 @@ void main()
         ivec2 axis = ivec2(1, 0);
 #endif
         float depth = texelFetch(gbuffer_depth, p, 0).x;
-        float pixel = pixel_width(push.light_from_ndc, vec2(p), push.extent, depth);
+        float pixel = pixel_width(gbuffer.light_from_ndc, vec2(p), gbuffer.extent, depth);
         int reach = min(int(ceil(2.5 * width / pixel)), REACH);
         for (int i = 1; i <= 2 * reach; ++i) {
             ivec2 q = p + axis * ((i + 1) / 2) * (1 - 2 * (i & 1));
-            if (any(lessThan(q, ivec2(0))) || any(greaterThanEqual(q, push.extent))) {
+            if (any(lessThan(q, ivec2(0))) || any(greaterThanEqual(q, gbuffer.extent))) {
                 continue;
             }
             FRACTION value = value_at(q);

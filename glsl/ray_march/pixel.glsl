@@ -8,7 +8,9 @@
 #ifndef RAY_MARCH_PIXEL_GLSL
 #define RAY_MARCH_PIXEL_GLSL
 
-#ifndef FORWARD
+#ifdef FORWARD
+#define GBUFFER_CONSTANTS
+#else
 #define GBUFFER
 #endif
 #include "common/light_space.glsl"
@@ -41,12 +43,9 @@ layout(set = 0, binding = 0, std140) uniform Push {
 #else
 layout(push_constant) uniform Push {
 #endif
-    mat4 light_from_ndc;
     vec2 texels_per_unit; // map texels a unit of u and v, or a metre where the projection is orthographic
     vec2 first;           // texel coordinates of u = v = 0
     vec2 half_light;      // half the light's width and height, m
-    ivec2 extent;         // the G-buffer's width and height
-    float background;
     float eye;            // how far behind the light the projection point is, m; or the far plane's distance
     float top;            // the height of the near plane; no occluder is higher
     float snap;           // how far a raster moves a vertex, in texels
@@ -60,7 +59,6 @@ layout(push_constant) uniform Push {
 int rays() { return (push.flags & 255) + 1; }
 // Bits 8 to 15 of the flags: the rows of cells of a jittered grid, less one.
 int cell_rows() { return (push.flags >> 8 & 255) + 1; }
-bool is_masked() { return (push.flags & 1 << 16) != 0; }
 bool is_orthographic() { return (push.flags & 1 << 17) != 0; }
 bool is_modern() { return (push.flags & 1 << 19) != 0; }
 bool classifies() { return (push.flags & 1 << 21) != 0; }
@@ -88,15 +86,10 @@ Levels levels()
 #ifdef FORWARD
 vec3 pixel_normal(ivec2 p, Receiver r);
 #else
-GBuffer gbuffer()
-{
-    return GBuffer(push.light_from_ndc, push.extent, push.background, is_masked());
-}
-
 // The normal of the plane that a pixel shows, on the side that light comes from.
 vec3 pixel_normal(ivec2 p, Receiver r)
 {
-    vec3 normal = facet_normal(gbuffer(), p, depth_at(p), r.position);
+    vec3 normal = receiver_normal(p, r.position);
     // A surface that does not block light is lit through its other side as well.
     return !r.blocks && dot(normal, r.position) > 0.0 ? -normal : normal;
 }

@@ -30,12 +30,12 @@ bool seen(vec2 t, float w)
     vec3 position = is_orthographic() ? vec3(across, push.eye - w) : vec3(across / w, 1.0 / w - push.eye);
     vec4 clip = ndc_from_light * vec4(position, 1.0);
     vec3 ndc = clip.xyz / clip.w;
-    ivec2 p = ivec2(floor((ndc.xy * 0.5 + 0.5) * vec2(push.extent)));
-    if (clip.w <= 0.0 || any(lessThan(p, ivec2(0))) || any(greaterThanEqual(p, push.extent))) {
+    ivec2 p = ivec2(floor((ndc.xy * 0.5 + 0.5) * vec2(gbuffer.extent)));
+    if (clip.w <= 0.0 || any(lessThan(p, ivec2(0))) || any(greaterThanEqual(p, gbuffer.extent))) {
         return false;
     }
     float depth = depth_at(p);
-    return push.background == 0.0 ? ndc.z > depth : ndc.z < depth;
+    return gbuffer.background == 0.0 ? ndc.z > depth : ndc.z < depth;
 }
 
 void main()
@@ -48,7 +48,7 @@ void main()
     ivec2 p = ivec2(word & 0xffffu, word >> 16u);
     float start = uintBitsToFloat(pixels[3u * at + 1u]);
     float end = uintBitsToFloat(pixels[3u * at + 2u]);
-    Receiver r = receiver_without_normal(gbuffer(), p);
+    Receiver r = receiver_without_normal(p);
     r.normal = pixel_normal(p, r);
     Found found = found_by_rays(p, r, start, end);
     if (!filters()) {
@@ -60,7 +60,7 @@ void main()
     float z = distance_of(place_of(r).w + s);
     float side = 2.0 * min(push.half_light.x, push.half_light.y);
     float penumbra = side * max(r.position.z - z, 0.0) / max(z, 1.0e-30);
-    float pixel = pixel_width(push.light_from_ndc, vec2(p), push.extent, depth_at(p));
+    float pixel = pixel_width(gbuffer.light_from_ndc, vec2(p), gbuffer.extent, depth_at(p));
     float width = filter_width(penumbra, pixel, noise_of(rays(), sampling() == RANDOM));
     put_noisy(p, found.visible, width, r.normal);
 }

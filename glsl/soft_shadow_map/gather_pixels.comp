@@ -80,15 +80,14 @@ void main()
     bool shadowable = true;
     ivec2 quad = ivec2(gl_WorkGroupID.xy * 8u + within) * 2;
 #endif
-    if (quad.x >= push.extent.x || quad.y >= push.extent.y) {
+    if (quad.x >= gbuffer.extent.x || quad.y >= gbuffer.extent.y) {
         return;
     }
-    GBuffer g = gbuffer();
     vec2 half_light = 0.5 / (push.scale * push.texels_per_uv);
     Receivers r;
     vec4 below; // the part of the light under the pixel's own surface, where that blocks
     for (int i = 0; i < 4; ++i) {
-        Receiver p = receiver_at(g, quad + ivec2(i & 1, i >> 1));
+        Receiver p = receiver_at(quad + ivec2(i & 1, i >> 1));
         bool there = p.receives && p.position.z > 0.0; // behind the light's plane nothing is to hide
         float w = there ? 1.0 / p.position.z : 0.0;
         vec2 t = place_of(p.position, w);
@@ -109,8 +108,8 @@ void main()
     }
     Map map = Map(push.scale, push.w_max, push.spread, push.row);
     vec4 hidden = below;
-    bool mean = (push.flags & 4) != 0;
-    for (int side = 0; side <= ((push.flags >> 1) & 1); ++side) {
+    bool mean = (push.flags & 2) != 0;
+    for (int side = 0; side <= (push.flags & 1); ++side) {
         // A receiver from which all of the light is hidden needs no second side.
         r.w = mix(r.w, vec4(NOTHING), greaterThanEqual(hidden, vec4(1.0)));
         vec4 sum = below + gather(map, side == 1 && mean ? BACK_OR_FRONT : side, r);
@@ -119,7 +118,7 @@ void main()
     vec4 v = 1.0 - min(hidden, vec4(1.0));
     for (int i = 0; i < 4; ++i) {
         ivec2 p = quad + ivec2(i & 1, i >> 1);
-        if (p.x < push.extent.x && p.y < push.extent.y) {
+        if (p.x < gbuffer.extent.x && p.y < gbuffer.extent.y) {
             imageStore(visibility, p, vec4(v[i]));
         }
     }

@@ -6,24 +6,16 @@
 #define SOFT_SHADOW_MAP_PIXELS_GLSL
 
 layout(push_constant) uniform Push {
-    mat4 light_from_ndc;
     vec2 scale;         // (du/Lx, dv/Ly), 1/m
     vec2 texels_per_uv; // occluder texels a unit of u and v
     vec2 first;         // texel coordinates of u = v = 0
-    ivec2 extent;       // the G-buffer's width and height
-    float background;
     float w_max;        // no occluder is nearer than 1/w_max
     float spread;       // the series' limit, see classify
     float snap;         // how far a raster moves a vertex, in texels
     int row;            // superblocks a row
-    int flags;          // bit 0: masked; bit 1: two sides; bit 2: their mean
+    int flags;          // bit 0: two sides; bit 1: their mean
     float depth_error;  // how far off an occluder's w may be beyond its rounding, 1/m
 } push;
-
-GBuffer gbuffer()
-{
-    return GBuffer(push.light_from_ndc, push.extent, push.background, (push.flags & 1) != 0);
-}
 
 // The place t, in texels of the occluder map, of a point of light space with w = 1/position.z.
 vec2 place_of(vec3 position, float w)

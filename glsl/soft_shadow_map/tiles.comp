@@ -66,7 +66,7 @@ float nearest_w()
 
 bool may_be_shadowed(Tile tile)
 {
-    int sides = 1 + ((push.flags >> 1) & 1);
+    int sides = 1 + (push.flags & 1);
     return may_be_shadowed_by(tile, push.row, sides, push.w_max, push.scale);
 }
 

@@ -2,8 +2,7 @@
 //
 // Sorts tiles of pixels: it writes 1 to the pixels of lit tiles and lists the others. One invocation handles one tile.
 //
-// The including shader declares `gbuffer_depth`, `gbuffer_mask`, `visibility`, `push` with `extent`, and
-//     GBuffer gbuffer();
+// The including shader declares `visibility` and
 //     vec2 place_of(vec3 position, float w);
 //     float nearest_w();           no occluder is nearer than 1/nearest_w
 // bool may_be_shadowed(Tile tile);  whether any occluder may shadow any of its receivers
@@ -16,14 +15,13 @@
 void classify_tile(ivec2 tile)
 {
     ivec2 first = tile * TILE;
-    if (any(greaterThanEqual(first, push.extent))) {
+    if (any(greaterThanEqual(first, gbuffer.extent))) {
         return;
     }
-    GBuffer g = gbuffer();
     Tile bounds = empty_tile();
     bool blocks = false; // whether some of its pixels' own surfaces may hide light from them
     for (int i = 0; i < TILE * TILE; ++i) {
-        Receiver r = receiver_without_normal(g, first + ivec2(i % TILE, i / TILE));
+        Receiver r = receiver_without_normal(first + ivec2(i % TILE, i / TILE));
         // Behind the light's plane there is nothing to hide.
         if (r.receives && r.position.z > 0.0) {
             blocks = blocks || r.blocks;
@@ -47,7 +45,7 @@ void classify_tile(ivec2 tile)
     }
     for (int i = 0; i < TILE * TILE; ++i) {
         ivec2 p = first + ivec2(i % TILE, i / TILE);
-        if (all(lessThan(p, push.extent))) {
+        if (all(lessThan(p, gbuffer.extent))) {
             imageStore(visibility, p, vec4(1.0));
         }
     }

@@ -17,21 +17,18 @@ layout(set = 0, binding = 5, r32f) writeonly uniform image2D visibility;
 #include "common/light_space.glsl"
 
 layout(push_constant) uniform Push {
-    mat4 light_from_ndc;
     vec2 texels_per_uv;      // receiver texels a unit of u and v
     vec2 first;              // receiver-texel coordinates of u = v = 0
-    ivec2 extent;            // the G-buffer's width and height
-    float background;
     float receiver_inv_near; // 1/m
     int receiver_map;        // the map's side in texels
-    int flags;               // bit 0: masked; bit 1: the mean of both maps, not their maximum
+    int mean;                // 1: the mean of both maps, not their maximum
 } push;
 
 float occlusion_at(ivec2 texel)
 {
     float front = texelFetch(front_map, texel, 0).x;
     float back = texelFetch(back_map, texel, 0).x;
-    return (push.flags & 2) != 0 ? merged_sides(vec4(front), vec4(back)).x : max(front, back);
+    return push.mean != 0 ? merged_sides(vec4(front), vec4(back)).x : max(front, back);
 }
 
 // The share of the plane's own slope over a texel by which a texel on it may be off: half a texel in
@@ -80,15 +77,14 @@ float filtered(vec3 position, vec3 normal)
 void main()
 {
     ivec2 p = ivec2(gl_GlobalInvocationID.xy);
-    if (p.x >= push.extent.x || p.y >= push.extent.y) {
+    if (p.x >= gbuffer.extent.x || p.y >= gbuffer.extent.y) {
         return;
     }
-    GBuffer g = GBuffer(push.light_from_ndc, push.extent, push.background, (push.flags & 1) != 0);
-    Receiver r = receiver_without_normal(g, p);
+    Receiver r = receiver_without_normal(p);
     float v = 1.0;
     // Behind the light's plane there is nothing to hide.
     if (r.receives && r.position.z > 0.0) {
-        vec3 normal = facet_normal(g, p, depth_at(p), r.position);
+        vec3 normal = receiver_normal(p, r.position);
         v = 1.0 - min(filtered(r.position, normal), 1.0);
     }
     imageStore(visibility, p, vec4(v));

@@ -13,7 +13,7 @@ use crate::raster::{COLOR_LAYOUT, DEPTH};
 use crate::set::{Bound, BoundSet};
 use crate::shaders::FORWARD_FRAG;
 use crate::{FrameTimes, GBufferPainter, HeadlessDevice, HostBuffer, OwnedImage, Stage};
-use antumbra::graph::{Access, Work};
+use antumbra::graph::{Access, Pass, Work};
 use antumbra::node::PlanObject;
 use antumbra::scene::{Instance, Scene};
 use antumbra::stages::visibility;
@@ -32,8 +32,8 @@ pub struct Forward {
     draws: Vec<SceneDraw>,
     visible: OwnedImage,
     depth: OwnedImage,
-    /// The buffer that the painter's set reads.
-    _push: HostBuffer,
+    /// The buffers that the painter's set reads.
+    _constants: [HostBuffer; 2],
 }
 
 impl Forward {
@@ -61,12 +61,15 @@ impl Forward {
         })?;
         // Refuses another node's plan.
         stage.run(&plan)?;
-        let push = HostBuffer::with_data(
-            device,
-            "forward.push",
-            trace.push.bytes(),
-            vk::BufferUsageFlags::UNIFORM_BUFFER,
-        )?;
+        let constants = plan.plan().graph.passes().iter().find(|p| p.name == "gbuffer.constants");
+        let constants =
+            constants.ok_or_else(|| Error::Frame("the plan has no constants".into()))?;
+        let uniform = |name, pass: &Pass| {
+            let usage = vk::BufferUsageFlags::UNIFORM_BUFFER;
+            HostBuffer::with_data(device, name, pass.push.bytes(), usage)
+        };
+        let push = uniform("forward.push", trace)?;
+        let constants = uniform("forward.constants", constants)?;
         let extent = stage.gbuffer().depth.extent();
         let image = |name, format, usage| OwnedImage::new(device, name, format, extent, usage);
         let draws = draws(scene, stage.buffers(), stage.view(), keep);
@@ -79,7 +82,11 @@ impl Forward {
         // As the node's rays leave it.
         let left = Access::SampledCompute.scope().layout;
         // The bindings of `forward.frag`. Nobody changes the node's images while this keeps the stage.
-        let bound = [(0, Bound::Uniform(&push)), (2, Bound::Fetched(view, left))];
+        let bound = [
+            (0, Bound::Uniform(&push)),
+            (2, Bound::Fetched(view, left)),
+            (19, Bound::Uniform(&constants)),
+        ];
         let set = BoundSet::new(device, vk::ShaderStageFlags::FRAGMENT, &bound)?;
         let formats = [visibility::FORMAT];
         Ok(Self {
@@ -88,7 +95,7 @@ impl Forward {
             draws,
             visible,
             depth: image("forward.depth", DEPTH, Usage::DEPTH_STENCIL_ATTACHMENT)?,
-            _push: push,
+            _constants: [push, constants],
             stage,
             plan,
         })

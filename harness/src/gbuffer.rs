@@ -6,7 +6,7 @@ use crate::shaders::GBUFFER_FRAG;
 use crate::{HeadlessDevice, OwnedImage, SceneBuffers, View};
 use antumbra::graph::Scope;
 use antumbra::scene::{Instance, Scene};
-use antumbra::{Error, HostImage};
+use antumbra::{Error, HostImage, NormalEncoding, Normals};
 use ash::vk;
 use std::time::Duration;
 
@@ -56,6 +56,14 @@ impl GBuffer {
     /// The mask as the node takes it.
     pub fn mask_for_node(&self) -> HostImage {
         lend(&self.mask, Scope::COLOR_DRAWN.in_layout(COLOR_LAYOUT))
+    }
+
+    /// How the normals are stored.
+    pub const NORMALS: Normals = Normals { format: VECTOR, encoding: NormalEncoding::Signed };
+
+    /// The normals as the node takes them.
+    pub fn normals_for_node(&self) -> HostImage {
+        lend(&self.normal, Scope::COLOR_DRAWN.in_layout(COLOR_LAYOUT))
     }
 
     /// Reads world positions, row by row.

@@ -217,13 +217,16 @@ impl Stage {
         node.plan_all(&frames, plans)
     }
 
-    /// A frame under a light.
+    /// A frame under a light, with the G-buffer's normals where the node is described with them.
     fn frame(&self, light: impl Into<Light>) -> Frame<'_> {
         let world_from_ndc = self.view.clip_from_world.inverse();
         let depth = self.gbuffer.depth_for_node();
+        let described = self.node.as_ref().and_then(|node| node.description().normals);
+        let normals = described.map(|_| self.gbuffer.normals_for_node());
         Frame {
             background: Some(0.0),
             mask: Some(self.gbuffer.mask_for_node()),
+            normals,
             visibility: Visibility::Own { before: RESULT, after: RESULT },
             ..Frame::new(Slot(0), light, world_from_ndc, &self.instances, depth)
         }

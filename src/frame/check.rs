@@ -1,4 +1,5 @@
-//! Checks of a frame's numbers and meshes; each error is a sentence that names the host's own field.
+//! Checks of a frame's numbers and meshes, and of what an audit needs; each error is a sentence that names the host's own
+//! field.
 
 use super::boxes::Boxes;
 use super::{Description, Frame};
@@ -6,6 +7,10 @@ use crate::light::{LENGTHS, Light, Shape};
 use crate::stages::depth_layers::LightBox;
 use crate::techniques::room::{HostDraws, Room, Shapes, Takes};
 use crate::{Error, Technique};
+use glam::DMat3;
+
+/// The pixels that an audit may trace in a frame.
+const AUDITED: std::ops::RangeInclusive<u32> = 16..=65_536;
 
 pub(super) fn bad<T>(what: impl Into<String>) -> Result<T, Error> {
     Err(Error::Frame(what.into()))
@@ -30,6 +35,29 @@ fn check_shape(light: &Light, technique: &str, takes: &Takes) -> Result<(), Erro
     bad(format!(
         "the light is a {shape}, and {technique} takes no {shape}s; choose {others}traced, which takes every shape"
     ))
+}
+
+impl Description {
+    /// Checks the number of audited pixels, and that their exact fraction can be traced.
+    ///
+    /// # Errors
+    /// See [`Self::check`].
+    pub(super) fn check_audit(&self) -> Result<(), Error> {
+        let refuse = |what: &str| Err(Error::Frame(format!("{what}; set audit to 0")));
+        match self.audit {
+            0 => Ok(()),
+            _ if self.occluder_maps.is_some() => refuse(
+                "an audit traces triangles, and where the host lends occluder maps the node has none",
+            ),
+            _ if self.light_texture.is_some() => {
+                refuse("an audit traces lights of uniform emission, and the light has a texture")
+            }
+            pixels if AUDITED.contains(&pixels) => Ok(()),
+            pixels => Err(Error::Frame(format!(
+                "an audit of {pixels} pixels a frame is outside 16 to 65,536, and is 0 for none"
+            ))),
+        }
+    }
 }
 
 impl Frame<'_> {
@@ -78,6 +106,7 @@ impl Frame<'_> {
             return bad("world_from_ndc must be finite and invertible");
         }
         self.check_background()?;
+        check_turn(&self.world_from_normal)?;
         if let Some([min, max]) = self.window {
             // The shaders divide by the width in 32 bits.
             let is_width = |i: usize| ((max[i] - min[i]) as f32).is_normal() && min[i] < max[i];
@@ -131,4 +160,22 @@ impl Frame<'_> {
             "mesh {place} blocks up to {reach:e} m from the light, and must within 1e15 m; cut it, or scale the scene"
         ))
     }
+}
+
+/// How far the products of the columns of [`Frame::world_from_normal`] may be from those of unit vectors at right angles.
+const TURNED: f64 = 1e-3;
+
+/// Checks that a matrix turns normals, or mirrors them, and does nothing else.
+///
+/// # Errors
+/// [`Error::Frame`] where it scales or shears.
+fn check_turn(world_from_normal: &DMat3) -> Result<(), Error> {
+    let off = world_from_normal.transpose() * *world_from_normal - DMat3::IDENTITY;
+    if off.to_cols_array().iter().all(|c| c.abs() <= TURNED) {
+        return Ok(());
+    }
+    bad(
+        "world_from_normal must turn normals and do nothing else: its columns are unit vectors at right angles; for \
+         normals in view space give the rotation of world_from_view",
+    )
 }

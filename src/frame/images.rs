@@ -47,6 +47,17 @@ impl Frame<'_> {
                 );
             }
         }
+        match (&self.normals, description.normals) {
+            (Some(image), Some(normals)) => {
+                check_image(image, &read("gbuffer.normal", normals.format, extent))?;
+            }
+            (None, None) => {}
+            _ => {
+                return bad(
+                    "normals must be given each frame exactly where the description has them",
+                );
+            }
+        }
         let written = Wanted {
             name: "visibility",
             format: visibility::format(description.has_color()),
@@ -108,6 +119,7 @@ impl Frame<'_> {
         let read = [
             ("gbuffer.depth", Some(&self.depth)),
             ("gbuffer.mask", self.mask.as_ref()),
+            ("gbuffer.normal", self.normals.as_ref()),
             ("light.texture", self.light_texture.as_ref()),
             ("occluder_maps.front", maps.map(|m| &m.front)),
             ("occluder_maps.back", maps.and_then(|m| m.back.as_ref())),

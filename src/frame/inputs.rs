@@ -9,8 +9,11 @@ use super::triangles::TriangleList;
 use super::{Description, Frame};
 use crate::Error;
 use crate::effects::{Camera, Situation, Verdicts};
+use crate::lent::Normals;
 use crate::stages::views::Views;
+use crate::stages::visibility::Constants;
 use crate::techniques::room::{Maps, Shapes, Takes};
+use glam::DMat3;
 
 /// The inputs of a frame's passes, and the verdict on each effect.
 ///
@@ -38,6 +41,8 @@ pub(super) fn frame_inputs<'a>(
              32-bit floats tell",
         );
     }
+    let turned = DMat3::from_mat4(fit.light_from_world) * frame.world_from_normal;
+    let from_normal = [turned.x_axis, turned.y_axis, turned.z_axis];
     let (behind, centre, host_maps) = (fit.behind, fit.centre, fit.host_maps);
     let receivers = fit.shadowed.unwrap_or(PLACEHOLDER);
     let views = match is_soft {
@@ -50,10 +55,16 @@ pub(super) fn frame_inputs<'a>(
         host_maps,
         receivers,
         needs,
-        light_from_ndc: from_ndc.to_cols_array(),
+        constants: Constants {
+            light_from_ndc: from_ndc.to_cols_array(),
+            light_from_normal: from_normal.map(|c| c.as_vec3().extend(0.0).to_array()),
+            extent: description.extent.map(|e| e as i32),
+            background: frame.far_depth(),
+            flags: i32::from(description.mask_format.is_some())
+                | Normals::code(description.normals) << 1,
+        },
         noise: frame.noise,
         ndc_from_light: from_light.to_cols_array(),
-        background: frame.far_depth(),
         reach: frame.reach,
         tree: (triangles.sizes, triangles.space(frame, description)),
     };

@@ -233,6 +233,7 @@ fn imports(ids: &Ids, frame: &Frame) -> impl Iterator<Item = (ResourceId, HostIm
     [
         lent(Some(ids.depth), Some(frame.depth)),
         lent(ids.mask, frame.mask),
+        lent(ids.normal, frame.normals),
         lent(ids.occluder_maps[0], maps.map(|m| m.front)),
         lent(ids.occluder_maps[1], maps.and_then(|m| m.back)),
         lent(ids.light_texture, frame.light_texture),

@@ -43,22 +43,19 @@ use crate::Error;
 use crate::effects::Omit;
 use crate::graph::{self, Scope};
 use crate::lent::{
-    BorderBarriers, HostImage, LightIndex, MeshInstance, OccluderMaps, Slot, TechniqueIndex,
-    Visibility,
+    BorderBarriers, HostImage, LightIndex, MeshInstance, Normals, OccluderMaps, Slot,
+    TechniqueIndex, Visibility,
 };
 use crate::light::Light;
 use crate::plain::Matrix;
 use crate::technique::Technique;
 use crate::techniques::room;
 use ash::vk;
-use glam::DMat4;
+use glam::{DMat3, DMat4};
 use std::borrow::Cow;
 
 /// The most techniques that a node may have: [`Description::technique`] and the others.
 pub(crate) const MOST_TECHNIQUES: usize = 16;
-
-/// The pixels that an audit may trace in a frame.
-const AUDITED: std::ops::RangeInclusive<u32> = 16..=65_536;
 
 /// What a node is made for: everything that stays the same from frame to frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,6 +78,9 @@ pub struct Description {
     pub depth_format: vk::Format,
     /// The format of the mask ([`Frame::mask`]); `None` where the host lends no mask.
     pub mask_format: Option<vk::Format>,
+    /// The G-buffer's normals, which the host lends each frame ([`Frame::normals`]); `None` where it lends none, and each
+    /// pixel's plane comes from the depths around it.
+    pub normals: Option<Normals>,
     /// Whether the node's own images can be copied out, for tests and debuggers; off by default.
     pub inspect: bool,
     /// The strides of vertex positions, in bytes, that the meshes have: multiples of 4 from 12, tightly packed, to
@@ -142,8 +142,8 @@ impl Description {
         Ok(Cow::Owned(Self { technique, other_techniques: Vec::new(), ..self.clone() }))
     }
 
-    /// A description with the default technique, one light, a D32_SFLOAT G-buffer of `extent` pixels without a mask,
-    /// two frames in flight and tightly packed positions.
+    /// A description with the default technique, one light, a D32_SFLOAT G-buffer of `extent` pixels without mask or
+    /// normals, two frames in flight and tightly packed positions.
     pub fn new(extent: [u32; 2]) -> Self {
         Self {
             extent,
@@ -154,6 +154,7 @@ impl Description {
             frames_in_flight: 2,
             depth_format: vk::Format::D32_SFLOAT,
             mask_format: None,
+            normals: None,
             inspect: false,
             position_strides: vec![12],
             lent_visibility: false,
@@ -201,6 +202,7 @@ impl Description {
         }
         self.capacity.check()?;
         self.check_audit()?;
+        self.normals.map_or(Ok(()), |normals| normals.check())?;
         let formats = [Some(self.depth_format), self.occluder_maps];
         for (format, whose) in
             formats.into_iter().zip(["the G-buffer's depth", "the occluder maps'"])
@@ -223,27 +225,6 @@ impl Description {
                  are multiples of 4 up to 2048"
             ))),
             None => Ok(()),
-        }
-    }
-
-    /// Checks the number of audited pixels, and that their exact fraction can be traced.
-    ///
-    /// # Errors
-    /// See [`Self::check`].
-    fn check_audit(&self) -> Result<(), Error> {
-        let refuse = |what: &str| Err(Error::Frame(format!("{what}; set audit to 0")));
-        match self.audit {
-            0 => Ok(()),
-            _ if self.occluder_maps.is_some() => refuse(
-                "an audit traces triangles, and where the host lends occluder maps the node has none",
-            ),
-            _ if self.light_texture.is_some() => {
-                refuse("an audit traces lights of uniform emission, and the light has a texture")
-            }
-            pixels if AUDITED.contains(&pixels) => Ok(()),
-            pixels => Err(Error::Frame(format!(
-                "an audit of {pixels} pixels a frame is outside 16 to 65,536, and is 0 for none"
-            ))),
         }
     }
 
@@ -319,6 +300,12 @@ pub struct Frame<'a> {
     /// The role of each pixel's mesh, with SAMPLED usage: red 1 blocks and receives, ½ receives only, 0 receives
     /// nothing.
     pub mask: Option<HostImage>,
+    /// The surfaces' normals, with SAMPLED usage, exactly where [`Description::normals`] says how they are stored. A
+    /// pixel whose normal has no length, is no number or looks away from the viewer counts as if it had none.
+    pub normals: Option<HostImage>,
+    /// Turns the normals to world space, for column vectors: the identity where they are in world space, the rotation
+    /// of `world_from_view` where they are in view space.
+    pub world_from_normal: DMat3,
     /// The image that the result is written to.
     pub visibility: Visibility,
     /// The host's own depth images of the occluders, exactly where [`Description::occluder_maps`] has a format for
@@ -354,7 +341,7 @@ pub struct Frame<'a> {
 }
 
 impl<'a> Frame<'a> {
-    /// A frame of light 0 with the first technique, the far depth that the matrix has, no mask, the
+    /// A frame of light 0 with the first technique, the far depth that the matrix has, no mask and no normals, the
     /// node's own visibility image sampled by fragment and compute shaders, a fitted window, and barriers placed by the
     /// node. `slot` is the frame in flight whose commands the host has waited for.
     pub fn new(
@@ -378,6 +365,8 @@ impl<'a> Frame<'a> {
             meshes,
             depth,
             mask: None,
+            normals: None,
+            world_from_normal: DMat3::IDENTITY,
             visibility: Visibility::Own { before: sampled, after: sampled },
             occluder_maps: None,
             light_texture: None,

@@ -8,9 +8,10 @@ use crate::graph::{Graph, Need, Owner, ResourceId, Why};
 use crate::stages::depth_layers::{self, Eye, HostMapView, LightLayers, MapView};
 use crate::stages::hierarchy::{self, Sizes};
 use crate::stages::views::Views;
-use crate::stages::visibility::{self, GBuffer};
+use crate::stages::visibility::{self, Constants, GBuffer};
 use crate::techniques::hard::{self, Filter};
 use crate::techniques::room::PassInputs;
+use bytemuck::Zeroable;
 use glam::DMat4;
 use smallvec::{SmallVec, smallvec};
 
@@ -32,15 +33,18 @@ impl Default for Limits {
 pub(super) struct Ids {
     pub depth: ResourceId,
     pub mask: Option<ResourceId>,
+    pub normal: Option<ResourceId>,
+    /// The buffer of the numbers that passes over the pixels read.
+    pub constants: ResourceId,
     pub occluder_maps: [Option<ResourceId>; 2],
     pub light_texture: Option<ResourceId>,
     pub visibility: ResourceId,
 }
 
 impl Ids {
-    /// The G-buffer's images, which depend on the camera.
+    /// The G-buffer's images and constants, which depend on the camera.
     pub fn pixels(&self) -> impl Iterator<Item = ResourceId> {
-        std::iter::once(self.depth).chain(self.mask)
+        [self.depth, self.constants].into_iter().chain(self.mask).chain(self.normal)
     }
 }
 
@@ -57,10 +61,9 @@ pub(super) struct FrameInputs<'a> {
     pub host_maps: Option<HostMapView>,
     pub receivers: MapView,
     pub needs: Needs,
-    pub light_from_ndc: [f32; 16],
+    pub constants: Constants,
     pub ndc_from_light: [f32; 16],
     pub noise: u32,
-    pub background: f32,
     /// How far the light reaches, m.
     pub reach: Option<f64>,
     /// The sizes of the hierarchy, and how the pixels see its space.
@@ -176,10 +179,9 @@ pub(crate) fn all_passes(description: &Description, limits: Limits) -> Graph {
         }),
         receivers: view,
         needs: Needs::all(&Need::Yes("nominal".into())),
-        light_from_ndc: DMat4::IDENTITY.as_mat4().to_cols_array(),
+        constants: Constants::zeroed(),
         ndc_from_light: DMat4::IDENTITY.as_mat4().to_cols_array(),
         noise: 0,
-        background: 0.0,
         reach: None,
         tree: (Sizes { capacity: description.capacity.triangles, triangles: 0 }, Space::default()),
     };
@@ -205,12 +207,14 @@ pub(super) fn build(
     let room = description.technique.room();
     let maps = room.maps();
     let ids = declare_host_images(graph, description);
-    let Ids { depth, mask, occluder_maps: [front, back], light_texture, visibility } = ids;
+    let Ids { depth, mask, normal, constants, occluder_maps: [front, back], .. } = ids;
+    let (light_texture, visibility) = (ids.light_texture, ids.visibility);
     let extent = description.extent;
-    let FrameInputs { light_from_ndc, background, .. } = *frame;
-    let gbuffer = GBuffer { depth, mask, extent, light_from_ndc, background };
+    let background = frame.constants.background;
+    let gbuffer = GBuffer { depth, mask, normal, constants, extent, background };
     let needs = &frame.needs;
     let [need, hard, front_need, back_need, inner, filter] = &needs.each().map(|n| graph.need(n));
+    frame.constants.write(graph, constants, if need.is_yes() { need } else { hard });
     let layers = LightLayers {
         occluders: match (front, &frame.host_maps) {
             (Some(front), Some(camera)) => depth_layers::Occluders::Maps { front, back, camera },
@@ -273,6 +277,8 @@ fn declare_host_images(graph: &mut Graph, description: &Description) -> Ids {
     let depth = graph.image("gbuffer.depth", description.depth_format, extent, lent);
     let mask =
         description.mask_format.map(|format| graph.image("gbuffer.mask", format, extent, lent));
+    let normal = description.normals.map(|n| graph.image("gbuffer.normal", n.format, extent, lent));
+    let constants = Constants::declare(graph);
     let maps = description.technique.room().maps();
     let mut map = |name| {
         let format = description.occluder_maps?;
@@ -285,5 +291,6 @@ fn declare_host_images(graph: &mut Graph, description: &Description) -> Ids {
         description.light_texture.map(|t| graph.image("light.texture", t.format, [1, 1], lent));
     let visibility =
         visibility::declare(graph, extent, description.has_color(), description.lent_visibility);
-    Ids { depth, mask, occluder_maps: [front, back], light_texture, visibility }
+    let occluder_maps = [front, back];
+    Ids { depth, mask, normal, constants, occluder_maps, light_texture, visibility }
 }

@@ -269,6 +269,8 @@ mod tests {
 
     /// The passes that run in place of a technique's own where the frame does not need it.
     const STAND_INS: [&str; 2] = ["visibility.lit", "hard.visibility"];
+    /// The pass that writes the numbers that the passes over pixels read.
+    const CONSTANTS: &str = "gbuffer.constants";
 
     /// While light and meshes stay, only the passes over pixels run again.
     #[test]
@@ -276,20 +278,23 @@ mod tests {
         let again = |words: &str| {
             let technique = words.parse().unwrap();
             let graph = full_graph(&Description { technique, ..Description::new([64, 64]) });
-            let depth = (0..graph.resources().len())
+            let of_camera = (0..graph.resources().len())
                 .map(|i| graph.id(i))
-                .find(|id| graph.resource(*id).name == "gbuffer.depth")
-                .unwrap();
+                .filter(|id| graph.resource(*id).name.starts_with("gbuffer."));
             let mut camera = CameraDependence::default();
-            camera.find(&graph, std::iter::once(depth));
+            camera.find(&graph, of_camera);
+            let mut constants = false;
             let mut names: Vec<_> = graph
                 .passes()
                 .iter()
                 .zip(&camera.passes)
                 .filter(|(p, depends)| **depends && !STAND_INS.contains(&p.name))
+                .inspect(|(p, _)| constants |= p.name == CONSTANTS)
+                .filter(|(p, _)| p.name != CONSTANTS)
                 .map(|(p, _)| p.name)
                 .collect();
             names.dedup();
+            assert!(constants, "{words}: the constants depend on the camera");
             names
         };
         for words in [

@@ -81,6 +81,7 @@ fn the_passes_that_settings_call_for_run_in_order() {
     assert_eq!(
         ran(&pixels),
         [
+            "gbuffer.constants",
             "depth_layers.front",
             "depth_layers.back",
             "soft_shadow_map.blocks",
@@ -126,7 +127,7 @@ fn without_anything_to_shadow_only_the_lit_pass_runs_and_says_why() {
         let plan = make(&description(&[]), &frame(meshes));
         assert_eq!(ran(&plan), ["visibility.lit"]);
         assert!(plan.plan.table().contains(why), "{why}: {}", plan.plan.table());
-        assert_eq!(plan.plan.skipped.len(), 8);
+        assert_eq!(plan.plan.skipped.len(), 9);
     }
 }
 
@@ -236,7 +237,7 @@ fn what_is_lent_must_be_what_was_described() {
     let both = OccluderMaps { front: map, back: Some(map), clip_from_world };
     let with = |maps| Frame { occluder_maps: Some(maps), ..f };
     assert_eq!(
-        ran(&make(&maps, &with(both)))[..2],
+        ran(&make(&maps, &with(both)))[1..3],
         ["depth_layers.copy_front", "depth_layers.copy_back"]
     );
     assert!(refuse(&maps, f).contains("occluder maps"));
@@ -329,7 +330,7 @@ fn a_plan_is_shown_as_a_table_and_as_a_picture() {
     let meshes = meshes();
     let plan = make(&description(&[]), &frame(&meshes)).plan;
     let table = plan.table();
-    assert!(table.starts_with("run   depth_layers.front"), "{table}");
+    assert!(table.starts_with("run   gbuffer.constants"), "{table}");
     assert!(table.contains("skip  visibility.lit"), "{table}");
     let dot = plan.graphviz();
     assert!(dot.starts_with("digraph") && dot.trim_end().ends_with('}'), "{dot}");
@@ -347,10 +348,10 @@ fn every_point_of_many_lights_has_a_view_of_its_own() {
     let description = of_technique("many-lights samples=9");
     let plan = make(&description, &frame(&meshes));
     let passes = ran(&plan);
-    assert_eq!(passes.len(), 2 + 2 * 9);
+    assert_eq!(passes.len(), 3 + 2 * 9);
     assert_eq!(
-        passes[..4],
-        ["many_lights.receivers", "many_lights.point_depth", "many_lights.add_point", passes[1]]
+        passes[1..5],
+        ["many_lights.receivers", "many_lights.point_depth", "many_lights.add_point", passes[2]]
     );
     assert_eq!(passes.last(), Some(&"many_lights.average"));
     let matrices: Vec<_> =
@@ -360,7 +361,7 @@ fn every_point_of_many_lights_has_a_view_of_its_own() {
     assert_eq!(plan.draws(MeshList::Occluders, 9).count(), 0);
     assert!(plan.plan.table().contains("×9"));
     let lines = plan.plan.table().lines().filter(|l| l.starts_with("run")).count();
-    assert_eq!(lines, 4, "{}", plan.plan.table());
+    assert_eq!(lines, 5, "{}", plan.plan.table());
 }
 
 #[test]

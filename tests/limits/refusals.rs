@@ -14,7 +14,7 @@ use antumbra::stages::depth_layers::{Eye, MapView};
 use antumbra::techniques::{hard, soft_shadow_map};
 use antumbra::{
     Description, Error, Frame, Geometry, HostImage, LightTexture, MeshBuffers, MeshInstance,
-    OccluderMaps, RectangleLight, Slot, Visibility,
+    NormalEncoding, Normals, OccluderMaps, RectangleLight, Slot, Visibility,
 };
 use antumbra_harness::technique;
 use antumbra_tests::measure::settings;
@@ -24,7 +24,7 @@ use glam::{DMat4, DVec3};
 /// What a host lends besides meshes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Lends {
-    /// Depth and mask; the visibility image is the node's own.
+    /// Depth, mask and normals; the visibility image is the node's own.
     GBuffer,
     /// The visibility image too.
     Visibility,
@@ -35,6 +35,9 @@ enum Lends {
 }
 
 const EXTENT: [u32; 2] = [64, 48];
+
+const NORMALS: Normals =
+    Normals { format: vk::Format::R16G16B16A16_SFLOAT, encoding: NormalEncoding::Signed };
 
 /// A host that is wrong in nothing yet.
 struct Given {
@@ -54,6 +57,10 @@ fn depth() -> HostImage {
 
 fn mask() -> HostImage {
     image(2, vk::Format::R8_UNORM, EXTENT, Usage::COLOR_ATTACHMENT)
+}
+
+fn normals() -> HostImage {
+    image(9, NORMALS.format, EXTENT, Usage::COLOR_ATTACHMENT)
 }
 
 fn target() -> HostImage {
@@ -87,6 +94,7 @@ impl Given {
         let description = Description {
             technique: settings(&words),
             mask_format: Some(vk::Format::R8_UNORM),
+            normals: Some(NORMALS),
             lent_visibility: lends == Lends::Visibility,
             occluder_maps: (lends == Lends::Maps).then_some(vk::Format::D32_SFLOAT),
             light_texture: (lends == Lends::Texture).then_some(texture),
@@ -109,6 +117,7 @@ impl Given {
         let mut frame = Frame {
             background: Some(0.0),
             mask: Some(mask()),
+            normals: Some(normals()),
             visibility: match lends {
                 Lends::Visibility => Visibility::Lent(target()),
                 _ => own.visibility,
@@ -199,6 +208,29 @@ fn descriptions() {
             "a mask of depth",
             |d| d.mask_format = Some(vk::Format::D16_UNORM),
             &["mask's", "D16_UNORM"],
+        ),
+        d(
+            "normals of whole numbers",
+            |d| d.normals = Some(Normals { format: vk::Format::R8G8B8A8_SINT, ..NORMALS }),
+            &["normals' format R8G8B8A8_SINT", "floats"],
+        ),
+        d(
+            "normals of two channels",
+            |d| d.normals = Some(Normals { format: vk::Format::R16G16_SFLOAT, ..NORMALS }),
+            &["R16G16_SFLOAT has fewer channels", "Signed", "the others three"],
+        ),
+        d(
+            "an octahedron of one channel",
+            |d| {
+                let encoding = NormalEncoding::OctahedralUnsigned;
+                d.normals = Some(Normals { format: vk::Format::R8_UNORM, encoding });
+            },
+            &["R8_UNORM has fewer channels", "OctahedralUnsigned", "read two"],
+        ),
+        d(
+            "signed normals without a sign",
+            |d| d.normals = Some(Normals { format: vk::Format::R8G8B8A8_UNORM, ..NORMALS }),
+            &["R8G8B8A8_UNORM holds nothing below 0", "Signed", "say Unsigned"],
         ),
         d("a mask of nothing", |d| d.mask_format = Some(vk::Format::UNDEFINED), &["mask's"]),
         d("a stride under a position", |d| d.position_strides = vec![12, 8], &["8 bytes", "12"]),

@@ -83,13 +83,12 @@ impl Tiles {
     ) {
         // One workgroup of 8×8 invocations sorts 8×8 tiles.
         let [x, y] = gbuffer.extent.map(|e| e.div_ceil(8 * TILE));
-        let mut uses = smallvec![
-            Use::bound(0, gbuffer.depth, Access::SampledCompute),
-            Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
+        let mut uses = Uses::from_slice(&gbuffer.all_bound());
+        uses.extend([
             Use::bound(3, self.arguments, Access::BufferUpdate),
             Use::bound(4, self.list, Access::BufferUpdate),
             Use::bound(5, visibility, Access::ImageWrite),
-        ];
+        ]);
         uses.extend_from_slice(occluders);
         graph.push(Pass::compute("visibility.tiles", shader, [x, y, 1], push, uses, need));
     }

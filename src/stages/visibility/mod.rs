@@ -3,7 +3,11 @@
 //! `visibility` is R32_SFLOAT, as large as the G-buffer: 1 is lit, 0 is umbra; 1 where nothing receives. Techniques
 //! that work at the pixels write it themselves; results in the light's space are resolved onto the pixels here.
 
-use crate::graph::{Access, Graph, Need, Owner, Pass, Push, ResourceId, Use, Work};
+mod gbuffer;
+
+pub use gbuffer::{Constants, GBuffer};
+
+use crate::graph::{Access, Graph, Need, Owner, Pass, Push, ResourceId, Use, Uses, Work};
 use crate::shaders::{self, module};
 use crate::stages::depth_layers::MapView;
 use ash::vk;
@@ -28,32 +32,6 @@ pub fn format(color: bool) -> vk::Format {
     if color { COLOR_FORMAT } else { FORMAT }
 }
 
-/// The host's G-buffer, as resources of the graph.
-#[derive(Clone, Copy, Debug)]
-pub struct GBuffer {
-    /// The depth image, as the host's camera sees the scene.
-    pub depth: ResourceId,
-    /// The image of roles: red 1 blocks and receives, ½ receives only, 0 receives nothing. Without it every pixel has
-    /// 1.
-    pub mask: Option<ResourceId>,
-    /// Width and height in pixels.
-    pub extent: [u32; 2],
-    /// Normalized device coordinates to light space, by column.
-    pub light_from_ndc: [f32; 16],
-    /// The depth of a pixel that shows no surface.
-    pub background: f32,
-}
-
-impl GBuffer {
-    /// The uses of depth and mask at bindings 0 and 1; without a mask the depth is bound there and not read.
-    pub fn bound(&self) -> [Use; 2] {
-        [
-            Use::bound(0, self.depth, Access::SampledCompute),
-            Use::bound(1, self.mask.unwrap_or(self.depth), Access::SampledCompute),
-        ]
-    }
-}
-
 /// The push constants of `lit.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -66,22 +44,16 @@ pub struct LitPush {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct ResolvePush {
-    /// Normalized device coordinates to light space.
-    pub light_from_ndc: [f32; 16],
     /// Receiver texels a unit of u and v.
     pub texels_per_uv: [f32; 2],
     /// The receiver-texel coordinates of u = v = 0.
     pub first: [f32; 2],
-    /// The G-buffer's width and height.
-    pub extent: [i32; 2],
-    /// The depth of a pixel that shows no surface.
-    pub background: f32,
     /// 1 over the receiver map's near plane, 1/m.
     pub receiver_inv_near: f32,
     /// The map's side in texels.
     pub receiver_map: i32,
-    /// Bit 0: there is a mask; bit 1: the mean of both maps, not their maximum.
-    pub flags: i32,
+    /// 1: the mean of both maps, not their maximum.
+    pub mean: i32,
 }
 
 /// The soft shadow map that is projected onto the pixels.
@@ -130,25 +102,22 @@ pub fn resolve(
     gbuffer: &GBuffer,
     need: &Need,
 ) {
+    let mut uses = Uses::from_slice(&gbuffer.all_bound());
+    uses.extend([
+        Use::bound(2, what.receiver_depth, Access::SampledCompute),
+        Use::bound(3, what.maps[0], Access::SampledCompute),
+        Use::bound(4, what.maps[1], Access::SampledCompute),
+        Use::bound(5, visibility, Access::ImageWrite),
+    ]);
     graph.push(Pass {
         name: "visibility.resolve",
-        uses: smallvec![
-            Use::bound(0, gbuffer.depth, Access::SampledCompute),
-            Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
-            Use::bound(2, what.receiver_depth, Access::SampledCompute),
-            Use::bound(3, what.maps[0], Access::SampledCompute),
-            Use::bound(4, what.maps[1], Access::SampledCompute),
-            Use::bound(5, visibility, Access::ImageWrite),
-        ],
+        uses,
         push: Push::new(&ResolvePush {
-            light_from_ndc: gbuffer.light_from_ndc,
             texels_per_uv: what.view.texels_per_uv().map(|x| x as f32),
             first: what.view.first().map(|x| x as f32),
-            extent: gbuffer.extent.map(|e| e as i32),
-            background: gbuffer.background,
             receiver_inv_near: (1.0 / what.view.near) as f32,
             receiver_map: what.view.side as i32,
-            flags: i32::from(gbuffer.mask.is_some()) | i32::from(what.mean) << 1,
+            mean: i32::from(what.mean),
         }),
         work: Work::Dispatch {
             shader: module!("visibility/resolve.comp"),

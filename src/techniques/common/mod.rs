@@ -21,18 +21,12 @@ use bytemuck::{Pod, Zeroable};
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Pixels {
-    /// Normalized device coordinates to light space.
-    pub light_from_ndc: [f32; 16],
     /// Map texels a unit of u and v.
     pub texels_per_uv: [f32; 2],
     /// Texel coordinates of u = v = 0.
     pub first: [f32; 2],
     /// Half the light's width and height, m.
     pub half_light: [f32; 2],
-    /// The G-buffer's width and height.
-    pub extent: [i32; 2],
-    /// The depth of a pixel that shows no surface.
-    pub background: f32,
     /// 1 over the map's near plane, 1/m; no occluder is nearer.
     pub inv_near: f32,
     /// How far a raster moves a vertex, in texels.
@@ -41,8 +35,6 @@ pub struct Pixels {
     pub depth_error: f32,
     /// The map's side in texels.
     pub map: i32,
-    /// 1 where the G-buffer has a mask of roles.
-    pub masked: i32,
     /// The number of taps or levels.
     pub count: i32,
 }
@@ -59,26 +51,22 @@ pub struct FinestLevel {
 
 /// The push constants of a pass over the pixels; `count` is the technique's own.
 pub(crate) fn pixel_push(count: u32, inputs: &PassInputs) -> Push {
-    let PassInputs { occluders, gbuffer, .. } = inputs;
+    let PassInputs { occluders, .. } = inputs;
     Push::new(&Pixels {
-        light_from_ndc: gbuffer.light_from_ndc,
         texels_per_uv: occluders.texels_per_uv().map(|x| x as f32),
         first: occluders.first().map(|x| x as f32),
         half_light: inputs.light.half_extents().map(|x| x as f32),
-        extent: gbuffer.extent.map(|e| e as i32),
-        background: gbuffer.background,
         inv_near: (1.0 / occluders.near) as f32,
         snap: inputs.snap,
         depth_error: inputs.depth_error as f32,
         map: occluders.side as i32,
-        masked: i32::from(gbuffer.mask.is_some()),
         count: count as i32,
     })
 }
 
 /// The inputs of a pass over the pixels, as `one_map.glsl` binds them; the image that it writes is bound after them.
 pub(crate) fn pixel_uses(front: ResourceId, gbuffer: &GBuffer) -> Uses {
-    let mut uses = Uses::from_slice(&gbuffer.bound());
+    let mut uses = Uses::from_slice(&gbuffer.all_bound());
     uses.push(Use::bound(2, front, Access::SampledCompute));
     uses
 }

@@ -4,7 +4,7 @@ use super::line::{Layers, LineContext, LineResources, SkinSide};
 use super::samples;
 use super::segments;
 use super::settings::{MOST_SAMPLES, Settings, skin_bytes};
-use crate::graph::{Access, Graph, Owner, Pass, Push, Use};
+use crate::graph::{Access, Graph, Owner, Pass, Push, Use, Uses};
 use crate::shaders::module;
 use crate::stages::depth_layers;
 use crate::stages::views::Line;
@@ -12,7 +12,6 @@ use crate::stages::visibility::grid;
 use crate::techniques::room::PassInputs;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
-use smallvec::smallvec;
 
 /// The texels of a row of the image of places before its samples.
 pub(super) const SAMPLES_AT: u32 = 4;
@@ -21,12 +20,6 @@ pub(super) const SAMPLES_AT: u32 = 4;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Visibility {
-    /// The matrix from the G-buffer's NDC to light space, by columns.
-    pub light_from_ndc: [f32; 16],
-    /// The G-buffer's width and height.
-    pub extent: [i32; 2],
-    /// The depth of a pixel that shows no surface.
-    pub background: f32,
     /// How far a raster moves a vertex, in texels.
     pub snap: f32,
     /// The maps' side in texels.
@@ -35,8 +28,6 @@ pub struct Visibility {
     pub most: i32,
     /// The number of lines.
     pub lines: i32,
-    /// 1: the mask holds the receivers' roles.
-    pub masked: i32,
 }
 
 /// Adds the passes that turn the meshes, as the samples see them, into the visible fraction.
@@ -109,27 +100,23 @@ pub(super) fn declare(graph: &mut Graph, settings: &Settings, inputs: &PassInput
     }
 
     let gbuffer = inputs.gbuffer;
+    let mut uses = Uses::from_slice(&gbuffer.all_bound());
+    uses.extend([
+        Use::bound(2, maps, Access::SampledCompute),
+        Use::bound(3, places, Access::SampledCompute),
+        Use::bound(4, visibility, Access::ImageWrite),
+    ]);
     graph.push(Pass::compute(
         "linear_light.visibility",
         module!("linear_light/visibility.comp"),
         grid(gbuffer.extent),
         Push::new(&Visibility {
-            light_from_ndc: gbuffer.light_from_ndc,
-            extent: gbuffer.extent.map(|e| e as i32),
-            background: gbuffer.background,
             snap: inputs.snap,
             map: side as i32,
             most: settings.samples as i32,
             lines: lines.len() as i32,
-            masked: i32::from(gbuffer.mask.is_some()),
         }),
-        smallvec![
-            Use::bound(0, gbuffer.depth, Access::SampledCompute),
-            Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
-            Use::bound(2, maps, Access::SampledCompute),
-            Use::bound(3, places, Access::SampledCompute),
-            Use::bound(4, visibility, Access::ImageWrite),
-        ],
+        uses,
         inputs.need,
     ));
 }

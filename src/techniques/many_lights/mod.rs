@@ -29,7 +29,7 @@ pub use settings::Settings;
 
 use super::room::{Maps, PassInputs, Room, Seen, Shapes, Shows, Takes};
 use crate::Error;
-use crate::graph::{Access, Graph, Layer, Owner, Pass, Push, ResourceId, Use};
+use crate::graph::{Access, Graph, Layer, Owner, Pass, Push, ResourceId, Use, Uses};
 use crate::light::Shape;
 use crate::shaders::module;
 use crate::stages::depth_layers::{self, MapView};
@@ -70,20 +70,6 @@ impl Room for Settings {
         declare(graph, inputs.views.points(), inputs);
         None
     }
-}
-
-/// The push constants of `receivers.comp`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub struct Receivers {
-    /// Normalized device coordinates to light space.
-    pub light_from_ndc: [f32; 16],
-    /// The G-buffer's width and height.
-    pub extent: [i32; 2],
-    /// The depth of a pixel that shows no surface.
-    pub background: f32,
-    /// 1 where the G-buffer has a mask of roles.
-    pub masked: i32,
 }
 
 /// The push constants of `add_point.comp`.
@@ -148,23 +134,18 @@ fn declare(graph: &mut Graph, points: &[LightPoint], inputs: &PassInputs) {
     let hidden = image(graph, "many_lights.hidden_points", vk::Format::R32_SFLOAT);
     let sides = [inputs.occluders.side; 2];
     let depth = graph.image("many_lights.point_map", depth_layers::FORMAT, sides, Owner::Transient);
+    let mut uses = Uses::from_slice(&gbuffer.all_bound());
+    uses.extend([
+        Use::bound(2, positions, Access::ImageWrite),
+        Use::bound(3, normals, Access::ImageWrite),
+        Use::bound(4, hidden, Access::ImageWrite),
+    ]);
     graph.push(Pass::compute(
         "many_lights.receivers",
         module!("many_lights/receivers.comp"),
         grid(gbuffer.extent),
-        Push::new(&Receivers {
-            light_from_ndc: gbuffer.light_from_ndc,
-            extent,
-            background: gbuffer.background,
-            masked: i32::from(gbuffer.mask.is_some()),
-        }),
-        smallvec![
-            Use::bound(0, gbuffer.depth, Access::SampledCompute),
-            Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
-            Use::bound(2, positions, Access::ImageWrite),
-            Use::bound(3, normals, Access::ImageWrite),
-            Use::bound(4, hidden, Access::ImageWrite),
-        ],
+        Push::NONE,
+        uses,
         need,
     ));
     // A frame without shadows has no points; it declares its passes once, for the plan to name them.

@@ -1,7 +1,7 @@
 //! The passes over the pixels: at all of them, or at those of tiles that may meet an occluder.
 
 use super::settings::{Combine, Prefilter, Settings};
-use crate::graph::{Access, Graph, Owner, Pass, Push, ResourceId, Use};
+use crate::graph::{Access, Graph, Owner, Pass, Push, ResourceId, Use, Uses};
 use crate::shaders::module;
 use crate::stages::nearest::nodes_a_row;
 use crate::stages::tiles::Tiles;
@@ -34,13 +34,12 @@ pub(super) fn declare_pixels(
     let (gbuffer, visibility) = (inputs.gbuffer, inputs.visibility);
     let push = Push::new(&pixel_push(settings, inputs));
     let write = if settings.classify { Access::ImageUpdate } else { Access::ImageWrite };
-    let mut uses = smallvec![
-        Use::bound(0, gbuffer.depth, Access::SampledCompute),
-        Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
+    let mut uses = Uses::from_slice(&gbuffer.all_bound());
+    uses.extend([
         Use::bound(2, slices.placement, Access::SampledCompute),
         Use::bound(3, slices.means, Access::SampledCompute),
         Use::bound(4, visibility, write),
-    ];
+    ]);
     if !sums {
         uses.push(Use::bound(5, slices.mask, Access::SampledCompute));
     }
@@ -119,18 +118,12 @@ fn squares(graph: &mut Graph, mask: ResourceId, inputs: &PassInputs) -> Resource
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Visibility {
-    /// The matrix from the G-buffer's NDC to light space, by columns.
-    pub light_from_ndc: [f32; 16],
     /// Map texels a unit of u and v.
     pub texels_per_uv: [f32; 2],
     /// Texel coordinates of u = v = 0.
     pub first: [f32; 2],
     /// Half the light's width and height, m.
     pub half_light: [f32; 2],
-    /// The G-buffer's width and height.
-    pub extent: [i32; 2],
-    /// The depth of a pixel that shows no surface.
-    pub background: f32,
     /// How far behind the light the projection point is, m.
     pub eye: f32,
     /// The map's side in texels.
@@ -140,24 +133,20 @@ pub struct Visibility {
 }
 
 fn pixel_push(settings: &Settings, inputs: &PassInputs) -> Visibility {
-    let PassInputs { occluders: view, gbuffer, light, .. } = inputs;
+    let PassInputs { occluders: view, light, .. } = inputs;
     let combine = match settings.combine {
         Combine::Product | Combine::Correlated => 0,
         Combine::Sum => 1,
         Combine::Max => 2,
     };
     Visibility {
-        light_from_ndc: gbuffer.light_from_ndc,
         texels_per_uv: view.texels_per_uv().map(|x| x as f32),
         first: view.first().map(|x| x as f32),
         half_light: light.half_extents().map(|x| x as f32),
-        extent: gbuffer.extent.map(|e| e as i32),
-        background: gbuffer.background,
         eye: inputs.occluders.behind() as f32,
         map: view.side as i32,
         flags: settings.slices as i32
-            | i32::from(gbuffer.mask.is_some()) << 8
-            | combine << 9
-            | i32::from(settings.prefilter == Prefilter::Mip) << 12,
+            | combine << 8
+            | i32::from(settings.prefilter == Prefilter::Mip) << 11,
     }
 }

@@ -64,7 +64,7 @@ mod passes;
 pub mod settings;
 pub mod twin;
 
-pub use passes::{Columns, Filter, Level, Pixels, Start};
+pub use passes::{Columns, Level, Pixels, Start};
 pub use settings::{Hash, Layers, Sampling, Search, Settings};
 
 use self::passes::{declare, list_bytes};

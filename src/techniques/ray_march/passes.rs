@@ -65,16 +65,6 @@ pub struct Start {
     pub ndc_from_light: [f32; 16],
 }
 
-/// The push constants of `filter_rows.comp` and `filter_columns.comp`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub struct Filter {
-    /// The matrix from the G-buffer's NDC to light space, by columns.
-    pub light_from_ndc: [f32; 16],
-    /// The G-buffer's width and height.
-    pub extent: [i32; 2],
-}
-
 /// Adds the passes that turn depth layers into the visible fraction.
 pub(super) fn declare(
     graph: &mut Graph,
@@ -107,12 +97,9 @@ pub(super) fn declare(
     ));
     let pushed = Push::new(&pixel_push(settings, inputs));
     let shaders = shaders_of(settings, inputs);
-    let common = [
-        Use::bound(0, gbuffer.depth, Access::SampledCompute),
-        Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
-        Use::bound(2, windows, Access::SampledCompute),
-    ];
-    let mut uses = Uses::from_slice(&common);
+    let mut common = Uses::from_slice(&gbuffer.all_bound());
+    common.push(Use::bound(2, windows, Access::SampledCompute));
+    let mut uses = common.clone();
     uses.extend([
         Use::bound(3, visibility, Access::ImageWrite),
         Use::bound(4, arguments, Access::BufferUpdate),
@@ -125,7 +112,7 @@ pub(super) fn declare(
     let groups = grid(gbuffer.extent);
     graph.push(Pass::compute(name, shaders.classify, groups, pushed, uses, inputs.need));
 
-    let mut uses = Uses::from_slice(&common);
+    let mut uses = common;
     uses.extend([
         Use::bound(3, visibility, Access::ImageUpdate),
         Use::bound(4, pixels, Access::BufferReadCompute),
@@ -136,11 +123,8 @@ pub(super) fn declare(
     listed(graph, "ray_march.trace", shaders.trace, arguments, pushed, uses, inputs.need);
 
     if settings.filter {
-        let pushed = Push::new(&Filter {
-            light_from_ndc: gbuffer.light_from_ndc,
-            extent: gbuffer.extent.map(|e| e as i32),
-        });
-        let mut common = smallvec![
+        let mut common: Uses = smallvec![
+            gbuffer.constants_use(),
             Use::bound(0, gbuffer.depth, Access::SampledCompute),
             Use::bound(1, pixels, Access::BufferReadCompute),
             Use::bound(2, noisy, Access::SampledCompute),
@@ -149,12 +133,12 @@ pub(super) fn declare(
         let mut uses = common.clone();
         uses.push(Use::bound(3, halfway, Access::ImageUpdate));
         let name = "ray_march.filter_rows";
-        listed(graph, name, shaders.rows, arguments, pushed, uses, inputs.filter);
+        listed(graph, name, shaders.rows, arguments, Push::NONE, uses, inputs.filter);
         let mut uses = common;
         uses.push(Use::bound(3, halfway, Access::SampledCompute));
         uses.push(Use::bound(4, visibility, Access::ImageUpdate));
         let name = "ray_march.filter_columns";
-        listed(graph, name, shaders.columns, arguments, pushed, uses, inputs.filter);
+        listed(graph, name, shaders.columns, arguments, Push::NONE, uses, inputs.filter);
     }
 }
 
@@ -250,18 +234,12 @@ fn declare_levels(
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Pixels {
-    /// The matrix from the G-buffer's NDC to light space, by columns.
-    pub light_from_ndc: [f32; 16],
     /// Map texels a unit of u and v, or a metre where the projection is orthographic.
     pub texels_per_unit: [f32; 2],
     /// Texel coordinates of u = v = 0.
     pub first: [f32; 2],
     /// Half the light's width and height, m.
     pub half_light: [f32; 2],
-    /// The G-buffer's width and height.
-    pub extent: [i32; 2],
-    /// The depth of a pixel that shows no surface.
-    pub background: f32,
     /// How far behind the light the projection point is, m; or the far plane's distance.
     pub eye: f32,
     /// The height of the near plane.
@@ -279,14 +257,13 @@ pub struct Pixels {
 }
 
 fn pixel_push(settings: &Settings, inputs: &PassInputs) -> Pixels {
-    let PassInputs { occluders: view, gbuffer, light, .. } = inputs;
+    let PassInputs { occluders: view, light, .. } = inputs;
     let [half_x, half_y] = light.half_extents();
     let rays = f64::from(settings.rays);
     let rows = (rays * half_y / half_x).sqrt().round().clamp(1.0, rays) as i32;
     let bit = |on: bool, at: i32| i32::from(on) << at;
     let flags = (settings.rays as i32 - 1)
         | (rows - 1) << 8
-        | bit(gbuffer.mask.is_some(), 16)
         | bit(view.eye == Eye::Infinity, 17)
         | bit(settings.search == Search::Linear, 18)
         | bit(settings.hash == Hash::Pcg, 19)
@@ -302,12 +279,9 @@ fn pixel_push(settings: &Settings, inputs: &PassInputs) -> Pixels {
         | settings.levels.code() << 25
         | bit(inputs.light_texture.is_some(), 27);
     Pixels {
-        light_from_ndc: gbuffer.light_from_ndc,
         texels_per_unit: view.texels_per_uv().map(|x| x as f32),
         first: view.first().map(|x| x as f32),
         half_light: light.half_extents().map(|x| x as f32),
-        extent: gbuffer.extent.map(|e| e as i32),
-        background: gbuffer.background,
         eye: match view.eye {
             Eye::Behind(behind) => behind as f32,
             Eye::Infinity => view.far as f32,

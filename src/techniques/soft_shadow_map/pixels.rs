@@ -2,12 +2,11 @@
 
 use super::nodes::{Nodes, scale_of, sides};
 use super::settings::{Settings, Sides, spread_of};
-use crate::graph::{Access, Graph, Pass, Push, Use};
+use crate::graph::{Access, Graph, Pass, Push, Use, Uses};
 use crate::shaders::module;
 use crate::stages::tiles::Tiles;
 use crate::techniques::room::PassInputs;
 use bytemuck::{Pod, Zeroable};
-use smallvec::smallvec;
 
 const NAME: &str = "soft_shadow_map.gather_pixels";
 
@@ -15,18 +14,12 @@ const NAME: &str = "soft_shadow_map.gather_pixels";
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct GatherPixels {
-    /// Normalized device coordinates to light space.
-    pub light_from_ndc: [f32; 16],
     /// (Δu/Lx, Δv/Ly), 1/m.
     pub scale: [f32; 2],
     /// Occluder texels a unit of u and v.
     pub texels_per_uv: [f32; 2],
     /// Texel coordinates of u = v = 0.
     pub first: [f32; 2],
-    /// The G-buffer's width and height.
-    pub extent: [i32; 2],
-    /// The depth of a pixel that shows no surface.
-    pub background: f32,
     /// No occluder is nearer than 1/w_max.
     pub w_max: f32,
     /// The largest |δ| of the series, see [`super::settings::spread_of`].
@@ -35,7 +28,7 @@ pub struct GatherPixels {
     pub snap: f32,
     /// The number of superblocks in a row of the map.
     pub row: i32,
-    /// Bit 0: there is a mask; bit 1: two sides; bit 2: their mean.
+    /// Bit 0: two sides; bit 1: their mean.
     pub flags: i32,
     /// The error of an occluder's w beyond its rounding, 1/m.
     pub depth_error: f32,
@@ -47,14 +40,13 @@ pub(super) fn gather(graph: &mut Graph, nodes: &Nodes, settings: &Settings, inpu
     let [width, height] = gbuffer.extent;
     let push = Push::new(&pixel_push(nodes, settings, inputs));
     let write = if settings.classify { Access::ImageUpdate } else { Access::ImageWrite };
-    let uses = smallvec![
-        Use::bound(0, gbuffer.depth, Access::SampledCompute),
-        Use::bound(1, gbuffer.mask.unwrap_or(gbuffer.depth), Access::SampledCompute),
+    let mut uses = Uses::from_slice(&gbuffer.all_bound());
+    uses.extend([
         Use::bound(2, nodes.texels, Access::BufferReadCompute),
         Use::bound(3, nodes.sums, Access::BufferReadCompute),
         Use::bound(4, nodes.families, Access::BufferReadCompute),
         Use::bound(5, visibility, write),
-    ];
+    ]);
     if settings.classify {
         let tiles = Tiles::start(graph, gbuffer.extent, inputs.need);
         let families = Use::bound(2, nodes.families, Access::BufferReadCompute);
@@ -89,21 +81,18 @@ pub(super) fn gather(graph: &mut Graph, nodes: &Nodes, settings: &Settings, inpu
 }
 
 fn pixel_push(nodes: &Nodes, settings: &Settings, inputs: &PassInputs) -> GatherPixels {
-    let PassInputs { gbuffer, occluders, .. } = inputs;
+    let PassInputs { occluders, .. } = inputs;
     let two = i32::from(sides(settings).len() == 2);
     let mean = i32::from(settings.sides == Sides::Mean);
     GatherPixels {
-        light_from_ndc: gbuffer.light_from_ndc,
         scale: scale_of(inputs),
         texels_per_uv: occluders.texels_per_uv().map(|x| x as f32),
         first: occluders.first().map(|x| x as f32),
-        extent: gbuffer.extent.map(|e| e as i32),
-        background: gbuffer.background,
         w_max: (1.0 / occluders.near) as f32,
         spread: spread_of(settings.tolerance),
         snap: inputs.snap,
         depth_error: inputs.depth_error as f32,
         row: nodes.superblock_row as i32,
-        flags: i32::from(gbuffer.mask.is_some()) | two << 1 | mean << 2,
+        flags: two | mean << 1,
     }
 }

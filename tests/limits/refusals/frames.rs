@@ -60,6 +60,17 @@ fn frames() {
         f("no reach", |f| f.reach = Some(0.0), &["reach is 0", "above 0"]),
         f("a reach backwards", |f| f.reach = Some(-1.0), &["reach is -1"]),
         f("a reach of NaN", |f| f.reach = Some(f64::NAN), &["reach is NaN"]),
+        f("normals that are not lent", |f| f.normals = None, &["normals must be given"]),
+        f(
+            "normals that are scaled",
+            |f| f.world_from_normal *= 2.0,
+            &["world_from_normal must turn", "unit vectors", "world_from_view"],
+        ),
+        f(
+            "normals that are turned by no number",
+            |f| f.world_from_normal.x_axis.x = f64::NAN,
+            &["world_from_normal must turn"],
+        ),
         f("a mask that is not lent", |f| f.mask = None, &["mask must be given"]),
         f(
             "a texture that was not described",

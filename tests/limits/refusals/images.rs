@@ -13,9 +13,10 @@ fn images() {
             Visibility::Own { .. } => panic!("the node's own"),
         }
     }
-    let all: [(&str, Lends, Find); 6] = [
+    let all: [(&str, Lends, Find); 7] = [
         ("gbuffer.depth", GBuffer, |f| &mut f.depth),
         ("gbuffer.mask", GBuffer, |f| f.mask.as_mut().unwrap()),
+        ("gbuffer.normal", GBuffer, |f| f.normals.as_mut().unwrap()),
         ("occluder_maps.front", Maps, |f| &mut f.occluder_maps.as_mut().unwrap().front),
         ("occluder_maps.back", Maps, |f| f.occluder_maps.as_mut().unwrap().back.as_mut().unwrap()),
         ("light.texture", Texture, |f| f.light_texture.as_mut().unwrap()),
