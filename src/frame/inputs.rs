@@ -11,7 +11,7 @@ use crate::Error;
 use crate::effects::{Camera, Situation, Verdicts};
 use crate::lent::Normals;
 use crate::stages::views::Views;
-use crate::stages::visibility::Constants;
+use crate::stages::visibility::{self, Constants, NormalConstants};
 use crate::techniques::room::{Maps, Shapes, Takes};
 use glam::DMat3;
 
@@ -57,12 +57,20 @@ pub(super) fn frame_inputs<'a>(
         needs,
         constants: Constants {
             light_from_ndc: from_ndc.to_cols_array(),
-            light_from_normal: from_normal.map(|c| c.as_vec3().extend(0.0).to_array()),
+            plane_to_normal: visibility::plane_to_normal(
+                &light_from_ndc,
+                &ndc_from_light,
+                description.extent,
+                frame.far_depth(),
+            ),
             extent: description.extent.map(|e| e as i32),
             background: frame.far_depth(),
             flags: i32::from(description.mask_format.is_some())
                 | Normals::code(description.normals) << 1,
         },
+        normals: description.normals.map(|_| NormalConstants {
+            light_from_normal: from_normal.map(|c| c.as_vec3().extend(0.0).to_array()),
+        }),
         noise: frame.noise,
         ndc_from_light: from_light.to_cols_array(),
         reach: frame.reach,

@@ -8,7 +8,7 @@ use crate::graph::{Graph, Need, Owner, ResourceId, Why};
 use crate::stages::depth_layers::{self, Eye, HostMapView, LightLayers, MapView};
 use crate::stages::hierarchy::{self, Sizes};
 use crate::stages::views::Views;
-use crate::stages::visibility::{self, Constants, GBuffer};
+use crate::stages::visibility::{self, Constants, GBuffer, NormalConstants};
 use crate::techniques::hard::{self, Filter};
 use crate::techniques::room::PassInputs;
 use bytemuck::Zeroable;
@@ -62,6 +62,7 @@ pub(super) struct FrameInputs<'a> {
     pub receivers: MapView,
     pub needs: Needs,
     pub constants: Constants,
+    pub normals: Option<NormalConstants>,
     pub ndc_from_light: [f32; 16],
     pub noise: u32,
     /// How far the light reaches, m.
@@ -180,6 +181,7 @@ pub(crate) fn all_passes(description: &Description, limits: Limits) -> Graph {
         receivers: view,
         needs: Needs::all(&Need::Yes("nominal".into())),
         constants: Constants::zeroed(),
+        normals: description.normals.map(|_| NormalConstants::zeroed()),
         ndc_from_light: DMat4::IDENTITY.as_mat4().to_cols_array(),
         noise: 0,
         reach: None,
@@ -214,7 +216,9 @@ pub(super) fn build(
     let gbuffer = GBuffer { depth, mask, normal, constants, extent, background };
     let needs = &frame.needs;
     let [need, hard, front_need, back_need, inner, filter] = &needs.each().map(|n| graph.need(n));
-    frame.constants.write(graph, constants, if need.is_yes() { need } else { hard });
+    // A hard shadow may stand in for the technique.
+    let shadowed = if hard.is_yes() { hard } else { need };
+    frame.constants.write(frame.normals.as_ref(), graph, constants, shadowed);
     let layers = LightLayers {
         occluders: match (front, &frame.host_maps) {
             (Some(front), Some(camera)) => depth_layers::Occluders::Maps { front, back, camera },
@@ -228,8 +232,6 @@ pub(super) fn build(
         },
     };
     let color = description.has_color();
-    // A hard shadow may stand in for the technique.
-    let shadowed = if hard.is_yes() { hard } else { need };
     let of_technique = room.reads_triangles();
     let tree = of_technique.then(|| hierarchy::declare(graph, frame.tree.0, shadowed));
     let inputs = PassInputs {

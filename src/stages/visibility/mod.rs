@@ -5,7 +5,8 @@
 
 mod gbuffer;
 
-pub use gbuffer::{Constants, GBuffer};
+pub(crate) use gbuffer::plane_to_normal;
+pub use gbuffer::{Constants, GBuffer, NormalConstants};
 
 use crate::graph::{Access, Graph, Need, Owner, Pass, Push, ResourceId, Use, Uses, Work};
 use crate::shaders::{self, module};
