@@ -1,21 +1,24 @@
-//! The G-buffer: depth, albedo, normal and the role mask, drawn by one render pass.
+//! The G-buffer: depth, albedo, normal, the role mask and the triangles' planes, drawn by one render pass.
 //!
 //! The render pass changes no layout on its way out. Each image is left as it was drawn
 //! ([`DEPTH_DRAWN`](crate::resources::DEPTH_DRAWN), [`COLOR_DRAWN`](crate::resources::COLOR_DRAWN)),
-//! and whoever reads it next places the barrier: the node for depth and mask, the engine for the
-//! rest.
+//! and whoever reads it next places the barrier: the node for depth, mask and plane, the engine for
+//! the rest.
 
 use crate::Outcome;
 use crate::device::Gpu;
 use crate::geometry::{Model, STRIDE};
 use crate::resources::{COLOR_DRAWN, DEPTH_DRAWN, Image};
 use crate::world::Seen;
+use antumbra::{NormalEncoding, Normals};
 use ash::vk;
 
 pub const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 pub const MASK: vk::Format = vk::Format::R8_UNORM;
 const ALBEDO: vk::Format = vk::Format::R8G8B8A8_UNORM;
 const NORMAL: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
+/// How the node reads the triangles' normals: world space, x, y and z as they are.
+pub const NORMALS: Normals = Normals { format: NORMAL, encoding: NormalEncoding::Signed };
 
 /// Who reads the push constants.
 const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
@@ -49,6 +52,8 @@ pub struct GBuffer {
     pub albedo: Image,
     pub normal: Image,
     pub mask: Image,
+    /// The triangles' own normals, which the node is lent; shading takes the interpolated ones.
+    pub plane: Image,
     framebuffer: vk::Framebuffer,
 }
 
@@ -71,13 +76,14 @@ impl GBufferPass {
     pub fn images(&self, gpu: &mut Gpu, extent: [u32; 2]) -> Outcome<GBuffer> {
         use vk::ImageUsageFlags as Usage;
         let color = Usage::COLOR_ATTACHMENT | Usage::SAMPLED;
-        // The node samples depth and mask, so both say SAMPLED.
+        // The node samples depth, mask and plane, so they say SAMPLED.
         let depth = Usage::DEPTH_STENCIL_ATTACHMENT | Usage::SAMPLED | Usage::TRANSFER_SRC;
         let depth = Image::new(gpu, "depth", DEPTH, extent, depth)?;
         let albedo = Image::new(gpu, "albedo", ALBEDO, extent, color)?;
         let normal = Image::new(gpu, "normal", NORMAL, extent, color)?;
         let mask = Image::new(gpu, "mask", MASK, extent, color)?;
-        let views = [albedo.view, normal.view, mask.view, depth.view];
+        let plane = Image::new(gpu, "plane", NORMAL, extent, color)?;
+        let views = [albedo.view, normal.view, mask.view, plane.view, depth.view];
         let create = vk::FramebufferCreateInfo::default()
             .render_pass(self.render_pass)
             .attachments(&views)
@@ -86,7 +92,7 @@ impl GBufferPass {
             .layers(1);
         // SAFETY: the views are new and of the render pass's formats, in its order.
         let framebuffer = unsafe { gpu.device.create_framebuffer(&create, None) }?;
-        Ok(GBuffer { depth, albedo, normal, mask, framebuffer })
+        Ok(GBuffer { depth, albedo, normal, mask, plane, framebuffer })
     }
 
     /// Draws the models as they stand at a time.
@@ -101,7 +107,7 @@ impl GBufferPass {
             ..Default::default()
         };
         // All zero: reversed depth has its background at 0.
-        let clear = [vk::ClearValue::default(); 4];
+        let clear = [vk::ClearValue::default(); 5];
         let begin = vk::RenderPassBeginInfo::default()
             .render_pass(self.render_pass)
             .framebuffer(images.framebuffer)
@@ -142,7 +148,7 @@ impl GBuffer {
     pub fn destroy(self, gpu: &mut Gpu) {
         // SAFETY: the caller waited for every frame that uses it.
         unsafe { gpu.device.destroy_framebuffer(self.framebuffer, None) };
-        for image in [self.depth, self.albedo, self.normal, self.mask] {
+        for image in [self.depth, self.albedo, self.normal, self.mask, self.plane] {
             image.destroy(gpu);
         }
     }
@@ -207,11 +213,12 @@ fn make_render_pass(gpu: &Gpu) -> Outcome<vk::RenderPass> {
         attachment(ALBEDO, COLOR_DRAWN.layout),
         attachment(NORMAL, COLOR_DRAWN.layout),
         attachment(MASK, COLOR_DRAWN.layout),
+        attachment(NORMAL, COLOR_DRAWN.layout),
         attachment(DEPTH, DEPTH_DRAWN.layout),
     ];
-    let colors = [0, 1, 2]
+    let colors = [0, 1, 2, 3]
         .map(|attachment| vk::AttachmentReference { attachment, layout: COLOR_DRAWN.layout });
-    let depth = vk::AttachmentReference { attachment: 3, layout: DEPTH_DRAWN.layout };
+    let depth = vk::AttachmentReference { attachment: 4, layout: DEPTH_DRAWN.layout };
     let subpasses = [vk::SubpassDescription::default()
         .pipeline_bind_point(vk::PipelineBindPoint::GRAPHICS)
         .color_attachments(&colors)
@@ -271,7 +278,7 @@ fn make_pipeline(
         .depth_write_enable(true)
         .depth_compare_op(vk::CompareOp::GREATER);
     let opaque = [vk::PipelineColorBlendAttachmentState::default()
-        .color_write_mask(vk::ColorComponentFlags::RGBA); 3];
+        .color_write_mask(vk::ColorComponentFlags::RGBA); 4];
     let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&opaque);
     let states = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
     let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&states);

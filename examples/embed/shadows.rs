@@ -40,6 +40,7 @@ impl Shadows {
             frames_in_flight: FRAMES_IN_FLIGHT as u32,
             depth_format: gbuffer::DEPTH,
             mask_format: Some(gbuffer::MASK),
+            normals: Some(gbuffer::NORMALS),
             position_strides: vec![STRIDE],
             ..Description::new(extent)
         };
@@ -58,6 +59,7 @@ impl Shadows {
         let slot = Slot(seen.slot as u32);
         self.node.plan(&Frame {
             mask: Some(lend(&seen.gbuffer.mask, COLOR_DRAWN)),
+            normals: Some(lend(&seen.gbuffer.plane, COLOR_DRAWN)),
             visibility: Visibility::Own { before: COMPOSE_READS, after: COMPOSE_READS },
             border_barriers: self.border_barriers,
             ..Frame::new(slot, *seen.light, seen.clip_from_world.inverse(), &meshes, depth)

@@ -15,7 +15,9 @@ use antumbra::auto::Auto;
 use antumbra::frame::Capacity;
 use antumbra::scene::{Camera, Scene, from_gltf};
 use antumbra_harness::shade;
-use antumbra_harness::{FrameTimes, HeadlessDevice, HeadlessOptions, Stage, View, technique};
+use antumbra_harness::{
+    FrameTimes, GBuffer, HeadlessDevice, HeadlessOptions, Stage, View, technique,
+};
 use image::ExtendedColorType;
 use options::{Options, Stop};
 use output::Files;
@@ -108,6 +110,7 @@ fn render(options: &Options) -> Result<String, Stop> {
         description.omit = options.max_error.map_or(description.omit, Omit::Below);
         description.audit = options.audit;
         description.capacity = capacity(&scene, description.capacity);
+        description.normals = Some(GBuffer::NORMALS);
     })?;
     let plan = stage.plan_under(light, None)?;
     for note in notes::of(options, &scene, light, &plan, choice.as_ref()) {

@@ -89,7 +89,7 @@ vec3 plane_normal(vec3 along_x, vec3 along_y, vec3 to_viewer)
 // to the right and below. A plane (a, b, c, d) of column, row and depth, which holds what a x + b y + c z + d is 0 of,
 // has the normal (a, b, c, d) `plane_to_normal`. Differences of places would not do: under a sun, light space begins a
 // thousand radii of the scene away, where neighbouring floats are a centimetre apart. (Mean error of ray marching in a
-// yard of 300 m by differences and by this: 77 and XX %.)
+// yard of 300 m by differences and by this: 77 and 36 %.)
 vec3 normal_of_plane(mat3x4 plane_to_normal, vec2 pixel, float depth, vec2 steps)
 {
     vec3 n = of_unit_size(vec4(steps, -1.0, depth - dot(steps, pixel)) * plane_to_normal);
@@ -138,8 +138,8 @@ float depth_or_far(ivec2 p)
     return depth == gbuffer.background ? 1.0e30 : depth;
 }
 
-// The normal that the host lends for a pixel, of unit length; 0 where it is no number, has no length or looks away
-// from the viewer.
+// The normal that the host lends for a pixel, of unit length and on the viewer's side; 0 where it is no number or has no
+// length.
 vec3 lent_normal(ivec2 p, vec3 to_viewer)
 {
     vec3 c = texelFetch(gbuffer_normal, p, 0).xyz;
@@ -148,41 +148,59 @@ vec3 lent_normal(ivec2 p, vec3 to_viewer)
     vec3 n = gbuffer.light_from_normal * (encoding() >= OCTAHEDRAL_SIGNED ? unfolded(c.xy) : c);
     float size = dot(n, n);
     // What is no number is in no order.
-    bool usable = size > 1.0e-12 && size < 1.0e12 && dot(n, to_viewer) > 0.0;
+    bool usable = size > 1.0e-12 && size < 1.0e12;
+    n *= dot(n, to_viewer) < 0.0 ? -1.0 : 1.0;
     return usable ? n * inversesqrt(size) : vec3(0.0);
 }
 
-// The plane of the facet that a pixel shows. A plane's depth is linear over the image, so of the four
-// quadrants around the pixel this uses the one whose depths bend least, along both axes and across.
+// The rounding of the sum of depths that makes a bend, as a share of the depth.
+const float DEPTH_ROUNDING = 4.0e-7;
+
+// The normal of the facet that a pixel shows, by the depths around it. A plane's depth is linear over the image, so the
+// four quadrants around the pixel weigh by the square of how little their depths bend, along both axes and across: one
+// flat quadrant decides, and on wires, where none is flat, their mean does. (Mean error of ray marching at a fence of
+// wires with the flattest quadrant alone, this, and the triangles' own normals: 9.4, 6.5 and 4.0 %. Elsewhere the first
+// two differ by at most 0.1 points.)
 vec3 facet_normal(ivec2 p, float depth)
 {
-    // The depths of the neighbours along x and y, after and before, and how much depth bends behind them.
-    vec4 near;
+    // How depth changes to the neighbours along x and y, after and before, and how much it bends behind them.
+    vec4 steps;
     vec4 bend;
     for (int i = 0; i < 4; ++i) {
         ivec2 axis = (i < 2 ? ivec2(1, 0) : ivec2(0, 1)) * (1 - 2 * (i & 1));
-        near[i] = depth_or_far(p + axis);
-        bend[i] = abs(2.0 * near[i] - depth_or_far(p + 2 * axis) - depth);
+        float near = depth_or_far(p + axis);
+        steps[i] = near - depth;
+        bend[i] = abs(2.0 * near - depth_or_far(p + 2 * axis) - depth);
     }
-    ivec2 best = ivec2(0);
-    float least = 3.0e38;
+    vec4 bends;
     for (int i = 0; i < 4; ++i) {
         ivec2 q = ivec2(i & 1, i >> 1);
-        float corner = depth_or_far(p + 1 - 2 * q);
-        float twist = abs(near[q.x] + near[2 + q.y] - corner - depth);
-        float score = bend[q.x] + bend[2 + q.y] + twist;
-        if (score < least) {
-            least = score;
-            best = q;
-        }
+        float twist = abs(steps[q.x] + steps[2 + q.y] + depth - depth_or_far(p + 1 - 2 * q));
+        bends[i] = bend[q.x] + bend[2 + q.y] + twist + DEPTH_ROUNDING * depth + 1.0e-30;
     }
+    float least = min(min(bends.x, bends.y), min(bends.z, bends.w));
     // A pixel without neighbours on its surface has a plane that faces the viewer.
-    vec2 steps = vec2(near[best.x], near[2 + best.y]) - depth;
-    steps = mix(steps, vec2(0.0), greaterThan(abs(steps), vec2(1.0e29)));
-    return normal_of_plane(gbuffer.plane_to_normal, vec2(p), depth, steps * vec2(1 - 2 * best));
+    steps = mix(steps, vec4(0.0), greaterThan(abs(steps), vec4(1.0e29)));
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < 4; ++i) {
+        ivec2 q = ivec2(i & 1, i >> 1);
+        vec2 by = vec2(steps[q.x], steps[2 + q.y]) * vec2(1 - 2 * q);
+        float weight = least / bends[i];
+        sum += weight * weight * normal_of_plane(gbuffer.plane_to_normal, vec2(p), depth, by);
+    }
+    return sum * inversesqrt(max(dot(sum, sum), 1.0e-38));
 }
 
 // The normal of the plane that a pixel shows, on the viewer's side: the lent one, or without it that of the depths.
+//
+// Mean error in percent over shadow at 480x360, of soft-shadow-map, ray-march, occlusion-textures and pcss, without
+// normals / with the triangles':
+//     bunny     2.6/2.2    1.8/1.4    2.0/1.6    4.7/4.4
+//     kitchen  18.2/18.1  13.0/12.8  19.4/19.2  61.4/61.1
+//     hall     22.3/22.1  18.3/18.1  33.1/33.0  53.9/53.8
+//     yard     39.5/32.5  35.6/28.3  37.5/30.8  30.8/25.2
+//     fence     9.0/6.5    6.5/4.0    5.9/3.3    8.0/5.6
+// Normals that are interpolated between vertices would not do: 3.5 % on the bunny and 28 in the hall (soft-shadow-map).
 vec3 receiver_normal(ivec2 p, vec3 position)
 {
     vec3 to_viewer = towards_viewer(gbuffer.light_from_ndc, position, gbuffer.background);

@@ -54,6 +54,7 @@ fn up(y: f64) -> DVec3 {
 
 const LIT: &[&str] = &["visibility.lit"];
 const SSM: &[&str] = &[
+    "gbuffer.constants",
     "depth_layers.front",
     "depth_layers.back",
     "soft_shadow_map.blocks",
@@ -63,6 +64,7 @@ const SSM: &[&str] = &[
     "soft_shadow_map.gather_pixels",
 ];
 const SSM_FRONT: &[&str] = &[
+    "gbuffer.constants",
     "depth_layers.front",
     "soft_shadow_map.blocks",
     "soft_shadow_map.superblocks",
@@ -70,9 +72,10 @@ const SSM_FRONT: &[&str] = &[
     "visibility.tiles",
     "soft_shadow_map.gather_pixels",
 ];
-const HARD: &[&str] = &["depth_layers.front", "hard.visibility"];
-const OWN_HARD: &[&str] = &["depth_layers.hard", "hard.visibility"];
+const HARD: &[&str] = &["gbuffer.constants", "depth_layers.front", "hard.visibility"];
+const OWN_HARD: &[&str] = &["gbuffer.constants", "depth_layers.hard", "hard.visibility"];
 const RAYS: &[&str] = &[
+    "gbuffer.constants",
     "depth_layers.front",
     "depth_layers.back",
     "depth_layers.near_back",
@@ -86,6 +89,7 @@ const RAYS: &[&str] = &[
     "ray_march.filter_columns",
 ];
 const RAYS_FRONT: &[&str] = &[
+    "gbuffer.constants",
     "depth_layers.front",
     "ray_march.columns",
     "ray_march.level",
@@ -96,6 +100,7 @@ const RAYS_FRONT: &[&str] = &[
     "ray_march.filter_columns",
 ];
 const RAYS_UNFILTERED: &[&str] = &[
+    "gbuffer.constants",
     "depth_layers.front",
     "depth_layers.back",
     "depth_layers.near_back",
@@ -108,6 +113,7 @@ const RAYS_UNFILTERED: &[&str] = &[
 ];
 
 const SLICES: &[&str] = &[
+    "gbuffer.constants",
     "depth_layers.front",
     "depth_layers.back",
     "occlusion_textures.histogram_start",
@@ -123,6 +129,7 @@ const SLICES: &[&str] = &[
     "occlusion_textures.visibility",
 ];
 const LINES: &[&str] = &[
+    "gbuffer.constants",
     "linear_light.middle_occluders",
     "linear_light.middle_receivers",
     "linear_light.middle_copy",

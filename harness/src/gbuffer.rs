@@ -1,4 +1,4 @@
-//! A G-buffer: depth, world position, normal and role of each pixel.
+//! A G-buffer: depth, world position, normal, role and plane of each pixel.
 
 use crate::painter::{Painter, SceneDraw, draws};
 use crate::raster::{COLOR_LAYOUT, DEPTH, DEPTH_LAYOUT};
@@ -8,9 +8,11 @@ use antumbra::graph::Scope;
 use antumbra::scene::{Instance, Scene};
 use antumbra::{Error, HostImage, NormalEncoding, Normals};
 use ash::vk;
+use half::f16;
 use std::time::Duration;
 
 const VECTOR: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+const PLANE: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 /// The roles' format: 255 blocks and receives, 128 receives only, 0 receives nothing.
 pub(crate) const MASK: vk::Format = vk::Format::R8_UNORM;
 
@@ -24,6 +26,8 @@ pub struct GBuffer {
     pub normal: OwnedImage,
     /// Role; 0 on background.
     pub mask: OwnedImage,
+    /// Unit world normal of the triangle, on either side; 0 on background.
+    pub plane: OwnedImage,
 }
 
 /// Lends an image, and takes it back to be copied out in the layout that it is kept in.
@@ -45,6 +49,7 @@ impl GBuffer {
             position: OwnedImage::new(device, "gbuffer.position", VECTOR, extent, color)?,
             normal: OwnedImage::new(device, "gbuffer.normal", VECTOR, extent, color)?,
             mask: OwnedImage::new(device, "gbuffer.mask", MASK, extent, color)?,
+            plane: OwnedImage::new(device, "gbuffer.plane", PLANE, extent, color)?,
         })
     }
 
@@ -58,12 +63,12 @@ impl GBuffer {
         lend(&self.mask, Scope::COLOR_DRAWN.in_layout(COLOR_LAYOUT))
     }
 
-    /// How the normals are stored.
-    pub const NORMALS: Normals = Normals { format: VECTOR, encoding: NormalEncoding::Signed };
+    /// How the triangles' normals are stored.
+    pub const NORMALS: Normals = Normals { format: PLANE, encoding: NormalEncoding::Signed };
 
-    /// The normals as the node takes them.
+    /// The triangles' normals as the node takes them.
     pub fn normals_for_node(&self) -> HostImage {
-        lend(&self.normal, Scope::COLOR_DRAWN.in_layout(COLOR_LAYOUT))
+        lend(&self.plane, Scope::COLOR_DRAWN.in_layout(COLOR_LAYOUT))
     }
 
     /// Reads world positions, row by row.
@@ -80,6 +85,15 @@ impl GBuffer {
     /// See [`OwnedImage::read`].
     pub fn normals(&self) -> Result<Vec<[f32; 4]>, Error> {
         self.normal.read(COLOR_LAYOUT)
+    }
+
+    /// Reads the triangles' world normals as they are lent, of which each may be on either side, row by row.
+    ///
+    /// # Errors
+    /// See [`OwnedImage::read`].
+    pub fn planes(&self) -> Result<Vec<[f32; 4]>, Error> {
+        let halves: Vec<[u16; 4]> = self.plane.read(COLOR_LAYOUT)?;
+        Ok(halves.iter().map(|n| n.map(|bits| f16::from_bits(bits).into())).collect())
     }
 
     /// Reads roles, row by row.
@@ -102,7 +116,7 @@ impl GBufferPainter {
     /// # Errors
     /// [`Error::Vulkan`] where the driver refuses.
     pub fn new(device: &HeadlessDevice) -> Result<Self, Error> {
-        let colors = [VECTOR, VECTOR, MASK];
+        let colors = [VECTOR, VECTOR, MASK, PLANE];
         Ok(Self { painter: Painter::new(device, &colors, 0.0, GBUFFER_FRAG, true, None)? })
     }
 
@@ -127,7 +141,8 @@ impl GBufferPainter {
         gbuffer: &GBuffer,
         draws: &[SceneDraw],
     ) -> Result<Duration, Error> {
-        let images = [&gbuffer.position, &gbuffer.normal, &gbuffer.mask, &gbuffer.depth];
+        let GBuffer { depth, position, normal, mask, plane } = gbuffer;
+        let images = [position, normal, mask, plane, depth];
         self.painter.paint(&images, draws)
     }
 }

@@ -233,7 +233,10 @@ pub fn bytes_per_texel(format: vk::Format) -> Option<u32> {
         vk::Format::R8_UNORM | vk::Format::R8_UINT => Some(1),
         vk::Format::R16_SFLOAT | vk::Format::D16_UNORM => Some(2),
         vk::Format::R8G8B8A8_UNORM
+        | vk::Format::R8G8B8A8_SNORM
         | vk::Format::R8G8B8A8_SRGB
+        | vk::Format::R16G16_UNORM
+        | vk::Format::R16G16_SNORM
         | vk::Format::R16G16_SFLOAT
         | vk::Format::R32_UINT
         | vk::Format::R32_SFLOAT

@@ -21,8 +21,8 @@ pub struct NodeUse {
 /// The accesses to one image that node and host share, before, in and after the node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HostAccess {
-    /// The image's name: `gbuffer.depth`, `gbuffer.mask`, `occluder_maps.front`, `occluder_maps.back`, `light.texture`
-    /// or `visibility`.
+    /// The image's name: `gbuffer.depth`, `gbuffer.mask`, `gbuffer.normal`, `occluder_maps.front`, `occluder_maps.back`,
+    /// `light.texture` or `visibility`.
     pub name: &'static str,
     /// The image; a null handle for the node's own image in a plan that was made without a node.
     pub image: vk::Image,

@@ -300,8 +300,8 @@ pub struct Frame<'a> {
     /// The role of each pixel's mesh, with SAMPLED usage: red 1 blocks and receives, ½ receives only, 0 receives
     /// nothing.
     pub mask: Option<HostImage>,
-    /// The surfaces' normals, with SAMPLED usage, exactly where [`Description::normals`] says how they are stored. A
-    /// pixel whose normal has no length, is no number or looks away from the viewer counts as if it had none.
+    /// The triangles' normals, of the G-buffer's extent and with SAMPLED usage, exactly where [`Description::normals`]
+    /// says how they are stored. A pixel whose normal has no length or is no number counts as if it had none.
     pub normals: Option<HostImage>,
     /// Turns the normals to world space, for column vectors: the identity where they are in world space, the rotation
     /// of `world_from_view` where they are in view space.

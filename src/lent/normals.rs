@@ -6,8 +6,8 @@ use ash::vk::{self, Format as F};
 
 /// The image of the surfaces' normals in the host's G-buffer, and what its texels mean.
 ///
-/// Geometric normals, those of the triangles, serve best; normals that are interpolated between vertices or bent by a
-/// normal map serve too.
+/// The normals are those of the triangles, of any length and on either side. Normals that are interpolated between
+/// vertices, or bent by a normal map, make shadows worse than none: light ends at the triangle's plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Normals {
     /// The image's format: a color format that a shader reads as floats, with as many channels as the encoding reads.
@@ -16,7 +16,7 @@ pub struct Normals {
     pub encoding: NormalEncoding,
 }
 
-/// How a texel holds a normal. Lengths do not matter.
+/// How a texel holds a normal; lengths and sides do not matter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum NormalEncoding {
     /// x, y and z are red, green and blue, from −1 to 1: signed and float formats.
@@ -31,10 +31,6 @@ pub enum NormalEncoding {
 }
 
 impl NormalEncoding {
-    /// All encodings.
-    pub const ALL: [Self; 4] =
-        [Self::Signed, Self::Unsigned, Self::OctahedralSigned, Self::OctahedralUnsigned];
-
     fn is_octahedral(self) -> bool {
         matches!(self, Self::OctahedralSigned | Self::OctahedralUnsigned)
     }

@@ -5,7 +5,7 @@ mod pages;
 mod words;
 
 use antumbra::graph::{Owner, Shape};
-use antumbra::{Description, frame};
+use antumbra::{Description, NormalEncoding, Normals, frame};
 use antumbra_tests::example::root;
 use ash::vk;
 
@@ -26,6 +26,10 @@ fn the_table_of_images_is_the_graphs() {
     let page = page();
     let description = Description {
         mask_format: Some(vk::Format::R8_UNORM),
+        normals: Some(Normals {
+            format: vk::Format::R16G16_SNORM,
+            encoding: NormalEncoding::OctahedralSigned,
+        }),
         occluder_maps: Some(vk::Format::D32_SFLOAT),
         lent_visibility: true,
         ..Description::new([64, 48])

@@ -228,7 +228,7 @@ fn idle_lights_cost_nothing_and_a_moving_camera_sees_what_each_light_shadows() {
         assert!(run(&mut node, &idle) == images, "an idle frame changed an image");
     }
     assert_eq!(passes[1][..2], passes[0][..2], "shared maps are drawn by each light");
-    assert_eq!(passes[1][2..], [1, 1], "kept maps are not");
+    assert_eq!(passes[1][2..], [2, 2], "kept maps are not: the camera's constants and the pixels");
     assert!(passes[1..].iter().all(|p| *p == passes[1]), "{passes:?}");
     // A plan that counts on maps which another light has drawn over is refused.
     let stale = plan(&mut node, 2, |frame| {

@@ -1,7 +1,8 @@
 //! GLSL functions alone, beside their twins; and the harness that does it, with wrong twins.
 
 use antumbra::techniques::common::twin::{
-    dehomogenize, fraction_above, plane_normal, towards_viewer, unproject,
+    dehomogenize, fraction_above, normal_of_plane, plane_normal, towards_viewer, unfolded,
+    unproject,
 };
 use antumbra::techniques::common::twin::{magnification, overlap, patch_occlusion};
 use antumbra::techniques::soft_shadow_map::twin::{
@@ -153,6 +154,43 @@ fn normals_face_the_viewer() {
     .f32(Tolerance::absolute(4e-6), twin::<f32>)
     .f64(Tolerance::absolute(4e-6), twin::<f64>)
     .check(&device());
+}
+
+#[test]
+fn planes_of_the_image_turn_into_normals() {
+    fn twin<T: Float>(x: &[T]) -> Vec<T> {
+        normal_of_plane(&x[..12], [x[12], x[13]], x[14], [x[15], x[16]]).to_vec()
+    }
+    let glue = "vec3 turned(vec4 x, vec4 y, vec4 z, vec2 pixel, float depth, vec2 steps) \
+                { return normal_of_plane(mat3x4(x, y, z), pixel, depth, steps); }";
+    let prototype = "vec3 turned(vec4 x, vec4 y, vec4 z, vec2 pixel, float depth, vec2 steps)";
+    // A camera that looks along z with reversed depth, its centre at (320, 240): a plane through a pixel.
+    let camera = ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0), (-0.5, -0.4, 0.0, 1e-3));
+    let steps = (-1e-4..1e-4_f32, -1e-4..1e-4_f32);
+    let pixel = (0..640_u32, 0..480_u32).prop_map(|(x, y)| (x as f32, y as f32));
+    let cases = (pixel, 0.01..1.0_f32, steps)
+        .prop_map(move |(pixel, depth, steps)| (camera.0, camera.1, camera.2, pixel, depth, steps));
+    Function::new("common/light_space.glsl", prototype)
+        .glue(glue)
+        .case((camera.0, camera.1, camera.2, (0.0, 0.0), 0.5, (0.0, 0.0)))
+        .random(5_000, cases)
+        // The depth at the image's corner is a difference of numbers up to 1; steps are as small as 1e-4 of it.
+        .f32(Tolerance::absolute(2e-3), twin::<f32>)
+        .f64(Tolerance::absolute(2e-3), twin::<f64>)
+        .check(&device());
+}
+
+#[test]
+fn octahedra_unfold() {
+    Function::new("common/light_space.glsl", "vec3 unfolded(vec2 flat_n)")
+        .case(((0.0, 0.0),))
+        .case(((1.0, 0.0),))
+        .case(((-1.0, -1.0),))
+        .case(((0.5, -0.5),))
+        .random(5_000, ((-1.0..1.0_f32, -1.0..1.0_f32),))
+        .f32(Tolerance::absolute(4e-7), |x| unfolded([x[0], x[1]]).to_vec())
+        .f64(Tolerance::absolute(4e-7), |x| unfolded([x[0], x[1]]).to_vec())
+        .check(&device());
 }
 
 #[test]

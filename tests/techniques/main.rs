@@ -13,6 +13,7 @@ mod light_texture;
 mod line_light;
 mod linear_light;
 mod linear_samples;
+mod normals;
 mod occlusion_textures;
 mod occlusion_textures_slices;
 mod planner;

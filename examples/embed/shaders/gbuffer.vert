@@ -11,10 +11,12 @@ layout(push_constant) uniform Push {
 } push;
 
 layout(location = 0) out vec3 normal_ws;
+layout(location = 1) out vec3 position_ms;
 
 void main()
 {
     normal_ws = push.world_from_normal * normal;
     vec3 moved = position + normal * (push.swell * sin(push.phase + 9.0 * position.y));
+    position_ms = moved;
     gl_Position = push.clip_from_mesh * vec4(moved, 1.0);
 }

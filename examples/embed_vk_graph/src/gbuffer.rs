@@ -1,4 +1,4 @@
-//! The G-buffer: depth, normal and the role mask, drawn by one graphics command.
+//! The G-buffer: depth, normal, the role mask and the triangles' planes, drawn by one graphics command.
 
 use crate::Outcome;
 use crate::device::Gpu;
@@ -54,6 +54,7 @@ impl GBufferPass {
         let depth = graph.bind_resource(&shot.targets.depth);
         let normal = graph.bind_resource(&shot.targets.normal);
         let mask = graph.bind_resource(&shot.targets.mask);
+        let plane = graph.bind_resource(&shot.targets.plane);
         let draws: Vec<_> = shot
             .models
             .iter()
@@ -73,6 +74,7 @@ impl GBufferPass {
             .depth_stencil(DepthStencilInfo::DEPTH_WRITE_GREATER)
             .color_attachment_image(0, normal, clear, StoreOp::Store)
             .color_attachment_image(1, mask, clear, StoreOp::Store)
+            .color_attachment_image(2, plane, clear, StoreOp::Store)
             .depth_stencil_attachment_image(depth, clear_depth, StoreOp::Store);
         for (vertices, indices, ..) in &draws {
             command.set_resource_access(*vertices, AccessType::VertexBuffer);

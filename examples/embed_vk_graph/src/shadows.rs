@@ -10,7 +10,7 @@ use crate::device::Gpu;
 use crate::frames::FRAMES_IN_FLIGHT;
 use crate::geometry::{Model, STRIDE};
 use crate::shot::Shot;
-use crate::targets::{DEPTH, MASK};
+use crate::targets::{DEPTH, MASK, NORMALS, Targets};
 use antumbra::{BorderBarriers, Description, Error, Frame, FramePlan, Geometry, Host, HostImage};
 use antumbra::{MeshBuffers, MeshInstance, RetireQueue, Scope, ShadowNode, Technique, Visibility};
 use gpu_allocator::vulkan::Allocator;
@@ -50,6 +50,7 @@ impl Shadows {
             frames_in_flight: FRAMES_IN_FLIGHT,
             depth_format: DEPTH,
             mask_format: Some(MASK),
+            normals: Some(NORMALS),
             position_strides: vec![STRIDE],
             lent_visibility: true,
             ..Description::new(extent)
@@ -64,6 +65,7 @@ impl Shadows {
         let depth = lend(&shot.targets.depth)?;
         let frame = Frame {
             mask: Some(lend(&shot.targets.mask)?),
+            normals: Some(lend(&shot.targets.plane)?),
             visibility: Visibility::Lent(lend(&shot.targets.visibility)?),
             border_barriers: BorderBarriers::Host,
             ..Frame::new(shot.slot, shot.light.light, shot.world_from_ndc, &meshes, depth)
@@ -75,7 +77,8 @@ impl Shadows {
     /// The frame that last had the shot's slot must be done when the graph is submitted.
     pub fn add(&self, graph: &mut Graph, shot: &Shot, plan: FramePlan) -> Outcome<Recorded> {
         let mut command = graph.begin_cmd().debug_name("antumbra");
-        for image in [&shot.targets.depth, &shot.targets.mask, &shot.targets.visibility] {
+        let Targets { depth, mask, plane, visibility, .. } = shot.targets;
+        for image in [depth, mask, plane, visibility] {
             // What this frame's passes leave alone needs no barrier here.
             let Some(used) = plan.use_of(image.handle) else { continue };
             let image = command.bind_resource(image);

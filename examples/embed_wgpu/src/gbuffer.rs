@@ -1,4 +1,4 @@
-//! The G-buffer: depth, normal and role of each pixel.
+//! The G-buffer: depth, normal, role and triangle's plane of each pixel.
 
 use crate::Outcome;
 use crate::device::{Gpu, Target};
@@ -18,6 +18,8 @@ pub struct GBuffer {
     pub normal: Target,
     /// Whether a pixel blocks and receives light: see [`antumbra::Role::mask`].
     pub mask: Target,
+    /// The triangles' own normals, which the node is lent; shading takes the interpolated ones.
+    pub plane: Target,
 }
 
 /// `gbuffer.wgsl`
@@ -69,7 +71,7 @@ impl GBufferPass {
                 module: &shader,
                 entry_point: Some("fragment"),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[Some(NORMAL.into()), Some(MASK.into())],
+                targets: &[Some(NORMAL.into()), Some(MASK.into()), Some(NORMAL.into())],
             }),
             multiview_mask: None,
             cache: None,
@@ -80,12 +82,13 @@ impl GBufferPass {
     /// Images of a size, not yet drawn.
     pub fn images(&self, gpu: &Gpu, extent: [u32; 2]) -> Outcome<GBuffer> {
         use TextureUsages as Usage;
-        // The node needs SAMPLED usage of both images that it is lent.
+        // The node needs SAMPLED usage of the images that it is lent.
         let drawn = Usage::RENDER_ATTACHMENT | Usage::TEXTURE_BINDING;
         Ok(GBuffer {
             depth: gpu.target("gbuffer.depth", DEPTH, extent, drawn | Usage::COPY_SRC)?,
             normal: gpu.target("gbuffer.normal", NORMAL, extent, drawn)?,
             mask: gpu.target("gbuffer.mask", MASK, extent, drawn)?,
+            plane: gpu.target("gbuffer.plane", NORMAL, extent, drawn)?,
         })
     }
 
@@ -121,7 +124,8 @@ impl GBufferPass {
         };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("gbuffer"),
-            color_attachments: &[cleared(&gbuffer.normal.view), cleared(&gbuffer.mask.view)],
+            color_attachments: &[&gbuffer.normal, &gbuffer.mask, &gbuffer.plane]
+                .map(|target| cleared(&target.view)),
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &gbuffer.depth.view,
                 depth_ops: Some(wgpu::Operations {

@@ -5,7 +5,7 @@
 //! that wgpu records nothing into; and wgpu takes what was written there for its own:
 //!
 //! ```text
-//!   an encoder for the tracker    depth, mask ► sampled      visibility ► written as storage
+//!   an encoder for the tracker    depth, mask, plane ► sampled    visibility ► written as storage
 //!   a raw encoder                 the node, without barriers at its border
 //!   whoever shades                visibility ► sampled, by wgpu
 //! ```
@@ -14,7 +14,8 @@ use crate::device::{Gpu, Target};
 use crate::geometry::{Object, STRIDE};
 use crate::{FRAMES_IN_FLIGHT, Outcome, Seen, Targets, raw};
 use antumbra::{BorderBarriers, Description, Frame, FramePlan, Geometry, Host, HostImage, Slot};
-use antumbra::{MeshBuffers, MeshInstance, OccluderMaps, Retired, Scope, ShadowNode, Visibility};
+use antumbra::{MeshBuffers, MeshInstance, NormalEncoding, Normals, OccluderMaps, Retired};
+use antumbra::{Scope, ShadowNode, Visibility};
 use ash::vk;
 use gpu_allocator::vulkan::Allocator;
 use wgpu::hal::api::Vulkan;
@@ -49,6 +50,10 @@ impl Shadows {
         let description = Description {
             frames_in_flight: FRAMES_IN_FLIGHT as u32,
             mask_format: Some(vk::Format::R8_UNORM),
+            normals: Some(Normals {
+                format: vk::Format::R16G16B16A16_SFLOAT,
+                encoding: NormalEncoding::Signed,
+            }),
             position_strides: vec![STRIDE],
             lent_visibility: true,
             occluder_maps: own_maps.then_some(vk::Format::D32_SFLOAT),
@@ -65,6 +70,7 @@ impl Shadows {
         let slot = Slot(seen.slot as u32);
         self.node.plan(&Frame {
             mask: Some(lend(&gbuffer.mask, Scope::COMPUTE_SAMPLED)),
+            normals: Some(lend(&gbuffer.plane, Scope::COMPUTE_SAMPLED)),
             visibility: Visibility::Lent(lend(visibility, Scope::COMPUTE_WRITTEN)),
             occluder_maps: seen.maps.map(|maps| OccluderMaps {
                 front: lend(&maps.front, DEPTH_SAMPLED),
@@ -81,7 +87,7 @@ impl Shadows {
     pub fn record(&mut self, plan: &FramePlan, seen: &Seen) -> Outcome<[CommandBuffer; 2]> {
         let Targets { gbuffer, visibility, .. } = seen.targets;
         let [mut tracked, mut raw] = ["border", "shadows"].map(|name| self.gpu.encoder(name));
-        let sampled = [&gbuffer.depth, &gbuffer.mask].into_iter();
+        let sampled = [&gbuffer.depth, &gbuffer.mask, &gbuffer.plane].into_iter();
         let sampled = sampled.chain(seen.maps.into_iter().flat_map(|m| [&m.front, &m.back]));
         let textures = sampled
             .map(|target| (target, TextureUses::RESOURCE))

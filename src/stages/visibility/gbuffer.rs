@@ -120,3 +120,73 @@ impl GBuffer {
         Use::bound(CONSTANTS_AT, self.constants, Access::Uniform)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::plane_to_normal;
+    use crate::techniques::common::twin::{normal_of_plane, towards_viewer};
+    use glam::{DMat4, DVec3};
+
+    const EXTENT: [u32; 2] = [640, 480];
+
+    /// Cameras, each with the depth of its background: perspectives with a far plane at infinity, at 90 m and reversed
+    /// there, and two without.
+    fn cameras() -> [(DMat4, f32); 5] {
+        let by_rows = |rows: [[f64; 4]; 4]| DMat4::from_cols_array_2d(&rows).transpose();
+        let scaled = |depth: [f64; 4], w: [f64; 4]| {
+            by_rows([[1.6, 0.0, 0.0, 0.0], [0.0, -2.1, 0.0, 0.0], depth, w])
+        };
+        let [away, everywhere] = [[0.0, 0.0, -1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
+        let far = 90.0 / 89.9;
+        [
+            (scaled([0.0, 0.0, 0.0, 0.1], away), 0.0),
+            (scaled([0.0, 0.0, -far, -0.1 * far], away), 1.0),
+            (scaled([0.0, 0.0, far - 1.0, 0.1 * far], away), 0.0),
+            (scaled([0.0, 0.0, -0.01, 0.0], everywhere), 1.0),
+            (scaled([0.0, 0.0, 0.01, 1.0], everywhere), 0.0),
+        ]
+    }
+
+    /// A plane's normal by its depths in neighbouring pixels is the plane's, on the viewer's side, however far away
+    /// light space has its origin.
+    #[test]
+    fn depths_of_a_plane_give_its_normal() {
+        for (clip_from_view, background) in cameras() {
+            for distance in [3.0, 1e5] {
+                let view_from_light = DMat4::from_rotation_x(0.4)
+                    * DMat4::from_rotation_y(1.1)
+                    * DMat4::from_translation(DVec3::new(0.3, -0.2, -distance));
+                let ndc_from_light = clip_from_view * view_from_light;
+                let light_from_ndc = ndc_from_light.inverse();
+                let m = plane_to_normal(&light_from_ndc, &ndc_from_light, EXTENT, background);
+                let normal = DVec3::new(0.3, 0.8, 0.5).normalize();
+                // The plane through a point five metres before the viewer.
+                let view_from_here = clip_from_view.inverse();
+                let depth_at = |[x, y]: [f64; 2]| {
+                    let ndc = [2.0 * (x + 0.5) / 640.0 - 1.0, 2.0 * (y + 0.5) / 480.0 - 1.0];
+                    let on_ray =
+                        |z: f64| view_from_here.project_point3(DVec3::new(ndc[0], ndc[1], z));
+                    let [a, b] = [on_ray(0.25), on_ray(0.75)];
+                    let height = |p: DVec3| normal.dot(p - DVec3::new(0.0, 0.0, -5.0));
+                    let place = a + (b - a) * (height(a) / (height(a) - height(b)));
+                    clip_from_view.project_point3(place).z
+                };
+                let at = [200.0, 300.0];
+                let depth = depth_at(at);
+                let steps = [depth_at([201.0, 300.0]) - depth, depth_at([200.0, 301.0]) - depth];
+                let matrix: Vec<f32> = m.iter().flatten().copied().collect();
+                let single = |v: [f64; 2]| v.map(|c| c as f32);
+                let found = normal_of_plane(&matrix, single(at), depth as f32, single(steps));
+                let found = DVec3::from_array(found.map(f64::from));
+                let expected = view_from_light.inverse().transform_vector3(normal);
+                let columns = light_from_ndc.to_cols_array();
+                let ndc = DVec3::new(401.0 / 640.0 - 1.0, 601.0 / 480.0 - 1.0, depth);
+                let place = light_from_ndc.project_point3(ndc).to_array();
+                let viewer = towards_viewer(&columns, place, f64::from(background));
+                let side = expected.dot(DVec3::from_array(viewer)).signum();
+                let off = (found - side * expected).length();
+                assert!(off < 2e-4, "{clip_from_view} from {distance} m: {found}, not {expected}");
+            }
+        }
+    }
+}

@@ -1,7 +1,7 @@
 //! Passes and push constants of the techniques with one map from the light's centre.
 //!
 //! **One bias for all of them.** A texel's surface hides a pixel where it lies above the pixel's own plane, which the
-//! G-buffer's depth gives: the receiver-plane bias, exact for flat receivers at any slope and filter width. The bias
+//! G-buffer gives: the receiver-plane bias, exact for flat receivers at any slope and filter width. The bias
 //! is the rounding of that test, the distance by which a raster moves a vertex, and the height by which a bent surface
 //! rises above the pixel's plane: up to 0.3 of the distance within the map (`glsl/common/light_space.glsl`). That
 //! distance is half a texel's diagonal where a texel stands for itself, and the distance to the texel where it stands

@@ -138,6 +138,35 @@ pub fn towards_viewer<T: Float>(light_from_ndc: &[T], p: [T; 3], background: T) 
     }
 }
 
+/// The unit normal of a plane of the image: `depth` at a pixel, and more by `steps` at the next one to the right and below.
+/// The matrix, by columns, turns a plane (a, b, c, d) of column, row and depth, a row vector, into its normal.
+pub fn normal_of_plane<T: Float>(
+    plane_to_normal: &[T],
+    pixel: [T; 2],
+    depth: T,
+    steps: [T; 2],
+) -> [T; 3] {
+    let at_origin = depth - steps[0] * pixel[0] - steps[1] * pixel[1];
+    let plane = [steps[0], steps[1], -T::one(), at_origin];
+    let n = [0, 1, 2].map(|column| {
+        (0..4).fold(T::zero(), |sum, row| sum + plane[row] * plane_to_normal[column * 4 + row])
+    });
+    let length = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt();
+    n.map(|c| c / length)
+}
+
+/// The unit vector whose octahedral coordinates, from -1 to 1, these are.
+pub fn unfolded<T: Float>(flat: [T; 2]) -> [T; 3] {
+    let z = T::one() - flat[0].abs() - flat[1].abs();
+    let over = |i: usize| {
+        let away = T::one() - flat[1 - i].abs();
+        if flat[i] < T::zero() { -away } else { away }
+    };
+    let n = if z < T::zero() { [over(0), over(1), z] } else { [flat[0], flat[1], z] };
+    let length = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt();
+    n.map(|c| c / length)
+}
+
 /// The unit normal of the plane that two steps span, on the side that `to_viewer` points to.
 pub fn plane_normal<T: Float>(x: [T; 3], y: [T; 3], to_viewer: [T; 3]) -> [T; 3] {
     let size = |v: [T; 3]| v.iter().fold(T::min_positive_value(), |most, c| most.max(c.abs()));

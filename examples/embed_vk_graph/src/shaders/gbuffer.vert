@@ -9,9 +9,11 @@ layout(push_constant) uniform Push {
 } push;
 
 layout(location = 0) out vec3 normal_ws;
+layout(location = 1) out vec3 position_ms;
 
 void main()
 {
     normal_ws = push.world_from_normal * normal;
+    position_ms = position;
     gl_Position = push.clip_from_mesh * vec4(position, 1.0);
 }
