@@ -4,10 +4,15 @@ use crate::Outcome;
 use crate::device::{Gpu, Target};
 use crate::geometry::{Object, PerObject, vertex_layout};
 use crate::world::View;
+use antumbra::{NormalEncoding, Normals};
+use ash::vk;
 use wgpu::{TextureFormat, TextureUsages};
 
 pub const DEPTH: TextureFormat = TextureFormat::Depth32Float;
 const NORMAL: TextureFormat = TextureFormat::Rgba16Float;
+/// How the node reads the triangles' normals: world space, x, y and z as they are.
+pub const NORMALS: Normals =
+    Normals { format: vk::Format::R16G16B16A16_SFLOAT, encoding: NormalEncoding::Signed };
 const MASK: TextureFormat = TextureFormat::R8Unorm;
 
 /// The images, all of one size.

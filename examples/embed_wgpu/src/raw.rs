@@ -37,6 +37,7 @@ pub fn image(texture: &wgpu::Texture, view: &wgpu::TextureView) -> Outcome<RawIm
             TextureFormat::Depth32Float => vk::Format::D32_SFLOAT,
             TextureFormat::R32Float => vk::Format::R32_SFLOAT,
             TextureFormat::R8Unorm => vk::Format::R8_UNORM,
+            TextureFormat::Rgba16Float => vk::Format::R16G16B16A16_SFLOAT,
             _ => vk::Format::UNDEFINED, // nobody else sees those
         },
         usage: usages.fold(vk::ImageUsageFlags::empty(), |all, (_, usage)| all | usage),

@@ -11,11 +11,11 @@
 //! ```
 
 use crate::device::{Gpu, Target};
+use crate::gbuffer::NORMALS;
 use crate::geometry::{Object, STRIDE};
 use crate::{FRAMES_IN_FLIGHT, Outcome, Seen, Targets, raw};
 use antumbra::{BorderBarriers, Description, Frame, FramePlan, Geometry, Host, HostImage, Slot};
-use antumbra::{MeshBuffers, MeshInstance, NormalEncoding, Normals, OccluderMaps, Retired};
-use antumbra::{Scope, ShadowNode, Visibility};
+use antumbra::{MeshBuffers, MeshInstance, OccluderMaps, Retired, Scope, ShadowNode, Visibility};
 use ash::vk;
 use gpu_allocator::vulkan::Allocator;
 use wgpu::hal::api::Vulkan;
@@ -50,10 +50,7 @@ impl Shadows {
         let description = Description {
             frames_in_flight: FRAMES_IN_FLIGHT as u32,
             mask_format: Some(vk::Format::R8_UNORM),
-            normals: Some(Normals {
-                format: vk::Format::R16G16B16A16_SFLOAT,
-                encoding: NormalEncoding::Signed,
-            }),
+            normals: Some(NORMALS),
             position_strides: vec![STRIDE],
             lent_visibility: true,
             occluder_maps: own_maps.then_some(vk::Format::D32_SFLOAT),
