@@ -33,7 +33,7 @@ pub struct GBuffer {
 pub struct Constants {
     /// Normalized device coordinates to light space, by column.
     pub light_from_ndc: [f32; 16],
-    /// A plane of column, row and depth to its normal's x, y and z in light space ([`plane_to_normal`]).
+    /// A plane of column, row and depth to its normal's x, y and z in light space, on the viewer's side.
     pub plane_to_normal: [[f32; 4]; 3],
     /// The G-buffer's width and height.
     pub extent: [i32; 2],
