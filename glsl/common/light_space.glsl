@@ -198,8 +198,8 @@ vec3 facet_normal(ivec2 p, float depth)
 //     bunny     2.6/2.2    1.8/1.4    2.0/1.6    4.7/4.4
 //     kitchen  18.2/18.1  13.0/12.8  19.4/19.2  61.4/61.1
 //     hall     22.3/22.1  18.3/18.1  33.1/33.0  53.9/53.8
-//     yard     39.5/32.5  35.6/28.3  37.5/30.8  30.8/25.2
-//     fence     9.0/6.5    6.5/4.0    5.9/3.3    8.0/5.6
+//     yard     39.6/32.5  35.6/28.4  37.3/30.8  30.9/25.2
+//     fence     9.0/6.5    6.5/4.0    6.0/3.3    8.0/5.6
 // Normals that are interpolated between vertices would not do: 3.5 % on the bunny and 28 in the hall (soft-shadow-map).
 vec3 receiver_normal(ivec2 p, vec3 position)
 {
