@@ -9,6 +9,7 @@ mod baseline;
 mod disc_light;
 mod forward;
 mod hierarchy;
+mod hits;
 mod light_texture;
 mod line_light;
 mod linear_light;
