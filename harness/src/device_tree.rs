@@ -42,7 +42,9 @@ impl DeviceTree {
     /// As [`Stage::inspect`].
     pub fn read(stage: &mut Stage, plan: &FramePlan, leaves: usize) -> Result<Self, Error> {
         let (texels, _): (Vec<[u32; 4]>, _) = stage.inspect(plan, "hierarchy.nodes")?;
-        let (triangles, _): (Vec<[f32; 4]>, _) = stage.inspect(plan, "hierarchy.triangles")?;
+        let (mut triangles, _): (Vec<[f32; 4]>, _) = stage.inspect(plan, "hierarchy.triangles")?;
+        // Behind the last leaf there is whatever the memory held.
+        triangles.truncate(3 * LEAF as usize * leaves);
         let of = |nth: usize| {
             let [x, y, z, _] = texels[nth].map(f32::from_bits);
             Vec3::new(x, y, z)

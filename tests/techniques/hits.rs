@@ -2,7 +2,7 @@
 //! and how good a tree is it?
 
 use crate::hierarchy::{leaves_in, stage_of};
-use antumbra::scene::{Role, Scene, generate};
+use antumbra::scene::{Mesh, Role, Scene, generate};
 use antumbra_harness::bumps::bumpy_ball;
 use antumbra_harness::rays::RayTracer;
 use antumbra_harness::{DeviceTree, HeadlessDevice, HostBuffer, run_compute};
@@ -244,4 +244,41 @@ fn the_tree_is_not_much_worse_than_a_processors() {
         println!("{name}: cost {here:.1}, obvhs's {there:.1}, ratio {ratio:.2}");
         assert!((0.5..=2.5).contains(&ratio), "{name}: {here} beside {there}");
     }
+}
+
+/// A card of a million triangles, each a thousandth of its distance wide, lets no ray through; with edges as products of
+/// corners alone, one of some hundred thousand slips between them.
+#[test]
+fn nothing_slips_between_small_triangles() {
+    let device = unwatched();
+    let mut scene = generate::stage(generate::square_light(0.5).unwrap());
+    let place = DMat4::from_translation(DVec3::Y * 2.0);
+    scene.add("card", tiled_square(708), place, Role::Both);
+    let case = Case::new(&device, &scene);
+    let mut random = Random(5);
+    // Points of a grid, whose rays pass corners more often than others do.
+    let mut across = || 0.9 * ((random.unit() * 64.0).floor() + 0.5) / 64.0 - 0.45;
+    let mut at = |height: f64| DVec3::new(across(), height, across()) - case.origin;
+    let ray = |_| {
+        let from = at(0.0).as_vec3();
+        Ray { from, along: (at(4.0) - from.as_dvec3()).as_vec3() }
+    };
+    let rays: Vec<_> = (0..400_000).map(ray).collect();
+    let through = case.on_device(&device, &rays).iter().filter(|hit| !**hit).count();
+    assert_eq!(through, 0, "of {}", rays.len());
+}
+
+/// A square of side 1 in the plane y = 0, of `cells` × `cells` quads.
+fn tiled_square(cells: u32) -> Mesh {
+    let at = |i: u32| i as f32 / cells as f32 - 0.5;
+    let grid = |n: u32| (0..n).flat_map(move |row| (0..n).map(move |column| (row, column)));
+    let positions: Vec<_> =
+        grid(cells + 1).map(|(row, column)| [at(column), 0.0, at(row)]).collect();
+    let quad = |(row, column)| {
+        let a = row * (cells + 1) + column;
+        let b = a + cells + 1;
+        [a, b, b + 1, a, b + 1, a + 1]
+    };
+    let normals = vec![[0.0, 1.0, 0.0]; positions.len()];
+    Mesh { positions, normals, indices: grid(cells).flat_map(quad).collect(), ..Mesh::default() }
 }
