@@ -41,7 +41,7 @@ fn scenes() -> Vec<(&'static str, Scene, Camera)> {
 }
 
 /// A sun of 6°, whose penumbrae are some pixels wide.
-fn sun() -> Light {
+pub fn sun() -> Light {
     Light::sun(DVec3::new(0.2, -1.0, 0.1), 0.1, DVec3::Y, 4.0).unwrap()
 }
 
@@ -53,7 +53,7 @@ const TECHNIQUES: [&str; 4] = [
 ];
 
 /// A scene as a camera sees it, occluders too.
-fn seen<'a>(scene: &'a Scene, camera: &Camera) -> Setup<'a> {
+pub fn seen<'a>(scene: &'a Scene, camera: &Camera) -> Setup<'a> {
     let view = View::perspective(camera, EXTENT);
     Setup { scene, view, extent: EXTENT, window: None, occluders_seen: true }
 }
@@ -75,14 +75,14 @@ fn truth_of(setup: &Setup, camera: &Camera, stage: &Stage, rays: u32) -> Vec<f32
 }
 
 /// A stage with an audit.
-fn audited(device: &HeadlessDevice, setup: &Setup, words: &str, pixels: u32) -> Stage {
+pub fn audited(device: &HeadlessDevice, setup: &Setup, words: &str, pixels: u32) -> Stage {
     let mut stage = setup.stage(device, words);
     stage.configure_with(settings(words), |d| d.audit = pixels).unwrap();
     stage
 }
 
 /// One frame's error; maps and hierarchy are kept.
-fn frame(stage: &mut Stage, setup: &Setup) -> Option<MeasuredError> {
+pub fn frame(stage: &mut Stage, setup: &Setup) -> Option<MeasuredError> {
     let light = setup.scene.light(None).unwrap().light;
     let plan = stage
         .plan_with(light, |frame| (frame.revision, frame.mesh_revision) = (Some(1), Some(1)))
@@ -112,7 +112,7 @@ fn holds(error: &MeasuredError, whole: f64) -> bool {
 
 /// Whether a raster moves vertices by so much that pixels show surfaces elsewhere than the tracer's triangles are: 4
 /// sub-pixel bits move them by up to a 32nd of a pixel, which in images of 160 pixels is a millimetre.
-fn moves_surfaces(device: &HeadlessDevice) -> bool {
+pub fn moves_surfaces(device: &HeadlessDevice) -> bool {
     let bits = device.limits().sub_pixel_precision_bits;
     if bits < 8 {
         say(&format!(
@@ -184,9 +184,11 @@ fn the_whole_images_error_lies_in_the_interval() {
         }
     }
     println!("{} of {} windows", held[0], held[1]);
-    // 93 % where there are so many that 95 % is not chance.
-    let least =
-        least_held(held[1]).max((0.93 * f64::from(held[1])) as u32 * u32::from(held[1] > 300));
+    // 93 % of many windows; of few, as many as chance leaves.
+    let least = match held[1] {
+        many @ 300.. => (0.93 * f64::from(many)) as u32,
+        few => least_held(few),
+    };
     assert!(held[0] >= least, "{held:?}, at least {least}");
 }
 
@@ -352,44 +354,6 @@ fn lights_and_slots_have_their_own_figures() {
     }
     let memory = stage.node().unwrap().memory();
     assert!(memory.iter().any(|r| r.name == "audit.figures" && r.bytes >= 256), "{memory:?}");
-}
-
-/// Every shape of a light as the truth has it; what `traced` makes of the shape does not matter.
-#[test]
-fn the_truth_of_a_shape_is_the_tracers() {
-    let device = unwatched();
-    if moves_surfaces(&device) {
-        return;
-    }
-    let (above, down) = (DVec3::Y * 4.0, DVec3::NEG_Y);
-    let lights: [(&str, Light); 7] = [
-        ("line", generate::line_light(1.0, 0.4).unwrap().into()),
-        ("disc", Light::disc(above, down, 0.4).unwrap()),
-        ("polygon", generate::polygon_light(&[[-0.4, -0.4], [0.5, -0.3], [0.0, 0.5]]).unwrap()),
-        ("sun", sun()),
-        ("sphere", Light::sphere(above, 0.4).unwrap()),
-        ("capsule", Light::capsule(above, DVec3::X * 0.5, 0.1).unwrap()),
-        ("point", Light::point(above).unwrap()),
-    ];
-    for (name, light) in lights {
-        let scene = generate::spheres(light).with_occluders_as(Role::Both);
-        let camera = Camera::framing(&scene, 157.0 / 118.0);
-        let setup = seen(&scene, &camera);
-        let mut stage = audited(&device, &setup, "technique=traced", 1024);
-        let mut window = ErrorWindow::new();
-        (0..12).for_each(|_| window.add(&frame(&mut stage, &setup).unwrap()));
-        let tracer = Tracer::new(&scene).unwrap();
-        let sampling = Sampling::new(1024, 1).unwrap();
-        let truth = tracer.visible_fractions(light, &Setup::receivers(&stage), &sampling).unwrap();
-        let whole = summary(&truth.visible, &stage.visibility().unwrap());
-        let error = window.error();
-        println!("{name}: {:.3} %, measured {error:?}", 100.0 * whole.mean_abs_error);
-        let (pixels, whole) = (whole.pixels, whole.mean_abs_error);
-        // The noise of 512 samples, which a small polygon has 200 of, against an image with hardly any error; and a pixel at
-        // a contact, where a hair's breadth decides. Another shape would be wrong by several percent.
-        let most = 4e-3 + 1.0 / pixels as f64;
-        assert!((error.mean - whole).abs() < most, "{name}: {whole}, {error:?}");
-    }
 }
 
 /// Constants are of the frame's own camera, whatever maps are kept.

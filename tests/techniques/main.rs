@@ -5,6 +5,7 @@
 
 mod accuracy;
 mod audit;
+mod audit_shapes;
 mod baseline;
 mod disc_light;
 mod forward;
