@@ -78,6 +78,14 @@ fn line(situation: &Situation, row: &Row, factor: f64) -> Option<Vec<String>> {
 pub fn write(options: &Options) -> Result<(), Problem> {
     let device = HeadlessDevice::new(&HeadlessOptions::default())?;
     let views = views(options, &device)?;
+    let groups = studies::choices(&options.choice(), options.renew.as_deref())?.len();
+    if views.len() < groups {
+        return Err(format!(
+            "{} of {groups} views are measured; go on with --choices",
+            views.len()
+        )
+        .into());
+    }
     let path = Options::root().join("src/auto/table.csv");
     let lines = match &options.renew {
         None => all_lines(&device, &views)?,
@@ -129,8 +137,8 @@ fn renewed(old: &str, technique: &str, views: &[View]) -> Result<Vec<Cells>, Pro
         view.sort_by_key(|c| CANDIDATES.iter().position(|known| is(known, &c[10], &c[11])));
         lines.extend(view);
     }
-    if lines.len() != 2 + views.len() * CANDIDATES.len() || views.is_empty() {
-        return Err("a view or a candidate is missing; the table stays as it was".into());
+    if lines.len() != 2 + views.len() * CANDIDATES.len() {
+        return Err("a candidate is missing in a view; the table stays as it was".into());
     }
     Ok(lines)
 }
