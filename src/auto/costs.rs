@@ -1,5 +1,6 @@
 //! The times of passes on the device at hand, relative to the device that the table was measured on.
 
+use super::Features;
 use super::table::{Measured, PIXELS};
 use crate::technique::Technique;
 
@@ -14,6 +15,32 @@ const MOST: f64 = 16.0;
 
 /// The time that a triangle takes in a depth layer on the table's device, milliseconds.
 const DRAW_MS: f64 = 0.35e-3;
+
+/// The time that a triangle takes in a hierarchy whose boxes are made anew, on the table's device, milliseconds. The order
+/// of the triangles is kept while the list of meshes stays.
+const TREE_MS: f64 = 0.42e-3;
+
+/// The number of triangles in a shaft whose tests take as long as all else that its pixels take.
+const SHAFT: f64 = 64.0;
+
+/// The milliseconds that `more_triangles` more triangles take in a hierarchy on the table's device; below 0 for fewer.
+pub(super) fn tree_ms(more_triangles: f64) -> f64 {
+    TREE_MS * more_triangles
+}
+
+/// The time that pixels take where triangles are tested in shafts, over that of pixels with empty shafts: 1 and more.
+///
+/// A light of side L, blocked at a distance d_o and received at d_r, has a penumbra of P = L (d_r / d_o − 1). The shaft
+/// from a receiver to the light is L (1 − d_o / d_r) = L P / (L + P) wide where the occluder is, so that of `triangles`
+/// over a face of the occluders' size s it holds the share (L P / (L + P) / s)². The time grows with the root of their
+/// number: a shaft's pixels stop when the light is hidden, and shafts beside the occluders hold few.
+/// `docs/planner.md` says within what factor this foretells times.
+pub(super) fn shaft_work(features: &Features, triangles: f64) -> f64 {
+    let light = (-features.size).exp2();
+    let penumbra = features.penumbra.exp2() - 1.0;
+    let width = light * penumbra / (light + penumbra);
+    1.0 + (triangles * width.min(1.0).powi(2) / SHAFT).sqrt()
+}
 
 /// Factors from times on the table's device to times on the device at hand; 1 where nothing was measured.
 ///

@@ -29,3 +29,5 @@ pub use table::{COLUMNS, Measured, PIXELS, PROBE, Table, View};
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod traced_tests;
