@@ -107,7 +107,7 @@ impl Near<'_> {
             (measured.pixels_ms / view.shaft_work() / over.pixels_ms).ln()
         };
         let alike = self.mean(self.measured(candidate).map(log)) / (1.0 + UNLIKE * self.nearest);
-        let pixels_ms = over.pixels_ms * shaft_work(self.features, self.triangles) * alike.exp();
+        let pixels_ms = over.pixels_ms * shaft_work(self.features) * alike.exp();
         let measured = Measured { maps_ms, pixels_ms, ..Measured::default() };
         let ms = self.costs.ms(CANDIDATES[candidate].technique, &measured, self.pixels, 0.0);
         let error = self.worst(candidate).min(MARGIN * over.worst).min(1.0);

@@ -64,7 +64,7 @@ impl Over {
 impl View {
     /// [`shaft_work`] of the view.
     pub(super) fn shaft_work(&self) -> f64 {
-        shaft_work(&self.features, self.triangles)
+        shaft_work(&self.features)
     }
 }
 

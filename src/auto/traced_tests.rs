@@ -124,26 +124,31 @@ fn no_scene_makes_the_error_of_samples_larger_than_the_tables_worst() {
 
 #[test]
 fn time_grows_with_the_triangles_in_a_shaft() {
-    let features =
-        |size, penumbra| Features::from_values([size, penumbra, 8.0, 1.0, 1.0, 0.0, 1.0]);
-    // As wide as the occluders, lit from half way: half of a face's width, a quarter of its triangles.
+    let work = |size: f64, penumbra: f64, edges: f64| {
+        let [penumbra, edges] = [penumbra, edges].map(|x| (1.0 + x).log2());
+        shaft_work(&Features::from_values([size, penumbra, edges, 1.0, 1.0, 0.0, 1.0]))
+    };
     let near = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-9, "{a} {b}");
-    near(shaft_work(&features(0.0, 1.0), 4.0 * 64.0), 2.0);
-    near(shaft_work(&features(0.0, 1.0), 16.0 * 64.0), 3.0);
+    // As wide as the occluders, lit from half way: half of a face's width, a quarter of its triangles.
+    let edges = |triangles: f64| 4.0 * triangles.sqrt();
+    near(work(0.0, 1.0, edges(4.0 * 32.0)), 2.0);
+    near(work(0.0, 1.0, edges(16.0 * 32.0)), 3.0);
     // A light half as wide, its penumbra too.
-    near(shaft_work(&features(1.0, 1.5f64.log2()), 16.0 * 64.0), 2.0);
+    near(work(1.0, 0.5, edges(16.0 * 32.0)), 2.0);
     // A sun's shaft is as narrow as its penumbra, however far and large its square is.
-    assert!(shaft_work(&features(-3.0, 0.01), 2e4) < 1.2);
-    assert!(shaft_work(&features(16.0, 0.0), 1e6) < 1.01);
-    // More triangles than in the table take longer in the hierarchy and in the shafts, for the larger light more so.
-    let of = |size, triangles| {
-        let all = expect(Table::own(), &Costs::default(), &features(size, 1.0), PIXELS, triangles);
+    assert!(work(-3.0, 0.001, edges(1e4)) < 1.02);
+    assert_eq!(work(12.0, 0.0, edges(1e6)), 1.0);
+    // Denser shafts send rays.
+    assert_eq!(work(0.0, 1.0, edges(1e6)), work(0.0, 1.0, edges(1e5)));
+    // More triangles than in the table take longer in the hierarchy, and denser ones in the shafts.
+    let of = |edges, triangles| {
+        let unlike = Features::from_values([1.0, 1.0, edges, 1.0, 1.0, 0.0, 1.0]);
+        let all = expect(Table::own(), &Costs::default(), &unlike, PIXELS, triangles);
         let mut traced = all.iter().filter(|e| techniques()[e.candidate].room().reads_triangles());
         traced.next().unwrap().ms
     };
-    let [few, many] = [1e3, 1e5].map(|triangles| of(1.0, triangles));
-    assert!(many > few + tree_ms(9.9e4), "{few} {many}");
-    assert!(of(0.0, 1e5) > of(3.0, 1e5));
+    near(of(8.0, 1e5) - of(8.0, 2e4), tree_ms(8e4));
+    assert!(of(9.0, 1e5) > 1.5 * of(6.0, 1e5));
 }
 
 fn budget(max_error: f64, max_ms: f64) -> ValidBudget {
