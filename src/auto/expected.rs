@@ -2,7 +2,8 @@
 
 use super::budget::ValidBudget;
 use super::candidates::techniques;
-use super::costs::{shaft_work, tree_ms};
+use super::costs::tree_ms;
+use super::shafts::shaft_work;
 use super::table::{Measured, Table, View};
 use super::{CANDIDATES, Costs, Features};
 

@@ -16,6 +16,7 @@ mod choose;
 mod costs;
 mod expected;
 mod features;
+mod shafts;
 mod table;
 
 pub use budget::Budget;

@@ -1,6 +1,6 @@
 //! The error and time of every candidate in every view of the report, as measured on one device.
 
-use super::costs::shaft_work;
+use super::shafts::shaft_work;
 use super::{CANDIDATES, FEATURES, Features};
 use std::sync::OnceLock;
 

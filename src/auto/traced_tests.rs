@@ -3,8 +3,9 @@
 
 use super::budget::ValidBudget;
 use super::candidates::techniques;
-use super::costs::{shaft_work, tree_ms};
+use super::costs::tree_ms;
 use super::expected::{Expected, drop_the_slow, expect, share};
+use super::shafts::shaft_work;
 use super::tests::{CUBE, auto, description, frame, ground, mesh, over, square};
 use super::*;
 use crate::frame::{Capacity, Description, LightTexture};
@@ -221,19 +222,21 @@ fn no_choice_takes_ten_times_the_fastest_that_keeps_the_promise() {
     }
 }
 
-/// A light that has had a slow candidate loses it in the frame in which a fast one can be had, and not after the frames
-/// that another choice waits.
+/// A light that has had a slow candidate, one that is good enough too, loses it in the frame in which a fast one can be
+/// had, and not after the frames that another choice waits.
 #[test]
 fn a_slow_choice_does_not_stay() {
-    let mut auto = auto(Some(0.03), None);
-    let meshes = room();
-    let frame = frame(square(0.6), &meshes);
     let small = Description { capacity: Capacity { triangles: 1, meshes: 1 }, ..description() };
+    let meshes = over(CUBE, 2.0);
+    let frame = frame(square(0.4), &meshes);
+    // Maps take long here, and what looks most exactly needs the largest.
+    let budget = Budget { max_error: None, max_ms: Some(1e6) };
+    let mut auto = Auto::new(budget, Costs::new(20.0, 1.0));
     let slow = auto.choose(&small, &frame).unwrap();
-    assert!(slow.left_out.is_some() && !reads_triangles(&slow), "{slow}");
-    let fast = auto.choose(&description(), &frame).unwrap();
-    assert!(fast.changed && reads_triangles(&fast), "{slow}; {fast}");
-    assert!(fast.error.unwrap() <= 0.03, "{fast}");
+    auto.set_budget(Budget { max_error: Some(0.05), max_ms: None });
+    let fast = auto.choose(&small, &frame).unwrap();
+    assert!(slow.error.unwrap() <= 0.05 && slow.ms.unwrap() > 10.0 * fast.ms.unwrap(), "{slow}");
+    assert!(fast.changed && fast.error.unwrap() <= 0.05, "{fast}");
 }
 
 #[test]
