@@ -169,7 +169,7 @@ fn growth(
     table.head(
         "x|frame ms|tiles ms|exp.|model|gather ms|exp.|model|cover ms|exp.|model|rays ms|exp.|model|fit ms|exp.|model",
     );
-    let most = if words.is_empty() { 2048.0 } else { 1.0 };
+    let most = if words.is_empty() { 1024.0 } else { 1.0 };
     let mut ready: Vec<_> = points.iter().map(|(_, p)| p.ready(device, words)).collect();
     let all = in_turns(&mut ready, scale.rounds);
     let measured: Vec<[f64; 5]> = all

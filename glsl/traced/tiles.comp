@@ -16,9 +16,9 @@ layout(set = 0, binding = 5, r32f) writeonly uniform image2D visibility;
 
 #include "traced/shaft.glsl"
 
-// The turns of an invocation's walks: with all other loops of it, fewer than the 65,535 after which some drivers end loops
-// without a word.
-const int MOST_TURNS = 60000;
+// The turns of a tile's walks: with those of a loop over a full list, in this pass or in traced/gather.comp, fewer than the
+// 65,535 after which some drivers end loops without a word.
+const int MOST_TURNS = 40000;
 
 // Counts the leaves that a shaft holds, up to one more than a list may have, and writes down the first of them, and where
 // the others lie.
