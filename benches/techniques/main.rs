@@ -15,6 +15,7 @@ mod ready;
 mod soft_shadow_map;
 mod table;
 mod tiles;
+mod traced;
 
 use antumbra_bench::options::Options;
 use antumbra_harness::{HeadlessDevice, HeadlessOptions};
@@ -44,13 +45,14 @@ pub struct Bench {
     quick: Scale,
 }
 
-const BENCHES: [Bench; 6] = [
+const BENCHES: [Bench; 7] = [
     soft_shadow_map::BENCH,
     ray_march::BENCH,
     occlusion_textures::BENCH,
     linear_light::BENCH,
     planner::BENCH,
     tiles::BENCH,
+    traced::BENCH,
 ];
 
 impl Bench {

@@ -2,11 +2,11 @@
 
 use antumbra::scene::{Instance, Role, Scene, generate};
 use antumbra::truth::{ErrorSummary, ExactLine, Sampling, Tracer};
-use antumbra::{FramePlan, RectangleLight};
+use antumbra::{FramePlan, MeshInstance, RectangleLight};
 use antumbra_bench::scenes::made;
 use antumbra_bench::stats::median;
 use antumbra_bench::truth::receivers;
-use antumbra_harness::{FrameTimes, HeadlessDevice, Stage, View, technique};
+use antumbra_harness::{DeviceTree, FrameTimes, HeadlessDevice, Stage, View, technique};
 
 /// A model, or one of the generated scenes, under a square light whose side is in metres.
 pub fn scene(name: &str, side: f64) -> Scene {
@@ -64,6 +64,26 @@ impl Ready {
         let first = planned(&mut self.stage, &self.light);
         self.stage.run(&first).unwrap();
         self.plan = planned(&mut self.stage, &self.light);
+    }
+
+    /// From now on frames have meshes that `change` has changed, at a revision of their places.
+    pub fn with_meshes(
+        &mut self,
+        revision: Option<u64>,
+        change: impl FnOnce(&mut [MeshInstance]),
+    ) -> &mut Self {
+        let mut meshes = self.stage.instances().to_vec();
+        change(&mut meshes);
+        let planned = self.stage.plan_with(self.light, |frame| {
+            (frame.meshes, frame.mesh_revision) = (&meshes, revision);
+        });
+        self.plan = planned.unwrap();
+        self
+    }
+
+    /// The hierarchy of the frame that was run last, which has `leaves` leaves.
+    pub fn tree(&mut self, leaves: usize) -> DeviceTree {
+        DeviceTree::read(&mut self.stage, &self.plan, leaves).unwrap()
     }
 
     /// One of the node's own images after the frame that was run last.

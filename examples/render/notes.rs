@@ -16,6 +16,7 @@ pub fn of(
 ) -> Vec<String> {
     let notes = [
         unmet(options, choice),
+        choice.and_then(|c| c.left_out.as_ref()).map(|why| format!("auto: {why}")),
         unpromised(options),
         namesakes(scene, light),
         others(options, scene, light),

@@ -134,6 +134,7 @@ impl Report<'_> {
                 "max_ms": self.options.auto.and_then(|b| b.max_ms),
                 "met": self.met(c),
                 "problem": c.problem,
+                "left_out": c.left_out,
             })
         });
         let mut report = json!({

@@ -39,7 +39,9 @@ bool may_hide(Pyramid p, uint triangle, vec3 size)
     vec3 n = cross(b - a, c - a);
     float allowed = slack(n, size);
     float of_tip = -dot(n, a);
-    vec4 of_corners = of_tip + vec4(dot(n, p.corner[0]), dot(n, p.corner[1]), dot(n, p.corner[2]), dot(n, p.corner[3]));
+    // A sun's figure is a metre away and stands for directions: where these go in the end, the plane's place has no part in.
+    float start = push.kind == SUN_DISC ? 0.0 : of_tip;
+    vec4 of_corners = start + vec4(dot(n, p.corner[0]), dot(n, p.corner[1]), dot(n, p.corner[2]), dot(n, p.corner[3]));
     float least = min(min(of_corners.x, of_corners.y), min(of_corners.z, of_corners.w));
     float most = max(max(of_corners.x, of_corners.y), max(of_corners.z, of_corners.w));
     bool before = of_tip >= -allowed && least >= allowed;

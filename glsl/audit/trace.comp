@@ -118,7 +118,8 @@ Cells with_hidden(Cells hidden, Figure f, vec3 tip, vec3 middle, uint triangle)
     // where rounding leaves a sliver of it open, it hides nothing.
     vec3 size = max(max(abs(a), abs(b)), abs(c)) + abs(tip);
     bool flat_on = abs(volume) <= 2.0 * ROUNDING * length(normal) * (size.x + size.y + size.z);
-    bool open = e0.is_least == e1.is_least && e1.is_least == e2.is_least;
+    // A point has no sides that edges could be open to.
+    bool open = push.kind != POINT && e0.is_least == e1.is_least && e1.is_least == e2.is_least;
     float nearest = min(min(-dot(f.normal, a), -dot(f.normal, b)), -dot(f.normal, c));
     bool none = corner.w == 0.0 || flat_on || (open && nearest > 0.0);
     Lines l;

@@ -45,9 +45,10 @@ Box box_of(uint first, uint end)
             end -= 1u;
             box = with_box(box, start + end);
         }
-        // A level's last box may hold fewer than eight.
-        first /= WIDE;
-        end = (end + WIDE - 1u) / WIDE;
+        // A level's last box may hold fewer than eight. Where nothing is left, rounding up would go on with a box of others.
+        bool left = first < end;
+        first = left ? first / WIDE : 0u;
+        end = left ? (end + WIDE - 1u) / WIDE : 0u;
         start += count;
         count = (count + WIDE - 1u) / WIDE;
     }

@@ -38,6 +38,13 @@ bool meets(Segment s, Node node)
     return first <= last * (1.0 + 4.0 * ROUNDING) && first * s.ends <= 1.0;
 }
 
+// On which side of an edge a direction passes: twice dot(cross(p, q), d). It has the other sign, to the bit, for the other
+// triangle of the edge, and is rounded by the edge's length, not by its distance.
+float edge_side(vec3 p, vec3 q, vec3 d)
+{
+    return dot(cross(p + q, q - p), d);
+}
+
 // Whether a triangle blocks the segment, as traced/cover.glsl has it for all samples at once.
 bool crosses(Segment s, uint triangle)
 {
@@ -48,7 +55,7 @@ bool crosses(Segment s, uint triangle)
     vec3 normal = cross(b - a, c - a);
     float volume = dot(normal, a);
     float side = volume < 0.0 ? -1.0 : 1.0;
-    vec3 edges = vec3(dot(cross(a, b), s.along), dot(cross(b, c), s.along), dot(cross(c, a), s.along)) * side;
+    vec3 edges = vec3(edge_side(a, b, s.along), edge_side(b, c, s.along), edge_side(c, a, s.along)) * side;
     float inside = min(min(edges.x, edges.y), edges.z);
     float reach = dot(normal, s.along) * side;
     vec3 size = max(max(abs(a), abs(b)), abs(c)) + s.size;

@@ -25,7 +25,11 @@ void main()
         there = there && is_number(corner.x) && is_number(corner.y) && is_number(corner.z);
         corners[i] = corner;
     }
+    // Beside the corners: that there is a triangle, twice its area, and that times the size of its positions.
+    vec3 size = max(max(abs(corners[0]), abs(corners[1])), abs(corners[2]));
+    float area = max(length(cross(corners[1] - corners[0], corners[2] - corners[0])), 1.0e-30);
+    vec3 more = vec3(1.0, area, area * (size.x + size.y + size.z));
     for (int i = 0; i < 3; ++i) {
-        imageStore(triangles, texel(first + uint(i)), there ? vec4(corners[i], 1.0) : vec4(0.0));
+        imageStore(triangles, texel(first + uint(i)), there ? vec4(corners[i], more[i]) : vec4(0.0));
     }
 }

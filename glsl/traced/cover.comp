@@ -13,76 +13,87 @@ layout(local_size_x = 8) in;
 
 layout(set = 0, binding = 3, rgba32f) readonly uniform image2D triangles;
 layout(set = 0, binding = 4, std430) readonly buffer Slots { Slot slots[]; };
-layout(set = 0, binding = 5, std430) readonly buffer Entries { uint shaft_count; uint dense_count; Entry entries[]; };
+layout(set = 0, binding = 5, std430) readonly buffer Entries { Head head; Entry entries[]; };
 layout(set = 0, binding = 6, std430) readonly buffer Lists { uint lists[]; };
 layout(set = 0, binding = 7, r32f) writeonly uniform image2D visibility;
 
-// A triangle in light space, relative to a point near the shaft's receivers, as all of them need it. The plane through a
-// receiver at q and an edge from a to b has the normal (a - q) x (b - q) = a x b + (b - a) x q.
+// How much a triangle's area, and its area times its size, allow a volume to be off by rounding.
+vec2 sharp;
+
+// A triangle in grid space, from the middle of the shaft's receivers.
 struct Triangle {
-    vec3 moment[3]; // a x b of each edge
-    vec3 edge[3];   // b - a
-    vec3 normal;
-    float offset;   // the triangle's own plane: dot(normal, p) = offset
-    float sharp;    // the height above its plane, times the normal's length, below which a receiver is in that plane
-    float nearest;  // the least and largest z of its corners
-    float furthest;
+    vec3 a;
+    vec3 b;
+    vec3 c;
+    float sharp; // the volume that a receiver spans with it, below which the receiver is in its plane
 };
 
-Triangle triangle_of(uint nth, vec3 about)
+Triangle triangle_of(uint nth, vec3 middle)
 {
-    vec3 a = in_light_space(imageLoad(triangles, texel(3u * nth)).xyz);
-    vec3 b = in_light_space(imageLoad(triangles, texel(3u * nth + 1u)).xyz);
-    vec3 c = in_light_space(imageLoad(triangles, texel(3u * nth + 2u)).xyz);
-    vec3 size = max(max(abs(a), abs(b)), abs(c));
-    a -= about;
-    b -= about;
-    c -= about;
-    Triangle t;
-    t.moment = vec3[3](cross(a, b), cross(b, c), cross(c, a));
-    t.edge = vec3[3](b - a, c - b, a - c);
-    t.normal = cross(t.edge[0], c - a);
-    t.offset = dot(t.normal, a);
-    t.sharp = 0.5 * ROUNDING * length(t.normal) * (size.x + size.y + size.z);
-    t.nearest = min(a.z, min(b.z, c.z));
-    t.furthest = max(a.z, max(b.z, c.z));
-    return t;
+    vec4 a = imageLoad(triangles, texel(3u * nth));
+    vec4 b = imageLoad(triangles, texel(3u * nth + 1u));
+    vec4 c = imageLoad(triangles, texel(3u * nth + 2u));
+    return Triangle(in_light_space(a.xyz) - middle, in_light_space(b.xyz) - middle, in_light_space(c.xyz) - middle,
+                    b.w * sharp.x + c.w * sharp.y);
 }
 
-// A receiver, from which the planes through a triangle's edges go to the light.
-struct Eye {
-    vec3 q;      // the receiver, relative to the same point as the triangle
-    vec3 beyond; // that once more; nothing for a sun
-};
-
-// Where a plane through the receiver and an edge meets the light.
-Line edge_line(vec3 moment, vec3 edge, Eye eye, vec3 about, float side)
+// The light's samples that a triangle hides from a receiver at `q`, as bounds for each of the rows of samples; `first` is where the first
+// sample is, from the receiver, or for a sun along the light.
+Bounds bounds_of(Triangle t, vec3 q, vec3 first)
 {
-    vec3 n = moment + cross(edge, eye.q);
-    return line_of(n.xy, -(dot(n, about) + dot(moment, eye.beyond)), side);
-}
-
-// The light's samples that a triangle hides from a receiver, of one mask, whose first word is the light's `first`.
-Mask hidden_by(Triangle t, Eye eye, vec3 about, float first)
-{
-    float volume = t.offset - dot(t.normal, eye.q);
+    vec3 a = t.a - q;
+    vec3 b = t.b - q;
+    vec3 c = t.c - q;
+    vec3 ab = cross(a, b);
+    vec3 bc = cross(b, c);
+    vec3 ca = cross(c, a);
+    float volume = dot(ab, c);
     float side = volume < 0.0 ? -1.0 : 1.0;
-    Line a = edge_line(t.moment[0], t.edge[0], eye, about, side);
-    Line b = edge_line(t.moment[1], t.edge[1], eye, about, side);
-    Line c = edge_line(t.moment[2], t.edge[2], eye, about, side);
+    Line of_ab = line_of(ab, first, side);
+    Line of_bc = line_of(bc, first, side);
+    Line of_ca = line_of(ca, first, side);
     // A triangle wholly nearer to the light than the receiver is bounded on both sides; where rounding leaves a sliver
     // of it open, it has no samples.
-    bool open = a.least == b.least && b.least == c.least && !(a.along || b.along || c.along);
-    bool none = abs(volume) <= t.sharp || t.nearest > eye.q.z || (open && t.furthest < eye.q.z);
-    return samples_between(bounds_of(a, b, c, none), first);
+    bool open = of_ab.least == of_bc.least && of_bc.least == of_ca.least && !(of_ab.along || of_bc.along || of_ca.along);
+    float nearest = min(a.z, min(b.z, c.z));
+    float furthest = max(a.z, max(b.z, c.z));
+    volume = dot(cross(t.b - t.a, t.c - t.a), a);
+    side = volume < 0.0 ? -1.0 : 1.0;
+    bool none = abs(volume) <= t.sharp || nearest > 0.0 || (open && furthest < 0.0);
+    return bounds_of(of_ab, of_bc, of_ca, none);
+}
+
+// Those samples as one mask, whose first word is the light's `word`.
+Mask hidden_by(Triangle t, vec3 q, vec3 first, float word)
+{
+    return samples_between(bounds_of(t, q, first), word);
+}
+
+// The samples that a triangle hides which lies between receiver and light, and hides some in a few rows of samples alone.
+Mask few_hidden_by(Triangle t, vec3 q, vec3 first, float word)
+{
+#if SIDE == 32
+    return hidden_by(t, q, first, word);
+#else
+    vec3 a = t.a - q;
+    vec3 b = t.b - q;
+    vec3 c = t.c - q;
+    vec3 rows = vec3(a.y, b.y, c.y) + TURN * vec3(a.x, b.x, c.x);
+    rows *= (is_sun() ? -1.0 : first.z) / vec3(a.z, b.z, c.z);
+    rows = (rows - (first.y + TURN * first.x)) / (1.0 + TURN * TURN);
+    // Also the rows of samples that rounding moves away.
+    return few_between(bounds_of(t, q, first), ceil(min(rows.x, min(rows.y, rows.z)) - 1.0 / 64.0));
+#endif
 }
 
 // The samples behind a triangle's own plane, as seen from a receiver on one side of it, where it crosses a lamp's plane.
-Mask behind_plane(Triangle t, Eye eye, vec3 about, float first)
+Mask behind_plane(Triangle t, vec3 q, vec3 first, float word)
 {
-    float side = t.offset - dot(t.normal, eye.q) < 0.0 ? -1.0 : 1.0;
-    Line own = line_of(t.normal.xy, t.normal.z * light_end() - (t.offset + dot(t.normal, about)), side);
-    return samples_between(bounds_of(own, own, own, false), first);
+    vec3 normal = cross(t.b - t.a, t.c - t.a);
+    float height = dot(normal, t.a - q);
+    vec3 sample_from_corner = first + vec3(0.0, 0.0, light_end) - (t.a - q);
+    Line own = line_of(normal, sample_from_corner, height < 0.0 ? -1.0 : 1.0);
+    return samples_between(bounds_of(own, own, own, false), word);
 }
 
 // The sum of the weights of the samples that a mask of words from `first` on does not hide.
@@ -103,44 +114,51 @@ float seen_of(Mask hidden, int first)
 void main()
 {
     uint nth = nth_group(gl_WorkGroupID.xy);
-    if (nth >= shaft_count) {
+    if (nth >= head.shadowed) {
         return;
     }
-    Entry entry = entries[evens_first(nth, shaft_count)];
-    if (entry.plain + entry.crossing == 0u) {
-        return;
-    }
-    ivec2 first = corner_of(entry.slot);
+    Entry entry = entries[slots_in(frame.extent) + nth];
+    ivec2 corner = corner_of(entry.slot);
     uint pixels = slots[entry.slot].shaft.pixels;
-    face_light(pixels, first);
+    vec3 middle = slots[entry.slot].shaft.middle;
+    face_light(pixels, corner);
+    float offset = abs(light_x.w) + abs(light_y.w) + abs(light_z.w);
+    enter_grid(SIDE);
+    sharp = 0.5 * ROUNDING * length(cross(light_x.xyz, light_y.xyz)) * vec2(offset, 1.0);
     int lane = int(gl_LocalInvocationIndex);
-    ivec2 pixel0 = first + ivec2(lane % TILE_SIDE, lane / TILE_SIDE);
+    ivec2 pixel0 = corner + ivec2(lane % TILE_SIDE, lane / TILE_SIDE);
     ivec2 pixel1 = pixel0 + ivec2(0, 8 / TILE_SIDE);
-    Receiver r0 = receiver_of(pixel0);
-    Receiver r1 = receiver_of(pixel1);
+    vec3 q0 = in_light_space(receiver_of(pixel0).position) - middle;
+    vec3 q1 = in_light_space(receiver_of(pixel1).position) - middle;
     bool mine0 = (pixels >> lane & 1u) != 0u;
     bool mine1 = (pixels >> lane + 8 & 1u) != 0u;
-    vec3 middle = 0.5 * (slots[entry.slot].shaft.least + slots[entry.slot].shaft.most);
-    vec3 q0 = r0.in_light - middle;
-    vec3 q1 = r1.in_light - middle;
-    bool sun = is_sun();
-    Eye eye0 = Eye(q0, sun ? vec3(0.0) : q0);
-    Eye eye1 = Eye(q1, sun ? vec3(0.0) : q1);
-    vec3 about = sun ? vec3(0.0, 0.0, 1.0) : middle;
+    vec3 sample0 = is_sun() ? vec3(first_sample(), -1.0) : vec3(first_sample(), 0.0) - middle;
+    vec3 first0 = is_sun() ? sample0 : sample0 - q0;
+    vec3 first1 = is_sun() ? sample0 : sample0 - q1;
+    bool crossing = (entry.kind & CROSSING) != 0u;
+    uint few = (entry.kind & WIDE) != 0u ? 0u : entry.few;
+    uint many = entry.many + entry.few - few;
     vec2 seen = vec2(0.0);
     for (int m = 0; m < MASKS; ++m) {
         float word = float(m * MASK_WORDS);
         Mask hidden0 = whole_mask(mine0 ? 0u : 0xffffffffu);
         Mask hidden1 = whole_mask(mine1 ? 0u : 0xffffffffu);
-        for (uint i = 0u; i < entry.plain && !(is_full(hidden0) && is_full(hidden1)); ++i) {
-            Triangle t = triangle_of(lists[entry.plain_first + i], middle);
-            hidden0 = either(hidden0, hidden_by(t, eye0, about, word));
-            hidden1 = either(hidden1, hidden_by(t, eye1, about, word));
+        for (uint i = 0u; i < few && !(is_full(hidden0) && is_full(hidden1)); ++i) {
+            Triangle t = triangle_of(lists[entry.first + entry.leaves + i], middle);
+            hidden0 = either(hidden0, few_hidden_by(t, q0, first0, word));
+            hidden1 = either(hidden1, few_hidden_by(t, q1, first1, word));
         }
-        for (uint i = 0u; i < entry.crossing && !(is_full(hidden0) && is_full(hidden1)); ++i) {
-            Triangle t = triangle_of(lists[entry.crossing_first + i], middle);
-            Mask by0 = both(hidden_by(t, eye0, about, word), behind_plane(t, eye0, about, word));
-            Mask by1 = both(hidden_by(t, eye1, about, word), behind_plane(t, eye1, about, word));
+        for (uint i = crossing ? many : 0u; i < many && !(is_full(hidden0) && is_full(hidden1)); ++i) {
+            uint place = i < entry.many ? i : i - entry.many + entry.leaves;
+            Triangle t = triangle_of(lists[entry.first + place], middle);
+            hidden0 = either(hidden0, hidden_by(t, q0, first0, word));
+            hidden1 = either(hidden1, hidden_by(t, q1, first1, word));
+        }
+        for (uint i = crossing ? 0u : many; i < many && !(is_full(hidden0) && is_full(hidden1)); ++i) {
+            uint place = i < entry.many ? i : i - entry.many + entry.leaves;
+            Triangle t = triangle_of(lists[entry.first + place], middle);
+            Mask by0 = both(hidden_by(t, q0, first0, word), behind_plane(t, q0, first0, word));
+            Mask by1 = both(hidden_by(t, q1, first1, word), behind_plane(t, q1, first1, word));
             hidden0 = either(hidden0, by0);
             hidden1 = either(hidden1, by1);
         }

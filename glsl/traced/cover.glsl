@@ -19,6 +19,15 @@
 #define MASK_ROWS (SIDE == 8 ? 8 : 256 / SIDE)
 #define MASKS (SIDE / MASK_ROWS)
 
+// How much the samples' i and j are turned against x and y.
+const float TURN = 1.0 / float(SIDE);
+
+// The sample (0, 0) in grid space.
+vec2 first_sample()
+{
+    return vec2(0.5 * TURN, 1.0 - 0.5 * TURN) - 0.5 * float(SIDE);
+}
+
 const float FAR = 1.0e9;
 
 // A line across the samples: those of a j meet it at i = at.x + at.y j.
@@ -28,19 +37,18 @@ struct Line {
     bool along; // whether it bounds none of the samples of a j, or all
 };
 
-// The line where the plane n of light space, dot(n, s.xy) + c = 0, meets the light; the samples with `side` times that
-// above 0 are inside.
-Line line_of(vec2 n, float c, float side)
+// The line where a plane of grid space meets the light; `first` is where the first sample is, from a point of the plane. The
+// samples with `side` times their product with its normal above 0 are inside.
+Line line_of(vec3 normal, vec3 first, float side)
 {
-    const float TURN = 1.0 / float(SIDE);
-    vec2 cell = n * half_light * (2.0 * TURN);
-    float k = c - dot(n, half_light) + dot(cell, vec2(0.5 * TURN, 1.0 - 0.5 * TURN));
-    float i = cell.x - cell.y * TURN;
-    float j = cell.y + cell.x * TURN;
+    float i = normal.x - normal.y * TURN;
+    float j = normal.y + normal.x * TURN;
+    float k = dot(normal, first);
     float least = 1.0e-7 * (abs(j) * float(SIDE) + abs(k)) + 1.0e-37;
     bool along = abs(i) < least;
     i = along ? (i < 0.0 ? -least : least) : i;
-    return Line(vec2(-k, -j) / i, i * side > 0.0, along);
+    float share = -1.0 / i;
+    return Line(vec2(k, j) * share, i * side > 0.0, along);
 }
 
 // Three lines, as bounds of i + 1 from below and from above for each j; a line that is no bound is far away.
@@ -60,14 +68,16 @@ Bounds bounds_of(Line a, Line b, Line c, bool none)
                   mix(at, vec3(FAR), least), mix(step, vec3(0.0), least));
 }
 
-// The hidden samples of a j as a mask; a sample at the very edge of two triangles belongs to one of them. Whole numbers
-// have least and most in one instruction, which floats do not have everywhere.
+// The hidden samples of a j as a mask; a sample at the very edge of two triangles belongs to one of them. The floats' bits are
+// compared as whole numbers, whose least and most are one instruction: so numbers above 0 are in order, and all below it are
+// less.
 uint samples_of(Bounds b, float j)
 {
-    ivec3 least = ivec3(b.least + b.least_step * j);
-    ivec3 most = ivec3(b.most + b.most_step * j);
-    int from = min(max(max(least.x, least.y), max(least.z, 0)), SIDE);
-    int to = max(min(min(most.x, most.y), min(most.z, SIDE)), 0);
+    ivec3 least = floatBitsToInt(b.least + b.least_step * j);
+    ivec3 most = floatBitsToInt(b.most + b.most_step * j);
+    const int LAST = floatBitsToInt(float(SIDE));
+    int from = int(intBitsToFloat(min(max(max(least.x, least.y), max(least.z, 0)), LAST)));
+    int to = int(intBitsToFloat(max(min(min(most.x, most.y), min(most.z, LAST)), 0)));
 #if SIDE == 32
     // Shifts by 32 are undefined: two by a half each.
     uint before = (1u << (to >> 1) << to - (to >> 1)) - 1u;
@@ -114,6 +124,15 @@ Mask either(Mask a, Mask b)
 Mask both(Mask a, Mask b)
 {
     return Mask(a.words & b.words);
+}
+
+// The samples of the two j from `first` on, or of the last two of the light.
+Mask few_between(Bounds b, float first)
+{
+    float j = clamp(first, 0.0, 6.0);
+    uint bits = samples_of(b, j) | samples_of(b, j + 1.0) << 8;
+    uint by = uint(j) * 8u;
+    return Mask(uvec2(by < 32u ? bits << by : 0u, by < 32u ? bits >> 1 >> 31u - by : bits << by - 32u));
 }
 
 #define MASK_WORDS 2
@@ -170,6 +189,20 @@ Mask both(Mask a, Mask b)
 {
     return Mask(a.low & b.low, a.high & b.high);
 }
+
+#if SIDE == 16
+// The samples of the four j from `first` or the one before it on, or of the last four of the light.
+Mask few_between(Bounds b, float first)
+{
+    int word = clamp(int(first) >> 1, 0, 6);
+    uint bits = word_between(b, float(word));
+    uint more = word_between(b, float(word + 1));
+    ivec4 low = ivec4(0, 1, 2, 3) - word;
+    ivec4 high = low + 4;
+    return Mask(mix(uvec4(0u), uvec4(bits), equal(low, ivec4(0))) | mix(uvec4(0u), uvec4(more), equal(low, ivec4(1))),
+                mix(uvec4(0u), uvec4(bits), equal(high, ivec4(0))) | mix(uvec4(0u), uvec4(more), equal(high, ivec4(1))));
+}
+#endif
 
 #define MASK_WORDS 8
 

@@ -61,6 +61,13 @@ ivec2 tiles_in(ivec2 extent)
     return (extent + TILE_SIDE - 1) / TILE_SIDE;
 }
 
+// The slots for the shafts of an image.
+uint slots_in(ivec2 extent)
+{
+    ivec2 tiles = tiles_in(extent);
+    return SHAFTS_A_TILE * uint(tiles.x * tiles.y);
+}
+
 struct Receiver {
     bool receives;
     vec3 position; // the hierarchy's space
@@ -76,6 +83,9 @@ vec4 light_y;
 vec4 light_z;
 vec2 half_light;
 
+// How far before the light's plane segments to it end, in metres: what lies in that plane does not block.
+float light_end;
+
 vec3 in_light_space(vec3 p)
 {
     vec4 q = vec4(p, 1.0);
@@ -87,16 +97,9 @@ bool is_sun()
     return frame.kind == SUN;
 }
 
-// Sets light space for receivers about a point. That of a round light has its z towards them; its x lies along a capsule.
-void face_light(vec3 about)
+// Turns light space towards a point: that of a round light has its z towards it; its x lies along a capsule.
+void turn_light(vec3 about)
 {
-    light_x = frame.light_x;
-    light_y = frame.light_y;
-    light_z = frame.light_z;
-    half_light = frame.half_light;
-    if (frame.kind != ROUND) {
-        return;
-    }
     vec3 to = in_light_space(about);
     float radius = half_light.y;
     bool capsule = half_light.x > half_light.y;
@@ -117,11 +120,27 @@ void face_light(vec3 about)
     }
 }
 
-// How far before the light's plane segments to it end, in metres: what lies in that plane does not block.
-float light_end()
+// Sets light space for receivers about a point.
+void face_light(vec3 about)
 {
+    light_x = frame.light_x;
+    light_y = frame.light_y;
+    light_z = frame.light_z;
+    half_light = frame.half_light;
+    if (frame.kind == ROUND) {
+        turn_light(about);
+    }
     vec3 away = abs(vec3(light_x.w, light_y.w, light_z.w));
-    return 32.0 * ROUNDING * (max(away.x, max(away.y, away.z)) + max(half_light.x, half_light.y));
+    light_end = 32.0 * ROUNDING * (max(away.x, max(away.y, away.z)) + max(half_light.x, half_light.y));
+}
+
+// From here on light space is grid space: the cells of an n by n grid over the light are the units of its x and y, z is as it
+// was. A lamp's samples lie in its plane z = 0, and segments to a sun's go along (x, y, -1).
+void enter_grid(int side)
+{
+    vec2 size = max(half_light, max(max(half_light.x, half_light.y) * 1.0e-4, light_end));
+    light_x *= 0.5 * float(side) / size.x;
+    light_y *= 0.5 * float(side) / size.y;
 }
 
 // Whether a point lies within a round light, which hides nothing of itself.
@@ -179,7 +198,7 @@ Receiver receiver_of(ivec2 pixel)
     r.position = frame.eye.xyz + from_eye + towards * off;
     r.in_light = in_light_space(r.position);
     // At the plane of a lamp and behind it there is nothing to hide, nor within a round light.
-    r.receives = is_sun() || (frame.kind == ROUND ? !in_light(r.position) : r.in_light.z > 2.0 * off + light_end());
+    r.receives = is_sun() || (frame.kind == ROUND ? !in_light(r.position) : r.in_light.z > 2.0 * off + light_end);
     return r;
 }
 

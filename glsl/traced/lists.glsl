@@ -14,28 +14,46 @@
 struct Shaft {
     vec4 low;    // the sides where x and y are least: x >= low.x + low.y z, y >= low.z + low.w z
     vec4 high;   // and largest
-    vec3 least;  // the box around the receivers in light space
+    vec3 middle; // the box around the receivers in light space: its middle
     uint pixels; // a bit for each of the tile's pixels whose receiver is in the group
-    vec3 most;
+    vec3 across; // and half its sides, which turn with the surface
     uint count;  // 0 for no shaft, else one more than the number of leaves of the hierarchy in it
+    vec3 along;
+    float far;   // the largest z of the receivers
+    vec3 over;
+    float near;  // the least z of the receivers
 };
 
 // The leaves of a shaft that are written down as they are counted (src/techniques/traced/passes.rs).
-const uint FIRST_LEAVES = 16u;
+const uint FIRST_LEAVES = 6u;
 
 struct Slot {
     Shaft shaft;
+    uvec2 others; // the nodes from and to which there are more
     uint leaves[FIRST_LEAVES];
 };
 
-// A listed shaft, with the places of its triangles: first those that do not cross a lamp's plane, then those that do.
+// A listed shaft, with its triangles.
 struct Entry {
     uint slot;
-    uint first; // where its leaves begin
-    uint plain_first;
-    uint plain;
-    uint crossing_first;
-    uint crossing;
+    uint first;  // where its leaves begin, and then the triangles that hide more than that
+    uint leaves;
+    uint many;   // how many those are
+    uint few;    // how many hide some in a few rows of samples; they are behind the leaves
+    uint kind;   // CROSSING, WIDE, or both
+};
+
+// A triangle crosses a lamp's plane; some that are behind the leaves hide more than a few rows of samples.
+const uint CROSSING = 1u;
+const uint WIDE = 2u;
+
+// What comes before the entries: the shafts of the list from its beginning on, and from its end backwards; those behind
+// it, which have triangles, and the workgroups that cover them.
+struct Head {
+    uint shafts;
+    uint dense;
+    uint shadowed;
+    uint groups[3];
 };
 
 // Slots a block (src/techniques/traced/passes.rs).

@@ -13,7 +13,7 @@ layout(local_size_x = 16) in;
 layout(set = 0, binding = 3, rgba32ui) readonly uniform uimage2D nodes;
 layout(set = 0, binding = 4, rgba32f) readonly uniform image2D triangles;
 layout(set = 0, binding = 5, std430) readonly buffer Slots { Slot slots[]; };
-layout(set = 0, binding = 6, std430) readonly buffer Entries { uint shaft_count; uint dense_count; Entry entries[]; };
+layout(set = 0, binding = 6, std430) readonly buffer Entries { Head head; Entry entries[]; };
 layout(set = 0, binding = 7, r32f) writeonly uniform image2D visibility;
 
 #include "hierarchy/segment.glsl"
@@ -45,13 +45,13 @@ vec2 sample_at(int number, int side)
 void main()
 {
     uint nth = nth_group(gl_WorkGroupID.xy);
-    if (nth >= dense_count) {
+    if (nth >= head.dense) {
         return;
     }
     // They are listed from the end backwards.
     ivec2 tiles = tiles_in(frame.extent);
     uint last = SHAFTS_A_TILE * uint(tiles.x * tiles.y) - 1u;
-    uint slot = entries[last - evens_first(nth, dense_count)].slot;
+    uint slot = entries[last - evens_first(nth, head.dense)].slot;
     uint pixels = slots[slot].shaft.pixels;
     int lane = int(gl_LocalInvocationIndex);
     if ((pixels >> lane & 1u) == 0u) {
@@ -70,7 +70,7 @@ void main()
         vec2 at = sample_at(number, int(frame.side)) * half_light;
         float weight = frame.weight > 0.0 ? weight_of(number, int(frame.side)) : 1.0;
         vec3 in_light = is_sun() ? vec3(at, -1.0) : vec3(at, 0.0) - r.in_light;
-        in_light *= is_sun() ? 1.0 : 1.0 - light_end() / r.in_light.z;
+        in_light *= is_sun() ? 1.0 : 1.0 - light_end / r.in_light.z;
         vec3 along = in_light.x * light_x.xyz + in_light.y * light_y.xyz + in_light.z * light_z.xyz;
         Segment s = segment_of(r.position, along, !is_sun());
         // A sample outside the light's shape needs no ray.

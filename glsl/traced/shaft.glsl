@@ -13,14 +13,43 @@
 
 #include "hierarchy/tree.glsl"
 
+// How large the numbers are that the coordinates of light space are made of.
+vec3 offsets;
+
+// How much the samples' i and j (traced/cover.glsl) are turned against x and y.
+float turn;
+
+// From here on light space is grid space, turned so that x and y are the samples' own i and j, and the light ends at its
+// outermost samples: what bounds it is tight. Where the light is much longer than wide, the turn would mix long and short,
+// and be neither tight nor exact; there grid space is left as it is.
+void enter_turned_grid(int side)
+{
+    float n = float(side);
+    bool is_strip = max(half_light.x, half_light.y) > 2.0 * min(half_light.x, half_light.y);
+    enter_grid(side);
+    turn = is_strip ? 1.0 / n : 0.0;
+    float by = is_strip ? 0.0 : 1.0 / n;
+    vec4 i = light_x - by * light_y;
+    vec4 j = light_y + by * light_x;
+    offsets = vec3(abs(light_x.w) + abs(light_y.w) * by, abs(light_y.w) + abs(light_x.w) * by, abs(light_z.w));
+    light_x = i / (1.0 + by * by);
+    light_y = j / (1.0 + by * by);
+    half_light = vec2(0.5 * n - (is_strip ? 0.5 / n : 0.5));
+}
+
 Shaft empty_shaft()
 {
     float none = 3.0e38;
-    return is_sun()
-        ? Shaft(vec4(none, half_light.x, none, half_light.y),
-                vec4(-none, -half_light.x, -none, -half_light.y), vec3(none), 0u, vec3(-none), 0u)
-        : Shaft(vec4(-half_light.x, none, -half_light.y, none),
-                vec4(half_light.x, -none, half_light.y, -none), vec3(none), 0u, vec3(-none), 0u);
+    Shaft shaft;
+    vec4 edges = vec4(half_light.x, half_light.x, half_light.y, half_light.y);
+    bvec4 slopes = is_sun() ? bvec4(false, true, false, true) : bvec4(true, false, true, false);
+    shaft.low = mix(vec4(none), is_sun() ? edges : -edges, slopes);
+    shaft.high = mix(vec4(-none), is_sun() ? -edges : edges, slopes);
+    shaft.pixels = 0u;
+    shaft.count = 0u;
+    shaft.near = none;
+    shaft.far = -none;
+    return shaft;
 }
 
 Shaft with_receiver(Shaft shaft, vec3 p, uint pixel)
@@ -32,8 +61,8 @@ Shaft with_receiver(Shaft shaft, vec3 p, uint pixel)
         shaft.low.yw = min(shaft.low.yw, (p.xy + half_light) / p.z);
         shaft.high.yw = max(shaft.high.yw, (p.xy - half_light) / p.z);
     }
-    shaft.least = min(shaft.least, p);
-    shaft.most = max(shaft.most, p);
+    shaft.near = min(shaft.near, p.z);
+    shaft.far = max(shaft.far, p.z);
     shaft.pixels |= 1u << pixel;
     return shaft;
 }
@@ -48,15 +77,14 @@ struct Planes {
     Plane near;
 };
 
-// A plane of light space, (n, d) with n p + d >= 0 inside, in steps of the root's box; `slack` metres wider, which is
-// more than the arithmetic of it rounds.
+// A plane of light space, (n, d) with n p + d >= 0 inside, in steps of the root's box; wider by `slack`, which is more than
+// the arithmetic of it rounds.
 Plane in_steps(vec4 plane, vec3 low, vec3 step)
 {
     vec4 world = plane.x * light_x + plane.y * light_y + plane.z * light_z;
     world.w += plane.w;
     vec3 reach = abs(low) + 65535.0 * step;
-    float slack = ROUNDING * 4.0 * (dot(abs(world.xyz), reach) + abs(plane.x * light_x.w) +
-                                    abs(plane.y * light_y.w) + abs(plane.z * light_z.w) + abs(plane.w));
+    float slack = ROUNDING * 4.0 * (dot(abs(world.xyz), reach) + dot(abs(plane.xyz), offsets) + abs(plane.w));
     return plane_of(vec4(world.xyz * step, world.w + dot(world.xyz, low) + slack));
 }
 
@@ -69,7 +97,7 @@ Planes planes_of(Shaft shaft)
     planes.bottom = in_steps(vec4(0.0, 1.0, -shaft.low.w, -shaft.low.z), low, step);
     planes.right = in_steps(vec4(-1.0, 0.0, shaft.high.y, shaft.high.x), low, step);
     planes.top = in_steps(vec4(0.0, -1.0, shaft.high.w, shaft.high.z), low, step);
-    planes.far = in_steps(vec4(0.0, 0.0, -1.0, shaft.most.z), low, step);
+    planes.far = in_steps(vec4(0.0, 0.0, -1.0, shaft.far), low, step);
     planes.near = in_steps(is_sun() ? vec4(0.0, 0.0, 0.0, 1.0) : vec4(0.0, 0.0, 1.0, 0.0), low, step);
     return planes;
 }

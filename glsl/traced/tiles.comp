@@ -16,17 +16,18 @@ layout(set = 0, binding = 5, r32f) writeonly uniform image2D visibility;
 
 #include "traced/shaft.glsl"
 
-// The turns of a walk: with all other loops of the passes that do it, fewer than the 65,535 after which some drivers end
-// loops without a word.
+// The turns of a tile's walks: with those of a loop over a full list, in this pass or in traced/gather.comp, fewer than the
+// 65,535 after which some drivers end loops without a word.
 const int MOST_TURNS = 40000;
 
-// Counts the leaves that a shaft holds, up to one more than a list may have, and writes down the first of them.
-uint leaves_in(Shaft shaft, uint slot)
+// Counts the leaves that a shaft holds, up to one more than a list may have, and writes down the first of them, and where
+// the others lie.
+uint leaves_in(Shaft shaft, uint slot, inout int turns)
 {
     Planes planes = planes_of(shaft);
     uint found = 0u;
     uint at = 0u;
-    int turns = MOST_TURNS;
+    uvec2 others = uvec2(0u);
     while (at < frame.nodes && found <= frame.most && turns > 0) {
         Node node = node_at(at);
         bool inside = meets(planes, node);
@@ -34,36 +35,108 @@ uint leaves_in(Shaft shaft, uint slot)
             slots[slot].leaves[found] = node.link;
         }
         found += inside && node.leaf ? 1u : 0u;
+        others.x = inside && node.leaf && found == FIRST_LEAVES ? at + 1u : others.x;
+        others.y = inside && node.leaf ? at + 1u : others.y;
         at = inside || node.leaf ? at + 1u : node.link;
         --turns;
     }
+    slots[slot].others = others;
     // A walk that is longer than some drivers let loops be is left to rays.
     return at < frame.nodes ? frame.most + 1u : found;
 }
 
-// A shaft whose light faces its own receivers.
-Shaft faced(Shaft shaft, ivec2 corner)
+// The tile's receivers, in the hierarchy's space.
+vec3 receivers[TILE_PIXELS];
+
+// Axes of a box around receivers, as the columns of a rotation: `across` and `down` are how their places change along the
+// pixels' rows and columns.
+mat3 axes_of(vec3 across, vec3 down)
 {
-    face_light(shaft.pixels, corner);
-    if (frame.kind == ROUND) {
-        uint pixels = shaft.pixels;
-        shaft = empty_shaft();
-        for (int i = 0; i < TILE_PIXELS; ++i) {
-            if ((pixels >> i & 1u) != 0u) {
-                Receiver r = receiver_of(corner + ivec2(i % TILE_SIDE, i / TILE_SIDE));
-                shaft = with_receiver(shaft, r.in_light, uint(i));
-            }
+    vec3 normal = cross(across, down);
+    float size = dot(normal, normal);
+    bool is_plane = size > 1.0e-8 * dot(across, across) * dot(down, down) && size > 1.0e-30;
+    normal = is_plane ? normal * inversesqrt(size) : vec3(0.0, 0.0, 1.0);
+    vec3 first = is_plane ? normalize(across) : vec3(1.0, 0.0, 0.0);
+    return mat3(first, cross(normal, first), normal);
+}
+
+// The shaft from some of the tile's receivers, a bit each, to the light, which faces them.
+Shaft shaft_of(uint pixels)
+{
+    vec3 first = receivers[max(findLSB(int(pixels)), 0)];
+    face_light(first);
+    enter_turned_grid(int(frame.side));
+    first = in_light_space(first);
+    Shaft shaft = empty_shaft();
+    // The box is the same whatever a metre is: its z is in cells, too.
+    vec3 units = vec3(1.0, 1.0, length(light_x.xyz));
+    vec3 sum = vec3(0.0);
+    vec3 weighted[2] = vec3[2](vec3(0.0), vec3(0.0));
+    vec3 weights = vec3(0.0);
+    for (int i = 0; i < TILE_PIXELS; ++i) {
+        if ((pixels >> i & 1u) != 0u) {
+            vec3 p = in_light_space(receivers[i]);
+            shaft = with_receiver(shaft, p, uint(i));
+            vec2 at = vec2(i % TILE_SIDE, i / TILE_SIDE);
+            p = (p - first) * units;
+            sum += p;
+            weighted[0] += at.x * p;
+            weighted[1] += at.y * p;
+            weights += vec3(at, 1.0);
         }
     }
+    weights /= max(weights.z, 1.0);
+    mat3 axes = axes_of(weighted[0] - weights.x * sum, weighted[1] - weights.y * sum);
+    vec3 low = vec3(0.0);
+    vec3 high = vec3(0.0);
+    for (int i = 0; i < TILE_PIXELS; ++i) {
+        vec3 p = ((in_light_space(receivers[i]) - first) * units) * axes;
+        bool mine = (pixels >> i & 1u) != 0u;
+        low = mine ? min(low, p) : low;
+        high = mine ? max(high, p) : high;
+    }
+    mat3 sizes = mat3(abs(axes[0]), abs(axes[1]), abs(axes[2]));
+    vec3 half_size = 0.5 * (high - low) + 2.0 * ROUNDING * ((offsets + abs(first)) * units * sizes + high - low);
+    shaft.middle = first + axes * (0.5 * (low + high)) / units;
+    shaft.across = axes[0] * half_size.x / units;
+    shaft.along = axes[1] * half_size.y / units;
+    shaft.over = axes[2] * half_size.z / units;
     return shaft;
 }
 
 // A tile whose receivers lie further apart than this share of their distance from the viewer may be torn.
 const float TEAR = 1.0 / 32.0;
 
+// The receivers, a bit each, on the nearer side of the middle of a torn tile's longest side: one whose two groups together
+// are much shorter than the whole. None of a tile that is not torn.
+uint nearer_group(uint pixels, vec3 low, vec3 high)
+{
+    vec3 size = high - low;
+    int axis = size.x >= max(size.y, size.z) ? 0 : size.y >= size.z ? 1 : 2;
+    float middle = 0.5 * (low[axis] + high[axis]);
+    float away = length(0.5 * (low + high) - frame.eye.xyz);
+    bool may_be_torn = pixels != 0u && (size[axis] > TEAR * away || frame.towards.w == 0.0);
+    vec2 near = vec2(3.0e38, -3.0e38);
+    vec2 far = near;
+    uint group = 0u;
+    for (int i = 0; i < (may_be_torn ? TILE_PIXELS : 0); ++i) {
+        float x = receivers[i][axis];
+        bool mine = (pixels >> i & 1u) != 0u;
+        if (mine && x < middle) {
+            group |= 1u << i;
+            near = vec2(min(near.x, x), max(near.y, x));
+        } else if (mine) {
+            far = vec2(min(far.x, x), max(far.y, x));
+        }
+    }
+    bool torn = group != 0u && max(near.y - near.x, 0.0) + max(far.y - far.x, 0.0) < 0.5 * size[axis];
+    return torn ? group : 0u;
+}
+
 void main()
 {
-    ivec2 tile = ivec2(gl_GlobalInvocationID.xy);
+    uint row = evens_first(gl_WorkGroupID.y, gl_NumWorkGroups.y) * gl_WorkGroupSize.y + gl_LocalInvocationID.y;
+    ivec2 tile = ivec2(gl_GlobalInvocationID.x, row);
     ivec2 corner = tile * TILE_SIDE;
     ivec2 count = tiles_in(frame.extent);
     if (any(greaterThanEqual(tile, count))) {
@@ -72,49 +145,26 @@ void main()
     face_light(vec3(0.0));
     vec3 low = vec3(3.0e38);
     vec3 high = vec3(-3.0e38);
-    Shaft one = empty_shaft();
+    uint pixels = 0u;
     for (int i = 0; i < TILE_PIXELS; ++i) {
         ivec2 pixel = corner + ivec2(i % TILE_SIDE, i / TILE_SIDE);
         Receiver r = receiver_of(pixel);
+        receivers[i] = r.position;
         if (r.receives) {
             low = min(low, r.position);
             high = max(high, r.position);
-            one = with_receiver(one, r.in_light, uint(i));
+            pixels |= 1u << i;
         } else if (all(lessThan(pixel, frame.extent))) {
             imageStore(visibility, pixel, vec4(1.0));
         }
     }
-    // Two groups on either side of the middle of the longest side.
-    vec3 size = high - low;
-    int axis = size.x >= max(size.y, size.z) ? 0 : size.y >= size.z ? 1 : 2;
-    float middle = 0.5 * (low[axis] + high[axis]);
-    float away = length(0.5 * (low + high) - frame.eye.xyz);
-    bool may_be_torn = one.pixels != 0u && (size[axis] > TEAR * away || frame.towards.w == 0.0);
-    vec2 near = vec2(3.0e38, -3.0e38);
-    vec2 far = near;
-    Shaft first = empty_shaft();
-    Shaft second = empty_shaft();
-    for (int i = 0; i < (may_be_torn ? TILE_PIXELS : 0); ++i) {
-        Receiver r = receiver_of(corner + ivec2(i % TILE_SIDE, i / TILE_SIDE));
-        float x = r.position[axis];
-        if (r.receives && x < middle) {
-            first = with_receiver(first, r.in_light, uint(i));
-            near = vec2(min(near.x, x), max(near.y, x));
-        } else if (r.receives) {
-            second = with_receiver(second, r.in_light, uint(i));
-            far = vec2(min(far.x, x), max(far.y, x));
-        }
-    }
-    // A torn tile: both groups together are much shorter than the whole.
-    bool torn = first.pixels != 0u && max(near.y - near.x, 0.0) + max(far.y - far.x, 0.0) < 0.5 * size[axis];
     uint slot = SHAFTS_A_TILE * uint(tile.y * count.x + tile.x);
-    if (torn) {
-        one = first;
+    uint nearer = nearer_group(pixels, low, high);
+    slots[slot + 1u].shaft.count = 0u;
+    int turns = MOST_TURNS;
+    for (uint group = 0u; group < (nearer != 0u ? 2u : 1u); ++group) {
+        Shaft shaft = shaft_of(group == 0u ? pixels & ~nearer : nearer);
+        shaft.count = shaft.pixels != 0u ? 1u + leaves_in(shaft, slot + group, turns) : 0u;
+        slots[slot + group].shaft = shaft;
     }
-    one = faced(one, corner);
-    one.count = one.pixels != 0u ? 1u + leaves_in(one, slot) : 0u;
-    slots[slot].shaft = one;
-    second = faced(second, corner);
-    second.count = torn ? 1u + leaves_in(second, slot + 1u) : 0u;
-    slots[slot + 1u].shaft = second;
 }

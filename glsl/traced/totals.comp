@@ -9,8 +9,8 @@
 layout(local_size_x = 1) in;
 
 layout(set = 0, binding = 0, std430) buffer Sums { uvec4 sums[]; };
-layout(set = 0, binding = 1, std430) buffer Entries { uint shaft_count; uint dense_count; Entry entries[]; };
-layout(set = 0, binding = 2, std430) buffer Arguments { uint groups[12]; };
+layout(set = 0, binding = 1, std430) buffer Entries { Head head; Entry entries[]; };
+layout(set = 0, binding = 2, std430) buffer Arguments { uint groups[8]; };
 
 layout(push_constant) uniform Push {
     uint slots;
@@ -36,10 +36,11 @@ void main()
         sums[block] = uvec4(sum.xyz, fits ? 1u : 0u);
         sum += fits ? uvec4(of.xyz, 0u) : uvec4(0u, 0u, of.y + of.z, 1u);
     }
-    shaft_count = sum.y;
-    dense_count = sum.z;
-    // 64 shafts a workgroup gather triangles; one a workgroup is covered, or traced.
+    head.shafts = sum.y;
+    head.dense = sum.z;
+    // 64 shafts a workgroup gather triangles; a dense one is traced by one workgroup.
     write_groups(0u, (sum.y + 63u) / 64u);
-    write_groups(4u, sum.y);
-    write_groups(8u, sum.z);
+    write_groups(4u, sum.z);
+    head.shadowed = 0u;
+    head.groups = uint[3](0u, 0u, 1u);
 }

@@ -14,17 +14,20 @@
 //! | one compute shader, for a shader's unit test | [`ComputeProgram`], [`run_compute`] |
 //! | what a technique is compared with | [`rays`], [`Forward`], [`ReadbackScheme`] |
 //! | what passes cost on this device | [`measure_costs`], [`probe`] |
-//! | made scenes, and files read and pictures made | [`cases`], [`ply`], [`shade`], [`levels`], [`whole`] |
+//! | the node's hierarchy of triangles, read back | [`DeviceTree`] |
+//! | made scenes, and files read and pictures made | [`cases`], [`bumps`], [`ply`], [`shade`], [`levels`], [`whole`] |
 
 // Vulkan through ash is unsafe call by call; each unsafe block has its own SAFETY line.
 #![allow(unsafe_code)]
 
 mod buffer;
+pub mod bumps;
 pub mod cases;
 mod choose;
 mod compute;
 mod costs;
 mod device;
+mod device_tree;
 mod forward;
 mod gbuffer;
 mod image;
@@ -52,6 +55,7 @@ pub use buffer::HostBuffer;
 pub use compute::{ComputeProgram, run_compute};
 pub use costs::{measure_costs, probe};
 pub use device::{HeadlessDevice, HeadlessOptions, Tables};
+pub use device_tree::{DeviceTree, Link};
 pub use forward::Forward;
 pub use gbuffer::{GBuffer, GBufferPainter};
 pub use image::{ImageSource, OwnedImage, bytes_per_texel, read_image};

@@ -1,6 +1,7 @@
 //! The techniques and settings that [`super::Auto`] chooses among.
 
 use crate::technique::Technique;
+use std::sync::OnceLock;
 
 /// A technique with its settings in text form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,7 +46,15 @@ pub const CANDIDATES: &[Candidate] = &[
     of("many-lights", "samples=16"),
     of("many-lights", "samples=64"),
     of("many-lights", "samples=256"),
+    of("traced", "samples=64"),
+    of("traced", "samples=256"),
 ];
+
+/// The candidates' techniques, in the order of [`CANDIDATES`].
+pub(super) fn techniques() -> &'static [Technique] {
+    static ALL: OnceLock<Vec<Technique>> = OnceLock::new();
+    ALL.get_or_init(|| CANDIDATES.iter().map(Candidate::settings).collect())
+}
 
 impl Candidate {
     /// The candidate's technique. A test holds that every candidate's words are valid.

@@ -21,6 +21,8 @@ pub struct Choice {
     pub changed: bool,
     /// A sentence where the budget is not valid or cannot be met; the choice is then the nearest to it.
     pub problem: Option<String>,
+    /// A sentence where a technique that works with the triangles themselves was no candidate, and why.
+    pub left_out: Option<String>,
 }
 
 /// The different techniques of some choices, most accurate first, as many as a node may have.
@@ -55,6 +57,9 @@ impl fmt::Display for Choice {
         }
         if let Some(problem) = &self.problem {
             write!(f, "; {problem}")?;
+        }
+        if let Some(left_out) = &self.left_out {
+            write!(f, "; {left_out}")?;
         }
         Ok(())
     }

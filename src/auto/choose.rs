@@ -9,14 +9,15 @@
 //! often the promise is kept, for scenes of the table and for scenes that the table does not have.
 
 use super::budget::ValidBudget;
-use super::expected::{Expected, expect, nearest_views, share, unmet};
+use super::candidates::techniques;
+use super::expected::{Expected, drop_the_slow, expect, nearest_views, share, unmet};
 use super::table::Table;
 use super::{Budget, CANDIDATES, Choice, Costs, Features};
 use crate::Error;
 use crate::effects::Situation;
-use crate::frame::{Description, Frame, MeshBoxes, SituationCache};
+use crate::frame::{self, Description, Frame, MeshBoxes, SituationCache};
 use crate::technique::Technique;
-use crate::techniques::room::HostDraws;
+use crate::techniques::room::{self, HostDraws};
 
 /// Another candidate replaces one that meets the budget where its time or error is below this share of that one's.
 const BETTER: f64 = 0.8;
@@ -118,7 +119,8 @@ impl Auto {
         let pixels = f64::from(width) * f64::from(height);
         let triangles = situation.triangles as f64;
         let features = Features::of(situation);
-        let expected = expect(Table::own(), &self.costs, &features, pixels, triangles);
+        let mut expected = expect(Table::own(), &self.costs, &features, pixels, triangles);
+        drop_the_slow(&mut expected, &budget);
         match share(std::slice::from_ref(&expected), &budget)[0] {
             Some(best) => self.settle(0, situation, &expected, best, &budget),
             None => self.unshadowed(0, &Technique::default()),
@@ -145,13 +147,18 @@ impl Auto {
             .collect::<Result<_, _>>()?;
         let budget = self.budget.valid();
         let pixels = f64::from(description.extent[0]) * f64::from(description.extent[1]);
+        let kept_out: Vec<Option<String>> =
+            frames.iter().map(|frame| no_triangles(description, frame)).collect();
         let mut expected: Vec<Vec<Expected>> = frames
             .iter()
             .zip(&situations)
-            .map(|(frame, situation)| match situation {
+            .zip(&kept_out)
+            .map(|((frame, situation), kept_out)| match situation {
                 Some(s) if !is_line(frame) => {
                     let can = |e: &Expected| {
-                        takes(&CANDIDATES[e.candidate].settings(), description, frame, s)
+                        let technique = &techniques()[e.candidate];
+                        takes(technique, description, frame, s)
+                            && (kept_out.is_none() || !technique.room().reads_triangles())
                     };
                     let features = Features::of(s);
                     expect(Table::own(), &self.costs, &features, pixels, s.triangles as f64)
@@ -164,6 +171,7 @@ impl Auto {
             .collect();
         for (state, expected) in self.lights.iter_mut().zip(&mut expected) {
             state.remember(expected);
+            drop_the_slow(expected, &budget);
         }
         let picked = share(&expected, &budget);
         let least: f64 = picked.iter().flatten().map(|e| e.ms).sum();
@@ -192,6 +200,10 @@ impl Auto {
                 (None, _) if !is_line(frame) => self.unshadowed(i, &description.technique),
                 (s, _) => self.for_line(i, frame, s.as_ref(), &budget),
             });
+        }
+        for ((choice, frame), kept_out) in choices.iter_mut().zip(frames).zip(kept_out) {
+            // Where nothing is promised, and for lines, nothing is missed.
+            choice.left_out = kept_out.filter(|_| choice.error.is_some() && !is_line(frame));
         }
         if description.occluder_maps.is_some() {
             // Lent maps have the size that the host gave them.
@@ -222,7 +234,15 @@ impl Auto {
         let state = &mut self.lights[light];
         state.expected = None;
         let technique = state.technique.unwrap_or(*technique);
-        Choice { technique, error: None, ms: None, nearest: None, changed: false, problem: None }
+        Choice {
+            technique,
+            error: None,
+            ms: None,
+            nearest: None,
+            changed: false,
+            problem: None,
+            left_out: None,
+        }
     }
 
     /// Keeps the light's candidate where it meets the budget, unless another one has been better for long.
@@ -251,7 +271,7 @@ impl Auto {
         }
         state.candidate = Some(chosen.candidate);
         state.expected = Some((CANDIDATES[chosen.candidate].technique, chosen.ms));
-        let technique = CANDIDATES[chosen.candidate].settings();
+        let technique = techniques()[chosen.candidate];
         let changed = state.technique.replace(technique).is_some_and(|before| before != technique);
         let (_, views) = nearest_views(Table::own(), &Features::of(s));
         Choice {
@@ -261,6 +281,7 @@ impl Auto {
             nearest: views.first().map(|v| v.name.clone()),
             changed,
             problem: budget.problem.clone().or_else(|| unmet(&chosen, expected, budget)),
+            left_out: None,
         }
     }
 
@@ -295,12 +316,27 @@ impl Auto {
             nearest: None,
             changed,
             problem: budget.problem.clone().or(problem),
+            left_out: None,
         }
     }
 }
 
 fn is_line(frame: &Frame) -> bool {
     frame.light.rectangle().is_line() || frame.light.outline().is_some()
+}
+
+/// Why no technique that works with the triangles themselves can run, as a sentence; `None` where one can.
+fn no_triangles(description: &Description, frame: &Frame) -> Option<String> {
+    let reader = techniques().iter().find(|t| t.room().reads_triangles())?;
+    let why = if description.light_texture.is_some() && !reader.room().takes().texture {
+        Some("the light has a texture, which it does not take".into())
+    } else if let (Some(_), Err(why)) = (description.occluder_maps, reader.room().takes().lent_maps)
+    {
+        Some(format!("the host lends maps, and it {why}"))
+    } else {
+        frame::kept_out(description.capacity, frame.meshes)
+    };
+    why.map(|why| format!("{} is left out: {why}", reader.name()))
 }
 
 /// Whether a technique accepts what the host lends and draws.
@@ -316,4 +352,5 @@ fn takes(technique: &Technique, description: &Description, frame: &Frame, s: &Si
     (!textured || takes.texture)
         && (!lent || fits)
         && (s.host_drawn == 0 || takes.host_draws == HostDraws::Any)
+        && room::check_extent(technique.room(), description.extent).is_ok()
 }

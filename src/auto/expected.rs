@@ -1,7 +1,10 @@
 //! The error and time that each candidate is expected to have in a situation, and the choice for each light by them.
 
 use super::budget::ValidBudget;
-use super::table::{Table, View};
+use super::candidates::techniques;
+use super::costs::tree_ms;
+use super::shafts::shaft_work;
+use super::table::{Measured, Table, View};
 use super::{CANDIDATES, Costs, Features};
 
 /// Views within `NEAR` + `FAR` × the nearest view's distance count as near a situation.
@@ -12,8 +15,18 @@ const FAR: f64 = 1.6;
 /// fitted by leaving out each scene and predicting it from the others (docs/planner.md).
 const DOUBT: f64 = 0.7;
 
+/// How fast the near views' times count for less by their distance, where [`shaft_work`] foretells a time.
+const UNLIKE: f64 = 5.0;
+
 /// A factor on the promised error, for images of other sizes than the table's.
 const MARGIN: f64 = 1.05;
+
+/// The most that a candidate's time may be over that of the fastest one that keeps the promise.
+const TIMES_SLOWER: f64 = 10.0;
+
+/// Errors up to so many times the least count as near to it: what [`TIMES_SLOWER`] times the samples would halve is no
+/// bargain.
+const NEARLY: f64 = 2.0;
 
 /// The error and time that a candidate is expected to have.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,19 +49,87 @@ pub(super) fn expect(
     triangles: f64,
 ) -> Vec<Expected> {
     let (nearest, views) = nearest_views(table, features);
-    let doubt = MARGIN * (1.0 + DOUBT * nearest);
-    let of = |candidate: usize| {
-        let technique = CANDIDATES[candidate].technique;
-        let mut error: f64 = 0.0;
-        let mut ms = 0.0;
-        for view in &views {
-            let measured = &view.measured[candidate];
-            error = error.max(measured.error);
-            ms += costs.ms(technique, measured, pixels, triangles - view.triangles);
-        }
-        Expected { candidate, error: (error * doubt).min(1.0), ms: ms / views.len() as f64 }
+    let near = Near { table, costs, nearest, views, features, pixels, triangles };
+    let of = |candidate: usize| match techniques()[candidate].room().reads_triangles() {
+        true => near.of_triangles(candidate),
+        false => near.of_maps(candidate),
     };
-    (0..if views.is_empty() { 0 } else { CANDIDATES.len() }).map(of).collect()
+    (0..if near.views.is_empty() { 0 } else { CANDIDATES.len() }).map(of).collect()
+}
+
+/// A situation beside the table's views that are near it.
+struct Near<'a> {
+    table: &'a Table,
+    costs: &'a Costs,
+    /// The nearest view's distance.
+    nearest: f64,
+    views: Vec<&'a View>,
+    features: &'a Features,
+    pixels: f64,
+    triangles: f64,
+}
+
+impl Near<'_> {
+    fn measured(&self, candidate: usize) -> impl Iterator<Item = (&View, &Measured)> {
+        self.views.iter().map(move |view| (*view, &view.measured[candidate]))
+    }
+
+    fn mean(&self, values: impl Iterator<Item = f64>) -> f64 {
+        values.sum::<f64>() / self.views.len() as f64
+    }
+
+    /// The worst error of the near views, larger by their distance.
+    fn worst(&self, candidate: usize) -> f64 {
+        let worst = self.measured(candidate).map(|(_, m)| m.error).fold(0.0, f64::max);
+        MARGIN * (1.0 + DOUBT * self.nearest) * worst
+    }
+
+    /// What is expected of a technique that sees the occluders in maps.
+    fn of_maps(&self, candidate: usize) -> Expected {
+        let technique = CANDIDATES[candidate].technique;
+        let ms = |(view, measured): (&View, &Measured)| {
+            self.costs.ms(technique, measured, self.pixels, self.triangles - view.triangles)
+        };
+        let ms = self.mean(self.measured(candidate).map(ms));
+        Expected { candidate, error: self.worst(candidate).min(1.0), ms }
+    }
+
+    /// What is expected of a technique that tests the triangles themselves. It misses nothing and errs by the light's
+    /// samples alone, which are the same in every scene, so that no unlikeness makes the error larger than the worst of
+    /// the table. Its time at the pixels is [`shaft_work`]'s, times what the near views took over theirs, less
+    /// the further they are.
+    fn of_triangles(&self, candidate: usize) -> Expected {
+        let over = &self.table.over[candidate];
+        let maps = |(view, measured): (&View, &Measured)| {
+            (measured.maps_ms + tree_ms(self.triangles - view.triangles)).max(0.0)
+        };
+        let maps_ms = self.mean(self.measured(candidate).map(maps));
+        let log = |(view, measured): (&View, &Measured)| {
+            (measured.pixels_ms / view.shaft_work() / over.pixels_ms).ln()
+        };
+        let alike = self.mean(self.measured(candidate).map(log)) / (1.0 + UNLIKE * self.nearest);
+        let pixels_ms = over.pixels_ms * shaft_work(self.features) * alike.exp();
+        let measured = Measured { maps_ms, pixels_ms, ..Measured::default() };
+        let ms = self.costs.ms(CANDIDATES[candidate].technique, &measured, self.pixels, 0.0);
+        let error = self.worst(candidate).min(MARGIN * over.worst).min(1.0);
+        Expected { candidate, error, ms }
+    }
+}
+
+/// Takes out of a light's candidates those that are expected to take more than [`TIMES_SLOWER`] times as long as the
+/// fastest one that keeps the promise: in no frame, for no reason, and however long it has been the light's own.
+///
+/// Where none keeps it, those count that come near to the least error. Where a time alone is allowed, all of it may be
+/// spent.
+pub(super) fn drop_the_slow(expected: &mut Vec<Expected>, budget: &ValidBudget) {
+    if budget.max_error == 0.0 && budget.max_ms.is_finite() {
+        return;
+    }
+    let least = expected.iter().map(|e| e.error).fold(f64::INFINITY, f64::min);
+    let error = budget.max_error.max(NEARLY * least);
+    let good = expected.iter().filter(|e| e.error <= error);
+    let most = TIMES_SLOWER * good.map(|e| e.ms).fold(f64::INFINITY, f64::min);
+    expected.retain(|e| e.ms <= most);
 }
 
 /// The distance of the table's view that is nearest to a situation, and the near views, nearest first.

@@ -16,6 +16,7 @@ mod choose;
 mod costs;
 mod expected;
 mod features;
+mod shafts;
 mod table;
 
 pub use budget::Budget;
@@ -29,3 +30,5 @@ pub use table::{COLUMNS, Measured, PIXELS, PROBE, Table, View};
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod traced_tests;

@@ -1,5 +1,6 @@
 //! The error and time of every candidate in every view of the report, as measured on one device.
 
+use super::shafts::shaft_work;
 use super::{CANDIDATES, FEATURES, Features};
 use std::sync::OnceLock;
 
@@ -41,6 +42,32 @@ pub struct View {
     pub measured: Vec<Measured>,
 }
 
+/// One candidate over all views.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Over {
+    /// The largest error.
+    pub worst: f64,
+    /// The geometric mean of the pixels' times over [`shaft_work`], milliseconds.
+    pub pixels_ms: f64,
+}
+
+impl Over {
+    fn of(views: &[View], candidate: usize) -> Self {
+        let measured = || views.iter().map(|v| (v, &v.measured[candidate]));
+        let log = |(v, m): (&View, &Measured)| (m.pixels_ms / v.shaft_work()).ln();
+        let mean = measured().map(log).sum::<f64>() / views.len().max(1) as f64;
+        let worst = measured().map(|(_, m)| m.error).fold(0.0, f64::max);
+        Self { worst, pixels_ms: mean.exp() }
+    }
+}
+
+impl View {
+    /// [`shaft_work`] of the view.
+    pub(super) fn shaft_work(&self) -> f64 {
+        shaft_work(&self.features)
+    }
+}
+
 /// The measurements of all views.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
@@ -48,6 +75,8 @@ pub struct Table {
     pub views: Vec<View>,
     /// The times of a small frame on the same device, to which those of other devices are compared.
     pub probe: Measured,
+    /// Each candidate over all views, in the order of [`CANDIDATES`].
+    pub(super) over: Vec<Over>,
 }
 
 impl Table {
@@ -92,13 +121,18 @@ impl Table {
             views.into_iter().partition(|v| v.measured.len() == CANDIDATES.len());
         left_out
             .extend(torn.iter().map(|v| format!("{}, which lacks candidates", v.name.join(", "))));
-        (Self { views, probe }, left_out)
+        (Self::of(views, probe), left_out)
     }
 
     /// The table without the views of one scene, to predict that scene from the others.
     pub fn without(&self, scene: &str) -> Self {
         let others = self.views.iter().filter(|v| v.name[0] != scene);
-        Self { views: others.cloned().collect(), probe: self.probe }
+        Self::of(others.cloned().collect(), self.probe)
+    }
+
+    fn of(views: Vec<View>, probe: Measured) -> Self {
+        let over = (0..CANDIDATES.len()).map(|candidate| Over::of(&views, candidate)).collect();
+        Self { views, probe, over }
     }
 }
 

@@ -10,10 +10,10 @@ use ash::vk::{self, Handle};
 use glam::{DMat4, DVec3, DVec4};
 
 const GROUND: [[f32; 3]; 2] = [[-4.0, 0.0, -4.0], [4.0, 0.0, 4.0]];
-const CUBE: [[f32; 3]; 2] = [[-0.5; 3], [0.5; 3]];
+pub(super) const CUBE: [[f32; 3]; 2] = [[-0.5; 3], [0.5; 3]];
 const CARD: [[f32; 3]; 2] = [[-0.5, 0.0, -0.5], [0.5, 0.0, 0.5]];
 
-fn mesh(bounds: [[f32; 3]; 2], at: DVec3, role: Role, triangles: u32) -> MeshInstance {
+pub(super) fn mesh(bounds: [[f32; 3]; 2], at: DVec3, role: Role, triangles: u32) -> MeshInstance {
     MeshInstance {
         geometry: Geometry::Buffers(MeshBuffers {
             positions: vk::Buffer::from_raw(3),
@@ -30,16 +30,16 @@ fn mesh(bounds: [[f32; 3]; 2], at: DVec3, role: Role, triangles: u32) -> MeshIns
     }
 }
 
-fn ground() -> MeshInstance {
+pub(super) fn ground() -> MeshInstance {
     mesh(GROUND, DVec3::ZERO, Role::Receiver, 2)
 }
 
-fn over(bounds: [[f32; 3]; 2], y: f64) -> Vec<MeshInstance> {
+pub(super) fn over(bounds: [[f32; 3]; 2], y: f64) -> Vec<MeshInstance> {
     vec![ground(), mesh(bounds, DVec3::Y * y, Role::Occluder, 12)]
 }
 
 /// A camera straight above, with the ground's 8 m over 512 pixels.
-fn frame(light: RectangleLight, meshes: &[MeshInstance]) -> Frame<'_> {
+pub(super) fn frame(light: RectangleLight, meshes: &[MeshInstance]) -> Frame<'_> {
     let depth = HostImage {
         image: vk::Image::from_raw(1),
         view: vk::ImageView::from_raw(2),
@@ -58,11 +58,11 @@ fn frame(light: RectangleLight, meshes: &[MeshInstance]) -> Frame<'_> {
     Frame { background: Some(0.0), ..Frame::new(Slot(0), light, world_from_ndc, meshes, depth) }
 }
 
-fn square(side: f64) -> RectangleLight {
+pub(super) fn square(side: f64) -> RectangleLight {
     generate::square_light(side).unwrap()
 }
 
-fn description() -> Description {
+pub(super) fn description() -> Description {
     Description::new([512; 2])
 }
 
@@ -70,7 +70,7 @@ fn see(light: RectangleLight, meshes: &[MeshInstance]) -> Option<Situation> {
     crate::frame::situation(&description(), &frame(light, meshes)).unwrap()
 }
 
-fn auto(max_error: Option<f64>, max_ms: Option<f64>) -> Auto {
+pub(super) fn auto(max_error: Option<f64>, max_ms: Option<f64>) -> Auto {
     Auto::new(Budget { max_error, max_ms }, Costs::default())
 }
 

@@ -36,8 +36,8 @@ pub use passes::{Limits, full_graph};
 pub use plan::FramePlan;
 pub(crate) use plan::Stamp;
 pub use plans::FramePlans;
-pub(crate) use triangles::TriangleList;
 pub use triangles::{Capacity, Space};
+pub(crate) use triangles::{TriangleList, kept_out};
 
 use crate::Error;
 use crate::effects::Omit;

@@ -95,7 +95,7 @@ impl TriangleList {
         description: &Description,
         meshes: &[MeshInstance],
     ) -> Result<(), Error> {
-        let Capacity { triangles: capacity, meshes: most } = description.capacity;
+        let capacity = description.capacity.triangles;
         self.meshes.clear();
         let blocking = |m: &&MeshInstance| m.role.blocks() && has_triangles(m);
         let drawn = |m: &MeshInstance| matches!(m.geometry, Geometry::HostDrawn(_));
@@ -126,11 +126,8 @@ impl TriangleList {
             last = pair;
             self.meshes.push(TriangleMesh { push: MeshPush { key, key_bits, ..one.push }, ..one });
         }
-        if first > u64::from(capacity) || sets > most {
-            return bad(format!(
-                "{first} triangles in {sets} meshes block light, and the description's capacity is {capacity} in \
-                 {most}; raise it"
-            ));
+        if let Some(problem) = beyond(description.capacity, first, sets) {
+            return bad(problem);
         }
         self.sizes = Sizes { capacity, triangles: first as u32 };
         self.key = hasher.finish();
@@ -147,11 +144,7 @@ impl TriangleList {
             None => (buffers.positions, 0, 0),
             Some((buffer, offset, vk::IndexType::UINT16)) => (buffer, offset / 2, 16),
             Some((buffer, offset, vk::IndexType::UINT32)) => (buffer, offset / 4, 32),
-            Some((_, _, other)) => {
-                return bad(format!(
-                    "a mesh has indices of the type {other:?}, which no shader reads; give UINT16 or UINT32"
-                ));
-            }
+            Some((_, _, other)) => return bad(unread(other)),
         };
         let m = mesh.world_from_mesh;
         let row = |i: usize| {
@@ -206,6 +199,48 @@ impl TriangleList {
             nodes: self.sizes.nodes(),
         }
     }
+}
+
+/// What keeps the triangles of a frame's blocking meshes out of a hierarchy, as a sentence without its full stop; `None`
+/// where [`TriangleList::fill`] takes all of them.
+pub(crate) fn kept_out(capacity: Capacity, meshes: &[MeshInstance]) -> Option<String> {
+    let (mut triangles, mut sets, mut last) = (0u64, 0u32, None);
+    let blocking = |(_, m): &(usize, &MeshInstance)| m.role.blocks() && has_triangles(m);
+    for (index, mesh) in meshes.iter().enumerate().filter(blocking) {
+        let Geometry::Buffers(buffers) = mesh.geometry else {
+            return Some(format!(
+                "mesh {index} blocks light and is drawn by the host; give its buffers"
+            ));
+        };
+        let pair = match buffers.indices {
+            None => (buffers.positions, buffers.positions),
+            Some((indices, _, vk::IndexType::UINT16 | vk::IndexType::UINT32)) => {
+                (buffers.positions, indices)
+            }
+            Some((_, _, other)) => return Some(unread(other)),
+        };
+        triangles += u64::from((buffers.count / 3).next_multiple_of(LEAF));
+        sets += u32::from(last.replace(pair) != Some(pair));
+    }
+    beyond(capacity, triangles, sets)
+}
+
+/// A sentence for more triangles, or meshes with buffers of their own, than a capacity has room for.
+fn beyond(capacity: Capacity, triangles: u64, sets: u32) -> Option<String> {
+    let Capacity { triangles: room, meshes: most } = capacity;
+    (triangles > u64::from(room) || sets > most).then(|| {
+        format!(
+            "{triangles} triangles in {sets} meshes block light, and the description's capacity is {room} in {most}; \
+             raise it"
+        )
+    })
+}
+
+/// A sentence for indices of a type that no shader reads.
+fn unread(indices: vk::IndexType) -> String {
+    format!(
+        "a mesh has indices of the type {indices:?}, which no shader reads; give UINT16 or UINT32"
+    )
 }
 
 /// A camera and a light in the hierarchy's space.

@@ -25,14 +25,24 @@ fn scenes() -> Vec<(&'static str, Scene, Camera)> {
         let camera = scene.camera.unwrap_or_else(|| Camera::framing(&scene, 157.0 / 118.0));
         (scene, camera)
     };
-    let spheres = generate::spheres(generate::square_light(0.6).unwrap());
+    let light = || generate::square_light(0.6).unwrap();
+    let both = |scene: Scene| framed(scene.with_occluders_as(Role::Both));
     let (bunny, of_bunny) = framed(model("bunny"));
-    let (spheres, of_spheres) = framed(spheres.with_occluders_as(Role::Both));
+    let (spheres, of_spheres) = both(generate::spheres(light()));
+    let (foliage, of_foliage) = both(generate::foliage(light(), 150, 3));
+    let (sunny, of_sunny) = both(generate::normalized(&model("suzanne"), sun()).unwrap());
     vec![
         ("bunny", bunny, of_bunny),
         ("spheres", spheres, of_spheres),
         ("room", room::room(), room::camera()),
+        ("foliage", foliage, of_foliage),
+        ("suzanne under a sun", sunny, of_sunny),
     ]
+}
+
+/// A sun of 6°, whose penumbrae are some pixels wide.
+pub fn sun() -> Light {
+    Light::sun(DVec3::new(0.2, -1.0, 0.1), 0.1, DVec3::Y, 4.0).unwrap()
 }
 
 const TECHNIQUES: [&str; 4] = [
@@ -43,20 +53,36 @@ const TECHNIQUES: [&str; 4] = [
 ];
 
 /// A scene as a camera sees it, occluders too.
-fn seen<'a>(scene: &'a Scene, camera: &Camera) -> Setup<'a> {
+pub fn seen<'a>(scene: &'a Scene, camera: &Camera) -> Setup<'a> {
     let view = View::perspective(camera, EXTENT);
     Setup { scene, view, extent: EXTENT, window: None, occluders_seen: true }
 }
 
+/// The truth of every pixel by so many rays. A leaf that is seen from behind has its normal turned towards the viewer, as
+/// the tracer wants it; other surfaces here are closed, and show their fronts.
+fn truth_of(setup: &Setup, camera: &Camera, stage: &Stage, rays: u32) -> Vec<f32> {
+    let mut receivers = Setup::receivers(stage);
+    let eye = camera.world_from_view.w_axis.truncate();
+    if setup.scene.meshes.iter().any(|mesh| mesh.double_sided) {
+        for r in receivers.iter_mut().filter(|r| r.normal.dot(eye - r.position) < 0.0) {
+            r.normal = -r.normal;
+        }
+    }
+    let light = setup.scene.light(None).unwrap().light;
+    let sampling = Sampling::new(rays, 1).unwrap();
+    let tracer = Tracer::new(setup.scene).unwrap();
+    tracer.visible_fractions(light, &receivers, &sampling).unwrap().visible
+}
+
 /// A stage with an audit.
-fn audited(device: &HeadlessDevice, setup: &Setup, words: &str, pixels: u32) -> Stage {
+pub fn audited(device: &HeadlessDevice, setup: &Setup, words: &str, pixels: u32) -> Stage {
     let mut stage = setup.stage(device, words);
     stage.configure_with(settings(words), |d| d.audit = pixels).unwrap();
     stage
 }
 
 /// One frame's error; maps and hierarchy are kept.
-fn frame(stage: &mut Stage, setup: &Setup) -> Option<MeasuredError> {
+pub fn frame(stage: &mut Stage, setup: &Setup) -> Option<MeasuredError> {
     let light = setup.scene.light(None).unwrap().light;
     let plan = stage
         .plan_with(light, |frame| (frame.revision, frame.mesh_revision) = (Some(1), Some(1)))
@@ -72,9 +98,9 @@ struct Whole {
 }
 
 impl Whole {
-    fn of(setup: &Setup, stage: &mut Stage, truth: Option<Vec<f32>>) -> Self {
+    fn of(setup: &Setup, camera: &Camera, stage: &mut Stage, truth: Option<Vec<f32>>) -> Self {
         frame(stage, setup);
-        let truth = truth.unwrap_or_else(|| setup.traced(stage, 4096).0);
+        let truth = truth.unwrap_or_else(|| truth_of(setup, camera, stage, 4096));
         let error = summary(&truth, &stage.visibility().unwrap()).mean_abs_error;
         Self { truth, error }
     }
@@ -86,7 +112,7 @@ fn holds(error: &MeasuredError, whole: f64) -> bool {
 
 /// Whether a raster moves vertices by so much that pixels show surfaces elsewhere than the tracer's triangles are: 4
 /// sub-pixel bits move them by up to a 32nd of a pixel, which in images of 160 pixels is a millimetre.
-fn moves_surfaces(device: &HeadlessDevice) -> bool {
+pub fn moves_surfaces(device: &HeadlessDevice) -> bool {
     let bits = device.limits().sub_pixel_precision_bits;
     if bits < 8 {
         say(&format!(
@@ -96,10 +122,28 @@ fn moves_surfaces(device: &HeadlessDevice) -> bool {
     bits < 8
 }
 
-/// The windows of each technique in each scene: a few here, and by hand as many as ANTUMBRA_WINDOWS says for the table
-/// of docs/audit.md, which a run prints.
+/// The windows of each technique in each scene: one here, and by hand as many as ANTUMBRA_WINDOWS says for the table of
+/// docs/audit.md, which a run prints.
 fn windows() -> u32 {
-    std::env::var("ANTUMBRA_WINDOWS").ok().and_then(|n| n.parse().ok()).unwrap_or(2)
+    let asked = std::env::var("ANTUMBRA_WINDOWS").ok().and_then(|n| n.parse().ok());
+    asked.unwrap_or_else(|| {
+        say("one window of each technique in each scene; ANTUMBRA_WINDOWS=30 has those of docs/audit.md");
+        1
+    })
+}
+
+/// The least number of windows that hold the error where it is 95 % of them that do: fewer are chance once in a thousand
+/// times.
+fn least_held(windows: u32) -> u32 {
+    let (mut chance, mut sum) = (0.95f64.powi(windows as i32), 0.0);
+    let mut missed = 0;
+    while missed < windows && sum + chance < 0.999 {
+        sum += chance;
+        // The next term of the binomial distribution.
+        chance *= f64::from(windows - missed) / f64::from(missed + 1) * 0.05 / 0.95;
+        missed += 1;
+    }
+    windows - missed
 }
 
 #[test]
@@ -115,7 +159,7 @@ fn the_whole_images_error_lies_in_the_interval() {
         let mut truth = None;
         for words in TECHNIQUES {
             let mut stage = audited(&device, &setup, words, PIXELS);
-            let whole = Whole::of(&setup, &mut stage, truth.take());
+            let whole = Whole::of(&setup, &camera, &mut stage, truth.take());
             let (mut inside, mut single, mut half, mut mean) = (0, 0, 0.0, 0.0);
             for _ in 0..windows {
                 let mut window = ErrorWindow::new();
@@ -140,8 +184,12 @@ fn the_whole_images_error_lies_in_the_interval() {
         }
     }
     println!("{} of {} windows", held[0], held[1]);
-    // With 95 % of windows right, more than 5 of 24 are wrong once in a thousand times.
-    assert!(held[0] * 24 >= held[1] * 19, "{held:?}");
+    // 93 % of many windows; of few, as many as chance leaves.
+    let least = match held[1] {
+        many @ 300.. => (0.93 * f64::from(many)) as u32,
+        few => least_held(few),
+    };
+    assert!(held[0] >= least, "{held:?}, at least {least}");
 }
 
 /// Pixel by pixel: which candidates are traced, and what fraction each has.
@@ -160,7 +208,7 @@ fn each_traced_fraction_is_the_tracers() {
         let listed: Vec<[u32; 4]> = stage.inspect_buffer(&plan, "audit.listed").unwrap();
         let parts: Vec<u32> = stage.inspect_buffer(&plan, "audit.parts").unwrap();
         let candidates: Vec<[u32; 4]> = stage.inspect_buffer(&plan, "audit.candidates").unwrap();
-        let (truth, _) = setup.traced(&stage, 4096);
+        let truth = truth_of(&setup, &camera, &stage, 4096);
         let of = |word: u32| truth[((word >> 16) * EXTENT[0] + (word & 0xffff)) as usize];
         // What is not in the list is lit.
         let left_out = candidates.iter().filter(|c| c[2] == 0);
@@ -306,40 +354,6 @@ fn lights_and_slots_have_their_own_figures() {
     }
     let memory = stage.node().unwrap().memory();
     assert!(memory.iter().any(|r| r.name == "audit.figures" && r.bytes >= 256), "{memory:?}");
-}
-
-/// Shapes of lights that shine to one side, as the truth has them; what `traced` makes of the shape does not matter.
-#[test]
-fn the_truth_of_a_shape_is_the_tracers() {
-    let device = unwatched();
-    if moves_surfaces(&device) {
-        return;
-    }
-    let (above, down) = (DVec3::Y * 4.0, DVec3::NEG_Y);
-    let lights: [(&str, Light); 4] = [
-        ("line", generate::line_light(1.0, 0.4).unwrap().into()),
-        ("disc", Light::disc(above, down, 0.4).unwrap()),
-        ("polygon", generate::polygon_light(&[[-0.4, -0.4], [0.5, -0.3], [0.0, 0.5]]).unwrap()),
-        ("sun", Light::sun(DVec3::new(0.2, -1.0, 0.1), 0.1, DVec3::Y, 4.0).unwrap()),
-    ];
-    for (name, light) in lights {
-        let scene = generate::spheres(light).with_occluders_as(Role::Both);
-        let camera = Camera::framing(&scene, 157.0 / 118.0);
-        let setup = seen(&scene, &camera);
-        let mut stage = audited(&device, &setup, "technique=traced", 1024);
-        let mut window = ErrorWindow::new();
-        (0..12).for_each(|_| window.add(&frame(&mut stage, &setup).unwrap()));
-        let tracer = Tracer::new(&scene).unwrap();
-        let sampling = Sampling::new(1024, 1).unwrap();
-        let truth = tracer.visible_fractions(light, &Setup::receivers(&stage), &sampling).unwrap();
-        let whole = summary(&truth.visible, &stage.visibility().unwrap()).mean_abs_error;
-        let error = window.error();
-        println!("{name}: {:.3} %, measured {error:?}", 100.0 * whole);
-        // Beside the interval, the noise of 512 samples, which a small polygon has 200 of, against an image with hardly any
-        // error. Another shape would be wrong by several percent.
-        let half = 0.5 * (error.high - error.low);
-        assert!((error.mean - whole).abs() < 2.0 * half + 4e-3, "{name}: {whole}, {error:?}");
-    }
 }
 
 /// Constants are of the frame's own camera, whatever maps are kept.

@@ -1,97 +1,76 @@
 //! The hierarchy of triangles, read back from the device: is every triangle in exactly one leaf, and in all boxes above it?
 
+use antumbra::Technique;
 use antumbra::scene::{Mesh, Role, Scene, generate};
-use antumbra::{FramePlan, Technique};
-use antumbra_harness::{HeadlessDevice, Stage, View};
+use antumbra::stages::hierarchy::LEAF;
+use antumbra_harness::{DeviceTree, HeadlessDevice, Link, Stage, View};
 use antumbra_tests::device;
 use antumbra_tests::measure::model;
 use glam::{DMat4, DVec3, Vec3};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestRunner};
 
-/// The triangles of a leaf, the texels before the first node, and the bit that marks a leaf.
-const LEAF: usize = 2;
-const HEAD: usize = 2;
-const IS_LEAF: u32 = 1 << 31;
+/// A box's sides are rounded outwards to steps, with a margin for the arithmetic.
+const LOOSE_STEPS: f32 = 3.0;
 
-/// A hierarchy as it is walked.
-struct Tree {
-    nodes: Vec<[u32; 4]>,
-    triangles: Vec<[f32; 4]>,
-    low: Vec3,
-    step: Vec3,
-}
-
-impl Tree {
-    fn read(stage: &mut Stage, plan: &FramePlan, count: usize) -> Self {
-        let (nodes, _): (Vec<[u32; 4]>, _) = stage.inspect(plan, "hierarchy.nodes").unwrap();
-        let (triangles, _): (Vec<[f32; 4]>, _) =
-            stage.inspect(plan, "hierarchy.triangles").unwrap();
-        let of = |nth: usize| {
-            let [x, y, z, _] = nodes[nth].map(f32::from_bits);
-            Vec3::new(x, y, z)
-        };
-        let (low, step) = (of(0), of(1));
-        Self { nodes: nodes[HEAD..HEAD + count].to_vec(), triangles, low, step }
-    }
-
-    /// The least and largest corner of a node's box.
-    fn bounds(&self, node: usize) -> [Vec3; 2] {
-        let [x, y, z, _] = self.nodes[node];
-        let at = |pick: fn(u32) -> u32| {
-            let steps = Vec3::new(pick(x) as f32, pick(y) as f32, pick(z) as f32);
-            self.low + steps * self.step
-        };
-        [at(|word| word & 0xffff), at(|word| word >> 16)]
-    }
-
-    /// A triangle's corners; none for a place that only fills a leaf.
-    fn triangle(&self, nth: usize) -> Option<[Vec3; 3]> {
-        let corner = |i: usize| self.triangles[3 * nth + i];
-        let there = corner(0)[3] > 0.0;
-        there.then(|| [0, 1, 2].map(|i| Vec3::new(corner(i)[0], corner(i)[1], corner(i)[2])))
-    }
-
-    /// Walks the whole tree, checks that boxes hold what is below them, and returns the leaves in order.
-    fn check(&self) -> Vec<usize> {
-        let mut leaves = Vec::new();
-        // The nodes whose subtrees hold the present one: the box and the end of each.
-        let mut above: Vec<([Vec3; 2], usize)> = Vec::new();
-        for (place, node) in self.nodes.iter().enumerate() {
-            above.retain(|(_, end)| place < *end);
-            if node[3] & IS_LEAF == 0 {
-                let end = node[3] as usize;
-                assert!(end > place && end <= self.nodes.len(), "node {place} ends at {end}");
+/// Walks the whole tree, checks that boxes hold what is below them and hardly more, and returns the leaves in order.
+fn leaves_of(tree: &DeviceTree) -> Vec<usize> {
+    let mut leaves = Vec::new();
+    let mut held = vec![[Vec3::MAX, Vec3::MIN]; tree.nodes];
+    // The nodes whose subtrees hold the present one: the box and the end of each.
+    let mut above: Vec<(usize, usize)> = Vec::new();
+    for place in 0..tree.nodes {
+        above.retain(|(_, end)| place < *end);
+        let leaf = match tree.link(place) {
+            Link::Leaf(leaf) => leaf,
+            Link::End(end) => {
+                assert!(end > place && end <= tree.nodes, "node {place} ends at {end}");
                 assert!(
                     above.iter().all(|(_, outer)| end <= *outer),
                     "node {place} leaves another"
                 );
-                above.push((self.bounds(place), end));
+                above.push((place, end));
                 continue;
             }
-            let leaf = (node[3] & !IS_LEAF) as usize;
-            leaves.push(leaf);
-            let own = [(self.bounds(place), place + 1)];
-            for i in leaf * LEAF..(leaf + 1) * LEAF {
-                for corner in self.triangle(i).into_iter().flatten() {
-                    for ([low, high], _) in above.iter().chain(&own) {
-                        let inside = corner.cmpge(*low).all() && corner.cmple(*high).all();
-                        assert!(inside, "{corner} of triangle {i} outside {low} to {high}");
-                    }
-                }
+        };
+        leaves.push(leaf);
+        for corner in DeviceTree::places(leaf).filter_map(|i| tree.triangle(i)).flatten() {
+            for (node, _) in above.iter().chain(&[(place, place + 1)]) {
+                let [low, high] = &mut held[*node];
+                (*low, *high) = (low.min(corner), high.max(corner));
             }
         }
-        assert!(
-            above.iter().all(|(_, end)| *end == self.nodes.len()),
-            "a node ends beyond the last"
-        );
-        leaves
     }
+    for (node, [low, high]) in held.into_iter().enumerate() {
+        check_box(tree, node, low, high);
+    }
+    assert!(above.iter().all(|(_, end)| *end == tree.nodes), "a node ends beyond the last");
+    leaves
 }
 
-fn stage_of(device: &HeadlessDevice, scene: &Scene) -> Stage {
+/// Checks a node's box against the box of what it holds, which is none where its leaves are empty.
+fn check_box(tree: &DeviceTree, node: usize, low: Vec3, high: Vec3) {
+    let [least, most] = tree.bounds(node);
+    let loose = tree.step * LOOSE_STEPS;
+    let holds = low.cmpge(least).all() && high.cmple(most).all();
+    assert!(holds || low.x > high.x, "{low} to {high} outside of {least} to {most} of node {node}");
+    let tight = (low - loose).cmple(least).all() && (high + loose).cmpge(most).all();
+    assert!(
+        tight || low.x > high.x,
+        "{low} to {high} in {least} to {most}, too large for node {node}"
+    );
+}
+
+/// A stage of `traced` over a scene.
+pub fn stage_of(device: &HeadlessDevice, scene: &Scene) -> Stage {
     let technique: Technique = "traced".parse().unwrap();
     Stage::new(device, scene, &View::map_of_ground(3.0, 8.0), [32; 2], technique, |_| true).unwrap()
+}
+
+/// The leaves of a scene's hierarchy.
+pub fn leaves_in(scene: &Scene) -> usize {
+    let blocking = scene.instances.iter().filter(|i| i.role.blocks());
+    blocking.map(|i| (scene.meshes[i.mesh].indices.len() / 3).div_ceil(LEAF as usize)).sum()
 }
 
 /// Builds a scene's hierarchy and checks it; returns how many triangles are in it. None where nothing can be shadowed,
@@ -100,12 +79,10 @@ fn check(stage: &mut Stage, scene: &Scene) -> Option<usize> {
     let plan = stage.plan(scene.light(None).unwrap().light, None).unwrap();
     stage.run(&plan).unwrap();
     plan.passes().find(|(name, _)| *name == "hierarchy.nodes")?;
-    let blocking = scene.instances.iter().filter(|i| i.role.blocks());
-    let places: usize =
-        blocking.map(|i| (scene.meshes[i.mesh].indices.len() / 3).next_multiple_of(LEAF)).sum();
-    let leaves = places / LEAF;
-    let tree = Tree::read(stage, &plan, 2 * leaves - 1);
-    let mut found = tree.check();
+    let leaves = leaves_in(scene);
+    let places = leaves * LEAF as usize;
+    let tree = DeviceTree::read(stage, &plan, leaves).unwrap();
+    let mut found = leaves_of(&tree);
     found.sort_unstable();
     assert!(found.iter().copied().eq(0..leaves), "each leaf once");
     Some((0..places).filter_map(|nth| tree.triangle(nth)).count())
@@ -208,7 +185,7 @@ fn a_box_that_is_too_small_is_noticed() {
     let mut stage = stage_of(&device, &scene);
     let plan = stage.plan(scene.light(None).unwrap().light, None).unwrap();
     stage.run(&plan).unwrap();
-    let mut tree = Tree::read(&mut stage, &plan, 1);
+    let mut tree = DeviceTree::read(&mut stage, &plan, 1).unwrap();
     tree.step *= 0.5;
-    tree.check();
+    leaves_of(&tree);
 }

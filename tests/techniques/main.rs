@@ -5,10 +5,12 @@
 
 mod accuracy;
 mod audit;
+mod audit_shapes;
 mod baseline;
 mod disc_light;
 mod forward;
 mod hierarchy;
+mod hits;
 mod light_texture;
 mod line_light;
 mod linear_light;

@@ -1,12 +1,14 @@
-//! Only what the scene calls for: the passes of scenes made for it, and what leaving the rest out costs.
+//! Only what the scene calls for: the passes of scenes made for it, and what leaving the rest out costs; and whether what
+//! `auto` promises is kept where maps do not tell.
 
 use antumbra::Omit;
 use antumbra::RectangleLight;
+use antumbra::auto::{Auto, Budget, Choice, Costs};
 use antumbra::effects::Outcome;
-use antumbra_harness::Stage;
 use antumbra_harness::cases::cases;
-use antumbra_tests::device;
+use antumbra_harness::{Stage, View};
 use antumbra_tests::measure::{Setup, percent, settings};
+use antumbra_tests::{device, room};
 use glam::DVec3;
 
 /// The pixels of a ground's view a side.
@@ -54,4 +56,41 @@ fn every_scene_runs_what_it_calls_for_and_what_is_left_out_costs_no_more_than_wa
         println!("{}: {error:.5}, bound {bound:.5}", case.name);
         assert!(error <= bound + ROUNDING, "{}: {error} of {bound}", case.name);
     }
+}
+
+/// What `auto` chooses for a stage's frame under its scene's light, for at most this error.
+fn chosen(stage: &mut Stage, setup: &Setup, max_error: f64) -> Choice {
+    let budget = Budget { max_error: Some(max_error), max_ms: None };
+    let mut auto = Auto::new(budget, Costs::default());
+    stage.choose(&mut auto, setup.scene.light(None).unwrap()).unwrap()
+}
+
+/// A furnished room, where everything blocks and receives and maps are off by any amount: the error is promised, and the
+/// image keeps it; where the node has no room for the triangles the choice says so, and runs.
+#[test]
+fn a_room_is_within_the_error_that_auto_promises() {
+    let device = device();
+    let (scene, extent) = (room::room(), [157, 118]);
+    let view = View::perspective(&room::camera(), extent);
+    let setup = Setup { scene: &scene, view, extent, window: None, occluders_seen: true };
+    let mut stage = setup.stage(&device, "technique=hard map=256");
+    let (truth, _) = setup.traced(&stage, 1024);
+    let hard = percent(&truth, &setup.visibility(&mut stage)) / 100.0;
+    for max_error in [0.03, 0.015, 0.01] {
+        let choice = chosen(&mut stage, &setup, max_error);
+        assert!(choice.problem.is_none() && choice.left_out.is_none(), "{choice}");
+        stage.configure(choice.technique).unwrap();
+        let error = percent(&truth, &setup.visibility(&mut stage)) / 100.0;
+        println!("{choice}: {error:.4} found");
+        let promised = choice.error.unwrap();
+        assert!(error <= promised && promised <= max_error, "{choice}: {error}");
+        assert!(hard > max_error, "a wrong image is noticed: {hard}");
+    }
+    let few = settings("technique=hard map=256");
+    stage.configure_with(few, |d| d.capacity.triangles = 100).unwrap();
+    let choice = chosen(&mut stage, &setup, 0.03);
+    let left_out = choice.left_out.as_ref().unwrap();
+    assert!(left_out.contains("the description's capacity is 100 in"), "{choice}");
+    stage.configure_with(choice.technique, |d| d.capacity.triangles = 100).unwrap();
+    setup.visibility(&mut stage);
 }

@@ -52,6 +52,10 @@ pub struct Options {
     /// With `--choices` or `--exam`: of so many pixels, for an exam in images that the table has not seen
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size, requires = "of_choices")]
     pub size: Option<[u32; 2]>,
+    /// With `--choices` or `--write-choices`: only what `auto` chooses among of this technique, in turns with a few
+    /// of the others, by whose times in the table these are scaled; the rest of the table stays
+    #[arg(long, value_name = "TECHNIQUE")]
+    pub renew: Option<String>,
     /// Measure nothing: make of what `--choices` has measured in --out the table that `auto` chooses by
     #[arg(long, conflicts_with = "report")]
     pub write_choices: bool,
@@ -105,6 +109,9 @@ impl Options {
         let mut words: String = switches.iter().filter(|s| s.0).map(|s| s.1).collect();
         if let Some([width, height]) = self.size {
             words.push_str(&format!(" --size {width}x{height}"));
+        }
+        if let Some(technique) = &self.renew {
+            words.push_str(&format!(" --renew {technique}"));
         }
         if let Some(folder) = &self.scenes {
             let shown = folder.strip_prefix(Self::root()).unwrap_or(folder);

@@ -59,7 +59,7 @@ pub fn run(options: &Options) -> Result<bool, Problem> {
     };
     let own = options.scenes.as_deref().map(scenes::own).transpose()?.unwrap_or_default();
     let mut groups = match options.choices {
-        true => studies::choices(&scale),
+        true => studies::choices(&scale, options.renew.as_deref())?,
         false => studies::all(&scale, &own),
     };
     if let Some(text) = &options.only {

@@ -1,5 +1,6 @@
 //! The groups of a run, in the order in which they are measured.
 
+use crate::Problem;
 use crate::curtis;
 use crate::groups::{Entry, Group, MATRIX};
 use crate::options::Scale;
@@ -52,16 +53,35 @@ pub fn all(scale: &Scale, own: &[SceneSpec]) -> Vec<Group> {
 const MORE_SCENES: [&str; 4] =
     ["spheres", "contact", "spheres on themselves", "suzanne on herself"];
 
-/// Everything that `auto` chooses among, in every view.
-pub fn choices(scale: &Scale) -> Vec<Group> {
+/// The candidates by whose times in the table those of a technique that is measured alone are scaled.
+pub const YARDSTICKS: [Candidate; 3] = [
+    Candidate { technique: "pcss", words: "taps=32" },
+    Candidate { technique: "occlusion-textures", words: "slices=16" },
+    Candidate { technique: "ray-march", words: "rays=16" },
+];
+
+/// Everything that `auto` chooses among, in every view; with a technique to renew, only what it chooses among of that,
+/// and [`YARDSTICKS`].
+///
+/// # Errors
+/// A sentence for a technique that `auto` does not choose among.
+pub fn choices(scale: &Scale, renew: Option<&str>) -> Result<Vec<Group>, Problem> {
+    let known = |name: &str| CANDIDATES.iter().any(|c| c.technique == name);
+    if let Some(name) = renew.filter(|name| !known(name)) {
+        return Err(
+            format!("--renew {name}: auto has no such technique among its candidates").into()
+        );
+    }
+    let wanted =
+        |c: &&Candidate| renew.is_none_or(|name| c.technique == name || YARDSTICKS.contains(c));
     let entry = |c: &Candidate| Entry::new(c.technique, c.technique, c.words.into(), 0.0);
     let more = MORE_SCENES.map(|name| SceneSpec { name: name.into(), source: Source::Made(name) });
     let scenes: Vec<_> = scenes::standard().into_iter().chain(more).collect();
     let lights = scenes::LIGHTS.iter().map(|l| l.0);
-    let entries: Vec<_> = CANDIDATES.iter().map(entry).collect();
+    let entries: Vec<_> = CANDIDATES.iter().filter(wanted).map(entry).collect();
     let of = |light| scenes.iter().map(move |spec| (spec, light));
     let group = |(spec, light)| Group::seen(CHOICES, spec, light, scale.view, entries.clone());
-    lights.flat_map(of).map(group).collect()
+    Ok(lights.flat_map(of).map(group).collect())
 }
 
 #[cfg(test)]

@@ -21,6 +21,9 @@ const LISTED_A_PIXEL: u64 = 16;
 /// The bytes of a slot, its shaft and first leaves, and of a list's entry (`traced/lists.glsl`).
 const SLOT_BYTES: u64 = 128;
 const ENTRY_BYTES: u64 = 24;
+/// The bytes before a list's entries, and the offset in them of the workgroups that cover shafts.
+const HEAD_BYTES: u64 = 24;
+const SHADOWED: u64 = 12;
 
 /// The push constants of the passes that make the lists (`traced/sums.comp`).
 #[repr(C)]
@@ -66,8 +69,9 @@ pub(super) fn declare(
 
     let slots = graph.buffer("traced.slots", slot_bytes(extent));
     let sums = graph.buffer("traced.sums", 16 * u64::from(blocks));
-    let arguments = graph.buffer("traced.arguments", 48);
-    let entries = graph.buffer("traced.entries", 8 + ENTRY_BYTES * u64::from(slot_count));
+    let arguments = graph.buffer("traced.arguments", 32);
+    let entries =
+        graph.buffer("traced.entries", HEAD_BYTES + 2 * ENTRY_BYTES * u64::from(slot_count));
     let lists = graph.buffer("traced.lists", 4 * u64::from(capacity));
 
     let read = |binding, id| Use::bound(binding, id, Access::BufferReadCompute);
@@ -117,7 +121,7 @@ pub(super) fn declare(
         smallvec![read(0, slots), read(1, sums), update(2, entries)],
         need,
     ));
-    let mut over_list = |name, shader, offset, uses: &[Use]| {
+    let mut over_list = |name, shader, arguments, offset, uses: &[Use]| {
         let mut uses = of_frame(uses);
         uses.push(Use::fixed(arguments, Access::Indirect));
         let work = Work::Indirect { shader, arguments, offset };
@@ -126,6 +130,7 @@ pub(super) fn declare(
     over_list(
         "traced.gather",
         module!("traced/gather.comp"),
+        arguments,
         0,
         &[
             image(3, tree.nodes),
@@ -144,13 +149,15 @@ pub(super) fn declare(
     over_list(
         "traced.cover",
         cover,
-        16,
+        entries,
+        SHADOWED,
         &[image(3, tree.triangles), read(4, slots), read(5, entries), read(6, lists), shown(7)],
     );
     over_list(
         "traced.rays",
         module!("traced/rays.comp"),
-        32,
+        arguments,
+        16,
         &[
             image(3, tree.nodes),
             image(4, tree.triangles),

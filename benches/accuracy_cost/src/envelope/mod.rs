@@ -33,12 +33,13 @@ use std::time::Instant;
 /// The scenes.
 const SCENES: [&str; 2] = [FLAT, SOLID];
 
-/// The node's four, then what users would pick instead. All as they are by default, but for the maps' side.
-const TECHNIQUES: [&str; 8] = [
+/// The node's five, then what users would pick instead. All as they are by default, but for the maps' side.
+const TECHNIQUES: [&str; 9] = [
     "soft-shadow-map",
     "ray-march",
     "occlusion-textures",
     "linear-light",
+    "traced",
     "hard",
     "pcss",
     "back-projection",
@@ -260,15 +261,17 @@ impl Bench<'_> {
             return Ok(stage);
         }
         let name = TECHNIQUES[index];
-        let found = method(name, &format!("map={}", place.map))
-            .map_err(|problem| Status::Refused(problem.0))?;
-        let Some(Method::Node(settings)) = found else {
+        let Some(Method::Node(settings)) = method(name, "")? else {
             return Err(Status::Failed(format!("{name} is none of the node's techniques")));
         };
+        let settings = settings
+            .with_map(place.map as u32)
+            .and_then(|settings| settings.check().map(|()| settings))
+            .map_err(|problem| Status::Refused(problem.to_string()))?;
         let extent = [place.pixels as u32; 2];
         let Ready { scene, view, .. } = ready;
-        let mut stage = Stage::new(self.device, scene, view, extent, *settings.clone(), seen)?;
-        stage.configure_with(*settings, |d| d.omit = Omit::Nothing)?;
+        let mut stage = Stage::new(self.device, scene, view, extent, settings, seen)?;
+        stage.configure_with(settings, |d| d.omit = Omit::Nothing)?;
         Ok(stage)
     }
 }

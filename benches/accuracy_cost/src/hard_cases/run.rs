@@ -32,6 +32,9 @@ pub fn run(device: &HeadlessDevice, cases: &[HardCase]) -> Result<Vec<Row>, Prob
             rows.push((at, technique));
         }
     }
+    // A node serves cases of all sizes; each mesh may need a place more than it has triangles.
+    let places = |p: &Prepared| p.scene.triangles() + p.scene.instances.len();
+    let most = prepared.iter().map(places).max().unwrap_or(0) as u32;
     let mut rows: BTreeMap<(usize, usize), Row> = BTreeMap::new();
     let mut stage: Option<Stage> = None;
     for ((map, words), places) in &by_settings {
@@ -42,7 +45,10 @@ pub fn run(device: &HeadlessDevice, cases: &[HardCase]) -> Result<Vec<Row>, Prob
             let shown = prepared.show(device, stage.take()).map_err(Problem::of(case.title()))?;
             let shown = stage.insert(shown);
             if std::mem::take(&mut fresh) {
-                shown.configure(settings(words, *map)?).map_err(Problem::of(case.title()))?;
+                let made = shown.configure_with(settings(words, *map)?, |d| {
+                    d.capacity.triangles = d.capacity.triangles.max(most);
+                });
+                made.map_err(Problem::of(case.title()))?;
             }
             let row = prepared.row(shown, case, held).map_err(Problem::of(case.title()))?;
             rows.insert((at, technique), row);
@@ -51,11 +57,9 @@ pub fn run(device: &HeadlessDevice, cases: &[HardCase]) -> Result<Vec<Row>, Prob
     Ok(rows.into_values().collect())
 }
 
-/// Settings from the words of a command line.
+/// Settings from the words of a command line; `map` is the side of the maps of those that have any.
 pub fn settings(words: &str, map: u32) -> Result<Technique, Problem> {
-    let mut settings = technique_of(words)?;
-    settings.set("map", &map.to_string())?;
-    Ok(settings)
+    Ok(technique_of(words)?.with_map(map)?)
 }
 
 /// What ranges depend on.

@@ -146,6 +146,18 @@ pub const ALL: &[Held] = &[
         why: "half a texel's diagonal; 64 points, of which each of two edges meets 15 cells: 30/64, in the mean 0.02",
         ..EXACT
     },
+    Held {
+        name: "traced",
+        words: "technique=traced",
+        windowed: false,
+        // It has no map: an outline is where the triangles have it.
+        texels: 0.0,
+        // An edge meets at most 15 of the 8 × 8 cells, turned or not.
+        noise: 2.0 * 15.0 / 64.0,
+        mean_noise: 0.02,
+        why: "64 samples, of which each of two edges meets 15 cells: 30/64, in the mean 0.02; outlines are exact",
+        ..EXACT
+    },
     HARD,
     Held {
         name: "pcss",
