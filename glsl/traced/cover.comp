@@ -124,7 +124,7 @@ void main()
     face_light(pixels, corner);
     float offset = abs(light_x.w) + abs(light_y.w) + abs(light_z.w);
     enter_grid(SIDE);
-    sharp = 0.5 * ROUNDING * length(cross(light_x.xyz, light_y.xyz)) * vec2(offset, 1.0);
+    sharp = 0.5 * ROUNDING * length(light_x.xyz) * length(light_y.xyz) * vec2(offset, 1.0);
     int lane = int(gl_LocalInvocationIndex);
     ivec2 pixel0 = corner + ivec2(lane % TILE_SIDE, lane / TILE_SIDE);
     ivec2 pixel1 = pixel0 + ivec2(0, 8 / TILE_SIDE);
