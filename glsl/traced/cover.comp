@@ -37,8 +37,8 @@ Triangle triangle_of(uint nth, vec3 middle)
                     b.w * sharp.x + c.w * sharp.y);
 }
 
-// The light's samples that a triangle hides from a receiver at `q`, as bounds for each of the rows of samples; `first` is where the first
-// sample is, from the receiver, or for a sun along the light.
+// The light's samples that a triangle hides from a receiver at `q`, as bounds for each of the rows of samples; `first` is
+// where the first sample is, from the receiver, or for a sun along the light.
 Bounds bounds_of(Triangle t, vec3 q, vec3 first)
 {
     vec3 a = t.a - q;
@@ -57,8 +57,6 @@ Bounds bounds_of(Triangle t, vec3 q, vec3 first)
     bool open = of_ab.least == of_bc.least && of_bc.least == of_ca.least && !(of_ab.along || of_bc.along || of_ca.along);
     float nearest = min(a.z, min(b.z, c.z));
     float furthest = max(a.z, max(b.z, c.z));
-    volume = dot(cross(t.b - t.a, t.c - t.a), a);
-    side = volume < 0.0 ? -1.0 : 1.0;
     bool none = abs(volume) <= t.sharp || nearest > 0.0 || (open && furthest < 0.0);
     return bounds_of(of_ab, of_bc, of_ca, none);
 }

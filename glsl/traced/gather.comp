@@ -193,7 +193,8 @@ void main()
     }
     uvec2 others = slots[slot].others;
     uint at = shaft.count - 1u > FIRST_LEAVES ? others.x : others.y;
-    while (at < others.y) {
+    // Another compiler's rounding must not find more leaves than there is room for.
+    while (at < others.y && leaves < shaft.count - 1u) {
         Node node = node_at(at);
         bool inside = meets(planes, node);
         if (inside && node.leaf) {

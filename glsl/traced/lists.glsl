@@ -36,15 +36,16 @@ struct Slot {
 // A listed shaft, with its triangles.
 struct Entry {
     uint slot;
-    uint first;  // where its leaves begin, and then the triangles that hide more than that
-    uint leaves;
-    uint many;   // how many those are
-    uint few;    // how many hide some in a few rows of samples; they are behind the leaves
+    uint first;  // where its leaves begin, in whose place come the triangles that may hide any samples
+    uint leaves; // how many places the leaves have
+    uint many;   // the triangles in the leaves' place
+    uint few;    // those behind it, each of which hides samples in a few rows of samples alone
     uint kind;   // CROSSING, WIDE, or both
 };
 
-// A triangle crosses a lamp's plane; some that are behind the leaves hide more than a few rows of samples.
+// Among the triangles some cross a lamp's plane.
 const uint CROSSING = 1u;
+// The leaves' place was full, so that behind it are some that may hide any samples.
 const uint WIDE = 2u;
 
 // What comes before the entries: the shafts of the list from its beginning on, and from its end backwards; those behind

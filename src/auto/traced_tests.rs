@@ -103,7 +103,8 @@ fn a_plan_takes_what_is_chosen() {
     }
 }
 
-/// Its error is the samples', wherever the situation lies; that of maps grows with the distance from the table.
+/// The error of a technique that tests triangles is that of the light's samples, wherever the situation lies; the error of
+/// one with maps grows with the distance from the table.
 #[test]
 fn no_scene_makes_the_error_of_samples_larger_than_the_tables_worst() {
     let table = Table::own();

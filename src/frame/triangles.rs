@@ -115,21 +115,18 @@ impl TriangleList {
         self.origin = middle(listed().map(|(m, _)| m));
         let [of_meshes, key_bits] = MeshPush::key_bits(listed().count() as u32);
         let mut hasher = DefaultHasher::new();
-        let (mut first, mut sets, mut last) = (0u64, 0u32, None);
+        let mut needed = Needed::default();
         for (rank, (mesh, buffers)) in listed().enumerate() {
             buffers.hash_into(&mut hasher);
-            let one = self.mesh(&mesh, &buffers, first as u32)?;
+            let one = self.mesh(&mesh, &buffers, needed.triangles as u32)?;
             let key = (rank as u32).checked_shl(u32::BITS - of_meshes).unwrap_or(0);
-            first += u64::from(one.push.padded);
-            let pair = Some((one.positions, one.indices));
-            sets += u32::from(pair != last);
-            last = pair;
+            needed.add(&buffers, one.indices);
             self.meshes.push(TriangleMesh { push: MeshPush { key, key_bits, ..one.push }, ..one });
         }
-        if let Some(problem) = beyond(description.capacity, first, sets) {
+        if let Some(problem) = needed.beyond(description.capacity) {
             return bad(problem);
         }
-        self.sizes = Sizes { capacity, triangles: first as u32 };
+        self.sizes = Sizes { capacity, triangles: needed.triangles as u32 };
         self.key = hasher.finish();
         Ok(())
     }
@@ -140,12 +137,7 @@ impl TriangleList {
         buffers: &MeshBuffers,
         first: u32,
     ) -> Result<TriangleMesh, Error> {
-        let (indices, offset, index_bits) = match buffers.indices {
-            None => (buffers.positions, 0, 0),
-            Some((buffer, offset, vk::IndexType::UINT16)) => (buffer, offset / 2, 16),
-            Some((buffer, offset, vk::IndexType::UINT32)) => (buffer, offset / 4, 32),
-            Some((_, _, other)) => return bad(unread(other)),
-        };
+        let (indices, offset, index_bits) = indices_of(buffers).or_else(bad)?;
         let m = mesh.world_from_mesh;
         let row = |i: usize| {
             let row = m.row(i);
@@ -204,7 +196,7 @@ impl TriangleList {
 /// What keeps the triangles of a frame's blocking meshes out of a hierarchy, as a sentence without its full stop; `None`
 /// where [`TriangleList::fill`] takes all of them.
 pub(crate) fn kept_out(capacity: Capacity, meshes: &[MeshInstance]) -> Option<String> {
-    let (mut triangles, mut sets, mut last) = (0u64, 0u32, None);
+    let mut needed = Needed::default();
     let blocking = |(_, m): &(usize, &MeshInstance)| m.role.blocks() && has_triangles(m);
     for (index, mesh) in meshes.iter().enumerate().filter(blocking) {
         let Geometry::Buffers(buffers) = mesh.geometry else {
@@ -212,35 +204,54 @@ pub(crate) fn kept_out(capacity: Capacity, meshes: &[MeshInstance]) -> Option<St
                 "mesh {index} blocks light and is drawn by the host; give its buffers"
             ));
         };
-        let pair = match buffers.indices {
-            None => (buffers.positions, buffers.positions),
-            Some((indices, _, vk::IndexType::UINT16 | vk::IndexType::UINT32)) => {
-                (buffers.positions, indices)
-            }
-            Some((_, _, other)) => return Some(unread(other)),
-        };
-        triangles += u64::from((buffers.count / 3).next_multiple_of(LEAF));
-        sets += u32::from(last.replace(pair) != Some(pair));
+        match indices_of(&buffers) {
+            Ok((indices, ..)) => needed.add(&buffers, indices),
+            Err(problem) => return Some(problem),
+        }
     }
-    beyond(capacity, triangles, sets)
+    needed.beyond(capacity)
 }
 
-/// A sentence for more triangles, or meshes with buffers of their own, than a capacity has room for.
-fn beyond(capacity: Capacity, triangles: u64, sets: u32) -> Option<String> {
-    let Capacity { triangles: room, meshes: most } = capacity;
-    (triangles > u64::from(room) || sets > most).then(|| {
-        format!(
-            "{triangles} triangles in {sets} meshes block light, and the description's capacity is {room} in {most}; \
-             raise it"
-        )
-    })
+/// The room that blocking meshes need in a hierarchy.
+#[derive(Default)]
+struct Needed {
+    triangles: u64,
+    /// Meshes one behind the other with the same buffers count once.
+    sets: u32,
+    last: Option<[vk::Buffer; 2]>,
 }
 
-/// A sentence for indices of a type that no shader reads.
-fn unread(indices: vk::IndexType) -> String {
-    format!(
-        "a mesh has indices of the type {indices:?}, which no shader reads; give UINT16 or UINT32"
-    )
+impl Needed {
+    fn add(&mut self, buffers: &MeshBuffers, indices: vk::Buffer) {
+        self.triangles += u64::from((buffers.count / 3).next_multiple_of(LEAF));
+        let pair = [buffers.positions, indices];
+        self.sets += u32::from(self.last.replace(pair) != Some(pair));
+    }
+
+    /// A sentence where that is more than a capacity has.
+    fn beyond(&self, capacity: Capacity) -> Option<String> {
+        let Self { triangles, sets, .. } = self;
+        let Capacity { triangles: room, meshes: most } = capacity;
+        (*triangles > u64::from(room) || *sets > most).then(|| {
+            format!(
+                "{triangles} triangles in {sets} meshes block light, and the description's capacity is {room} in {most}; \
+                 raise it"
+            )
+        })
+    }
+}
+
+/// The buffer of a mesh's indices, the offset in it in indices, and their bits; that of the positions, 0 and 0 without
+/// any. A sentence for a type that no shader reads.
+fn indices_of(buffers: &MeshBuffers) -> Result<(vk::Buffer, u64, u32), String> {
+    match buffers.indices {
+        None => Ok((buffers.positions, 0, 0)),
+        Some((buffer, offset, vk::IndexType::UINT16)) => Ok((buffer, offset / 2, 16)),
+        Some((buffer, offset, vk::IndexType::UINT32)) => Ok((buffer, offset / 4, 32)),
+        Some((_, _, other)) => Err(format!(
+            "a mesh has indices of the type {other:?}, which no shader reads; give UINT16 or UINT32"
+        )),
+    }
 }
 
 /// A camera and a light in the hierarchy's space.
