@@ -109,7 +109,8 @@ struct GBuffer {
     int flags;              // bit 0: masked; bits 1 to 3: how normals are lent
     mat3 light_from_normal; // turns lent normals, where some are lent
 };
-layout(set = 0, binding = 19, std140) uniform Constants {
+// A storage buffer, since lavapipe compiles a shader again whenever a uniform buffer that its branches test is bound.
+layout(set = 0, binding = 19, std430) readonly buffer Constants {
     GBuffer lent_gbuffer;
 };
 // Read once: some drivers check the bounds of the buffer at each reading.

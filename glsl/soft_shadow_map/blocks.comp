@@ -13,12 +13,13 @@ layout(set = 0, binding = 0) uniform texture2D front_depth;
 layout(set = 0, binding = 1) uniform texture2D back_depth;
 layout(set = 0, binding = 2, std430) buffer Texels { float texels[]; };
 layout(set = 0, binding = 3, std430) buffer Blocks { uvec4 blocks[]; };
-layout(set = 0, binding = 4, std430) buffer Sums { vec4 sums[]; };
+layout(set = 0, binding = 4, std430) buffer Nodes { uvec4 nodes[]; };
 
 layout(push_constant) uniform Push {
     int map;        // the map's side in texels
     int row;        // blocks a row, a multiple of a superblock's
     float inv_near; // 1 over the near plane's distance, 1/m
+    int sums;       // where the prefix sums begin in nodes
     int faces;      // 0: both layers as they are; 1, 2: see below
 } push;
 
@@ -119,8 +120,8 @@ void main()
     for (int x = 0; x < BLOCK; ++x) {
         columns[x] = vec4(0.0);
     }
-    // Maps above 2048 texels a side have more blocks than these sums have room for; see GUARANTEED_RANGE.
-    bool room = (index + 1) * BLOCK_TEXELS <= sums.length();
+    // Maps of more than 1984 texels a side have more blocks than these sums have room for; see GUARANTEED_RANGE.
+    bool room = push.sums + (index + 1) * BLOCK_TEXELS <= nodes.length();
     for (int y = 0; y < BLOCK; ++y) {
         vec4 row = vec4(0.0);
         for (int x = 0; x < BLOCK; ++x) {
@@ -129,7 +130,7 @@ void main()
             row += w[i] > 0.0 ? vec4(1.0, d, d * d, d * d * d) : vec4(0.0);
             columns[x] += row;
             if (room) {
-                sums[index * BLOCK_TEXELS + i] = columns[x];
+                nodes[push.sums + index * BLOCK_TEXELS + i] = floatBitsToUint(columns[x]);
             }
         }
     }

@@ -2,7 +2,7 @@
 //
 // The hierarchical gather at four receivers at once, one lane of each vec4 a receiver.
 //
-// The including shader declares the buffers `texels`, `sums` and `nodes`, and the test against the receivers' own
+// The including shader declares the buffers `texels` and `nodes`, and the test against the receivers' own
 // planes:
 //     struct Receivers { vec4 t_x; vec4 t_y; vec4 w; ... };
 //     bvec4 is_above(vec2 lo, float w_o, Receivers r)
@@ -20,6 +20,7 @@ struct Map {
     float w_max;  // no occluder is nearer than 1/w_max
     float spread; // the series' limit, see classify
     int row;      // superblocks a row
+    int sums;     // where the prefix sums begin in `nodes`
 };
 
 float least(vec4 a)
@@ -61,18 +62,18 @@ vec4 texel_occlusion(vec2 lo, float w_o, Receivers r, vec2 scale)
     return mix(vec4(0.0), x * y, is_above(lo, w_o, r));
 }
 
-// The moments of the texels [lo, hi) of a block.
-vec4 sums_within(int block, ivec2 lo, ivec2 hi)
+// The moments of the texels [lo, hi) of a block whose prefix sums begin at `first`.
+vec4 sums_within(int first, ivec2 lo, ivec2 hi)
 {
-    int last = block * BLOCK_TEXELS - 1 - BLOCK;
-    vec4 s = sums[last + hi.y * BLOCK + hi.x];
+    int last = first - 1 - BLOCK;
+    vec4 s = uintBitsToFloat(nodes[last + hi.y * BLOCK + hi.x]);
     if (lo.x > 0) {
-        s -= sums[last + hi.y * BLOCK + lo.x];
+        s -= uintBitsToFloat(nodes[last + hi.y * BLOCK + lo.x]);
     }
     if (lo.y > 0) {
-        s -= sums[last + lo.y * BLOCK + hi.x];
+        s -= uintBitsToFloat(nodes[last + lo.y * BLOCK + hi.x]);
         if (lo.x > 0) {
-            s += sums[last + lo.y * BLOCK + lo.x];
+            s += uintBitsToFloat(nodes[last + lo.y * BLOCK + lo.x]);
         }
     }
     return s;
@@ -217,12 +218,13 @@ vec4 gather(Map map, int side, Receivers r)
         ivec2 outer_hi = ivec2(clamp(ceil(tile.t_max + reach - lo), 0.0, float(BLOCK)));
         uvec2 todo = node.mask & rectangle_mask(outer_lo, outer_hi);
         float deviation = max(node.w_max - node.mean, node.mean - node.w_min);
-        bool summed = (block + 1) * BLOCK_TEXELS <= sums.length();
+        int sums = map.sums + block * BLOCK_TEXELS;
+        bool summed = sums + BLOCK_TEXELS <= nodes.length();
         if (summed && plane > 0 && !pairs && deviation <= map.spread * (node.mean - tile.w.y)) {
             ivec2 core_lo = ivec2(clamp(ceil(tile.t_max - inner - lo), 0.0, float(BLOCK)));
             ivec2 core_hi = ivec2(clamp(floor(tile.t_min + inner - lo), 0.0, float(BLOCK)));
             if (core_lo.x < core_hi.x && core_lo.y < core_hi.y) {
-                sum_of_superblock += cell * series(sums_within(block, core_lo, core_hi), node.mean, r.w);
+                sum_of_superblock += cell * series(sums_within(sums, core_lo, core_hi), node.mean, r.w);
                 todo &= ~rectangle_mask(core_lo, core_hi);
             }
         }

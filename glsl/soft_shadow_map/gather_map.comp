@@ -11,9 +11,8 @@ layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0) uniform texture2D receiver_depth;
 layout(set = 0, binding = 1, std430) readonly buffer Texels { float texels[]; };
-layout(set = 0, binding = 2, std430) readonly buffer Sums { vec4 sums[]; };
-layout(set = 0, binding = 3, std430) readonly buffer Nodes { uvec4 nodes[]; };
-layout(set = 0, binding = 4, r32f) writeonly uniform image2D soft_shadow_map;
+layout(set = 0, binding = 2, std430) readonly buffer Nodes { uvec4 nodes[]; };
+layout(set = 0, binding = 3, r32f) writeonly uniform image2D soft_shadow_map;
 
 layout(push_constant) uniform Push {
     vec2 scale;              // (du/Lx, dv/Ly), 1/m
@@ -24,6 +23,7 @@ layout(push_constant) uniform Push {
     float receiver_inv_near; // 1 over the receiver map's near plane, 1/m
     int receiver_map;        // the receiver map's side in texels
     int row;                 // superblocks a row
+    int sums;                // where the prefix sums begin in nodes
     int side;                // 0 front, 1 back, 2 back or front, as in gather.glsl
 } push;
 
@@ -68,7 +68,7 @@ void main()
         r.t_y[i] = t.y;
         r.w[i] = stored > 0.0 ? stored * push.receiver_inv_near : NOTHING;
     }
-    Map map = Map(push.scale, push.w_max, push.spread, push.row);
+    Map map = Map(push.scale, push.w_max, push.spread, push.row, push.sums);
     vec4 occlusion = gather(map, push.side, r);
     for (int i = 0; i < 4; ++i) {
         ivec2 p = quad + ivec2(i & 1, i >> 1);

@@ -14,12 +14,11 @@ layout(local_size_x = 64) in;
 #include "soft_shadow_map/node.glsl"
 
 layout(set = 0, binding = 2, std430) readonly buffer Texels { float texels[]; };
-layout(set = 0, binding = 3, std430) readonly buffer Sums { vec4 sums[]; };
-layout(set = 0, binding = 4, std430) readonly buffer Nodes { uvec4 nodes[]; };
-layout(set = 0, binding = 5, r32f) writeonly uniform image2D visibility;
+layout(set = 0, binding = 3, std430) readonly buffer Nodes { uvec4 nodes[]; };
+layout(set = 0, binding = 4, r32f) writeonly uniform image2D visibility;
 
 #ifdef LISTED
-layout(set = 0, binding = 6, std430) readonly buffer Tiles { uint count; uint tiles[]; };
+layout(set = 0, binding = 5, std430) readonly buffer Tiles { uint count; uint tiles[]; };
 #include "common/lists.glsl"
 #endif
 
@@ -106,7 +105,7 @@ void main()
         // In a tile that no occluder can shadow, only a pixel's own surface hides light.
         r.w[i] = there && shadowable ? w : NOTHING;
     }
-    Map map = Map(push.scale, push.w_max, push.spread, push.row);
+    Map map = Map(push.scale, push.w_max, push.spread, push.row, push.sums);
     vec4 hidden = below;
     bool mean = (push.flags & 2) != 0;
     for (int side = 0; side <= (push.flags & 1); ++side) {

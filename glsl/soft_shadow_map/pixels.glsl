@@ -13,6 +13,7 @@ layout(push_constant) uniform Push {
     float spread;       // the series' limit, see classify
     float snap;         // how far a raster moves a vertex, in texels
     int row;            // superblocks a row
+    int sums;           // where the prefix sums begin in the gather's nodes
     int flags;          // bit 0: two sides; bit 1: their mean
     float depth_error;  // how far off an occluder's w may be beyond its rounding, 1/m
 } push;

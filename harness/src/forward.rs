@@ -64,12 +64,12 @@ impl Forward {
         let constants = plan.plan().graph.passes().iter().find(|p| p.name == "gbuffer.constants");
         let constants =
             constants.ok_or_else(|| Error::Frame("the plan has no constants".into()))?;
-        let uniform = |name, pass: &Pass| {
-            let usage = vk::BufferUsageFlags::UNIFORM_BUFFER;
+        let buffer = |name, pass: &Pass, usage| {
             HostBuffer::with_data(device, name, pass.push.bytes(), usage)
         };
-        let push = uniform("forward.push", trace)?;
-        let constants = uniform("forward.constants", constants)?;
+        let push = buffer("forward.push", trace, vk::BufferUsageFlags::UNIFORM_BUFFER)?;
+        let constants =
+            buffer("forward.constants", constants, vk::BufferUsageFlags::STORAGE_BUFFER)?;
         let extent = stage.gbuffer().depth.extent();
         let image = |name, format, usage| OwnedImage::new(device, name, format, extent, usage);
         let draws = draws(scene, stage.buffers(), stage.view(), keep);
@@ -85,7 +85,7 @@ impl Forward {
         let bound = [
             (0, Bound::Uniform(&push)),
             (2, Bound::Fetched(view, left)),
-            (19, Bound::Uniform(&constants)),
+            (19, Bound::Storage(&constants)),
         ];
         let set = BoundSet::new(device, vk::ShaderStageFlags::FRAGMENT, &bound)?;
         let formats = [visibility::FORMAT];

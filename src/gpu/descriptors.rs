@@ -40,7 +40,6 @@ impl Descriptors {
             vk::DescriptorType::SAMPLED_IMAGE,
             vk::DescriptorType::STORAGE_IMAGE,
             vk::DescriptorType::STORAGE_BUFFER,
-            vk::DescriptorType::UNIFORM_BUFFER,
         ];
         let sizes: Vec<_> = types
             .iter()
@@ -110,11 +109,10 @@ impl Descriptors {
                 .dst_set(set)
                 .dst_binding(binding)
                 .descriptor_type(kind);
-            writes[count] = match kind {
-                vk::DescriptorType::STORAGE_BUFFER | vk::DescriptorType::UNIFORM_BUFFER => {
-                    write.buffer_info(std::slice::from_ref(&buffers[at]))
-                }
-                _ => write.image_info(std::slice::from_ref(&images[at])),
+            writes[count] = if kind == vk::DescriptorType::STORAGE_BUFFER {
+                write.buffer_info(std::slice::from_ref(&buffers[at]))
+            } else {
+                write.image_info(std::slice::from_ref(&images[at]))
             };
             count += 1;
         }

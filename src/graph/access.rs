@@ -33,8 +33,6 @@ pub enum Access {
     BufferUpdate,
     /// A storage buffer that a vertex shader reads.
     BufferReadVertex,
-    /// A uniform buffer that a compute shader reads.
-    Uniform,
     /// A buffer that holds the arguments of an indirect draw or dispatch.
     Indirect,
     /// A buffer that a command writes, without a shader.
@@ -155,7 +153,7 @@ impl Scope {
 
 impl Access {
     /// Every access, in the order of the variants.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 13] = [
         Self::SampledCompute,
         Self::SampledFragment,
         Self::ImageRead,
@@ -165,7 +163,6 @@ impl Access {
         Self::BufferWriteCompute,
         Self::BufferUpdate,
         Self::BufferReadVertex,
-        Self::Uniform,
         Self::Indirect,
         Self::TransferWrite,
         Self::DepthTarget,
@@ -210,7 +207,6 @@ impl Access {
                 (S::COMPUTE_SHADER, A::SHADER_READ | A::SHADER_WRITE, L::UNDEFINED)
             }
             Self::BufferReadVertex => (S::VERTEX_SHADER, A::SHADER_READ, L::UNDEFINED),
-            Self::Uniform => (S::COMPUTE_SHADER, A::UNIFORM_READ, L::UNDEFINED),
             Self::Indirect => (S::DRAW_INDIRECT, A::INDIRECT_COMMAND_READ, L::UNDEFINED),
             Self::TransferWrite => (S::TRANSFER, A::TRANSFER_WRITE, L::UNDEFINED),
             Self::DepthTarget => (
@@ -245,7 +241,6 @@ impl Access {
             | Self::BufferWriteCompute
             | Self::BufferUpdate
             | Self::BufferReadVertex => vk::BufferUsageFlags::STORAGE_BUFFER,
-            Self::Uniform => vk::BufferUsageFlags::UNIFORM_BUFFER,
             Self::Indirect => vk::BufferUsageFlags::INDIRECT_BUFFER,
             Self::TransferWrite => vk::BufferUsageFlags::TRANSFER_DST,
             _ => vk::BufferUsageFlags::empty(),
@@ -264,7 +259,6 @@ impl Access {
             | Self::BufferWriteCompute
             | Self::BufferUpdate
             | Self::BufferReadVertex => Some(vk::DescriptorType::STORAGE_BUFFER),
-            Self::Uniform => Some(vk::DescriptorType::UNIFORM_BUFFER),
             Self::Indirect | Self::TransferWrite | Self::DepthTarget | Self::ColorTarget => None,
         }
     }

@@ -117,7 +117,7 @@ impl GBuffer {
 
     /// The use of the constants alone.
     pub(crate) fn constants_use(&self) -> Use {
-        Use::bound(CONSTANTS_AT, self.constants, Access::Uniform)
+        Use::bound(CONSTANTS_AT, self.constants, Access::BufferReadCompute)
     }
 }
 

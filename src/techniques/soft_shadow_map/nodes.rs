@@ -21,10 +21,11 @@ const FAMILY: u64 = 17;
 pub(super) struct Nodes {
     pub texels: ResourceId,
     pub blocks: ResourceId,
-    /// The prefix sums that give the moments of any rectangle of a block's texels.
-    pub sums: ResourceId,
-    /// Superblocks with their blocks.
+    /// Superblocks with their blocks, and behind them the prefix sums that give the moments of any rectangle of a
+    /// block's texels: one buffer, since a stage has four for sure.
     pub families: ResourceId,
+    /// Where the sums begin in it, in 16 bytes.
+    pub sums: u32,
     /// The number of blocks in a row of the map, a multiple of a superblock's.
     pub block_row: u32,
     pub superblock_row: u32,
@@ -57,6 +58,8 @@ pub struct Blocks {
     pub row: i32,
     /// 1 over the near plane's distance, 1/m.
     pub inv_near: f32,
+    /// Where the prefix sums begin among the nodes, in 16 bytes.
+    pub sums: i32,
     /// 0: both layers as they are; 1: front texels take the back layer's distance where it has one; 2:
     /// back texels behind a front that is flatter by far are left out.
     pub faces: i32,
@@ -83,16 +86,16 @@ pub(super) fn declare_nodes(
     let count = |row: u32| u64::from(row) * u64::from(row) * u64::from(sides);
     let node_bytes = 2 * size_of::<[f32; 4]>() as u64;
     let texels_a_block = u64::from(BLOCK * BLOCK);
+    let families = count(superblock_row) * FAMILY * node_bytes;
     let nodes = Nodes {
         texels: graph.buffer("soft_shadow_map.texels", count(block_row) * texels_a_block * 4),
         blocks: graph.buffer("soft_shadow_map.blocks", count(block_row) * node_bytes),
-        sums: graph.buffer(
-            "soft_shadow_map.sums",
-            // Above N = 2048 they would be larger; blocks beyond have no sums.
-            (count(block_row) * texels_a_block * 16).min(STORAGE_BYTES),
+        families: graph.buffer(
+            "soft_shadow_map.families",
+            // From N = 1,985 on it would be larger with two sides; blocks beyond have no sums.
+            (families + count(block_row) * texels_a_block * 16).min(STORAGE_BYTES),
         ),
-        families: graph
-            .buffer("soft_shadow_map.families", count(superblock_row) * FAMILY * node_bytes),
+        sums: (families / 16) as u32,
         block_row,
         superblock_row,
     };
@@ -104,6 +107,7 @@ pub(super) fn declare_nodes(
             map: inputs.occluders.side as i32,
             row: block_row as i32,
             inv_near: (1.0 / inputs.occluders.near) as f32,
+            sums: nodes.sums as i32,
             faces: match combination(settings) {
                 Sides::Bottom => 1,
                 Sides::Mean => 2,
@@ -115,7 +119,7 @@ pub(super) fn declare_nodes(
             Use::bound(1, layers.back.unwrap_or(layers.front), Access::SampledCompute),
             Use::bound(2, nodes.texels, Access::BufferWriteCompute),
             Use::bound(3, nodes.blocks, Access::BufferWriteCompute),
-            Use::bound(4, nodes.sums, Access::BufferWriteCompute),
+            Use::bound(4, nodes.families, Access::BufferWriteCompute),
         ],
         inputs.need,
     ));

@@ -28,6 +28,8 @@ pub struct GatherPixels {
     pub snap: f32,
     /// The number of superblocks in a row of the map.
     pub row: i32,
+    /// Where the prefix sums begin among the nodes, in 16 bytes.
+    pub sums: i32,
     /// Bit 0: two sides; bit 1: their mean.
     pub flags: i32,
     /// The error of an occluder's w beyond its rounding, 1/m.
@@ -43,9 +45,8 @@ pub(super) fn gather(graph: &mut Graph, nodes: &Nodes, settings: &Settings, inpu
     let mut uses = Uses::from_slice(&gbuffer.all_bound());
     uses.extend([
         Use::bound(2, nodes.texels, Access::BufferReadCompute),
-        Use::bound(3, nodes.sums, Access::BufferReadCompute),
-        Use::bound(4, nodes.families, Access::BufferReadCompute),
-        Use::bound(5, visibility, write),
+        Use::bound(3, nodes.families, Access::BufferReadCompute),
+        Use::bound(4, visibility, write),
     ]);
     if settings.classify {
         let tiles = Tiles::start(graph, gbuffer.extent, inputs.need);
@@ -63,7 +64,7 @@ pub(super) fn gather(graph: &mut Graph, nodes: &Nodes, settings: &Settings, inpu
             (NAME, module!("soft_shadow_map/gather_pixels_listed.comp")),
             push,
             uses,
-            6,
+            5,
             inputs.need,
         );
     } else {
@@ -93,6 +94,7 @@ fn pixel_push(nodes: &Nodes, settings: &Settings, inputs: &PassInputs) -> Gather
         snap: inputs.snap,
         depth_error: inputs.depth_error as f32,
         row: nodes.superblock_row as i32,
+        sums: nodes.sums as i32,
         flags: two | mean << 1,
     }
 }

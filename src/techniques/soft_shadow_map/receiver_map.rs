@@ -49,6 +49,8 @@ pub struct GatherMap {
     pub receiver_map: i32,
     /// The number of superblocks in a row of the map.
     pub row: i32,
+    /// Where the prefix sums begin among the nodes, in 16 bytes.
+    pub sums: i32,
     /// 0 front, 1 back.
     pub side: i32,
 }
@@ -85,6 +87,7 @@ pub(super) fn gather_map(
             receiver_inv_near: (1.0 / view.near) as f32,
             receiver_map: settings.receiver_map as i32,
             row: nodes.superblock_row as i32,
+            sums: nodes.sums as i32,
             side: match (side, settings.sides) {
                 (1, Sides::Mean) => BACK_OR_FRONT,
                 _ => side as i32,
@@ -93,9 +96,8 @@ pub(super) fn gather_map(
         smallvec![
             Use::bound(0, receiver_depth, Access::SampledCompute),
             Use::bound(1, nodes.texels, Access::BufferReadCompute),
-            Use::bound(2, nodes.sums, Access::BufferReadCompute),
-            Use::bound(3, nodes.families, Access::BufferReadCompute),
-            Use::bound(4, map, Access::ImageWrite),
+            Use::bound(2, nodes.families, Access::BufferReadCompute),
+            Use::bound(3, map, Access::ImageWrite),
         ],
         inputs.need,
     ));
