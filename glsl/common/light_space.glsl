@@ -1,6 +1,6 @@
 // Entered from one_map.glsl, soft_shadow_map/gather_pixels.comp, ray_march/pixel.glsl and others; at first skip what is behind GBUFFER.
 //
-// Light space: the light's own coordinates. It holds the receivers, their planes, the occlusion by a micro-patch, and
+// Light space: the light's own coordinates. It holds the light's texture, the receivers, their planes, the occlusion by a micro-patch, and
 // the error of the test whether an occluder lies above a receiver's plane.
 //
 // A point of light space at distance d is kept as (u, v, w) = (x/d, y/d, 1/d). A texel of a light-space
@@ -30,6 +30,22 @@ vec3 unfolded(vec2 flat_n)
 {
     float z = 1.0 - abs(flat_n.x) - abs(flat_n.y);
     return normalize(vec3(z < 0.0 ? over_the_edge(flat_n) : flat_n, z));
+}
+
+// ---------------------------------------------------------------------------------------------
+// What a texel of the light's texture emits. Light space has y against the light's second half-axis, so that the first
+// row of texels is where that axis points.
+
+// Red, green and blue: what is below 0 or no number is dark, and what is too bright for sums is as bright as they allow.
+vec3 emitted_by(vec4 texel)
+{
+    return mix(vec3(0.0), min(texel.rgb, 1.0e18), greaterThan(texel.rgb, vec3(0.0)));
+}
+
+// The luminance of linear sRGB.
+float luminance(vec3 color)
+{
+    return dot(color, vec3(0.2126, 0.7152, 0.0722));
 }
 
 // ---------------------------------------------------------------------------------------------

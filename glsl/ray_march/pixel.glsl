@@ -226,18 +226,16 @@ bool is_open(ivec2 p, inout Receiver r, out float v, out Reach reach)
 #ifdef TEXTURED
 layout(set = 0, binding = 7) uniform texture2D light_texture;
 
-// The light's emission at a point of [0, 1]^2. Light space has y against the light's second half-axis, so that the
-// texture's first row of texels is where that axis points.
+// The light's emission at a point of [0, 1]^2.
 FRACTION emitted_at(vec2 s)
 {
     ivec2 size = textureSize(light_texture, 0);
     ivec2 texel = clamp(ivec2(s * vec2(size)), ivec2(0), size - 1);
-    vec3 color = max(texelFetch(light_texture, texel, 0).rgb, vec3(0.0));
+    vec3 color = emitted_by(texelFetch(light_texture, texel, 0));
 #ifdef COLOR
     return color;
 #else
-    // Luminance of linear sRGB.
-    return dot(color, vec3(0.2126, 0.7152, 0.0722));
+    return luminance(color);
 #endif
 }
 #endif

@@ -15,7 +15,7 @@ layout(set = 0, binding = 3, rgba32f) readonly uniform image2D triangles;
 layout(set = 0, binding = 4, std430) readonly buffer Slots { Slot slots[]; };
 layout(set = 0, binding = 5, std430) readonly buffer Entries { Head head; Entry entries[]; };
 layout(set = 0, binding = 6, std430) readonly buffer Lists { uint lists[]; };
-layout(set = 0, binding = 7, r32f) writeonly uniform image2D visibility;
+layout(set = 0, binding = 7, VISIBILITY_FORMAT) writeonly uniform image2D visibility;
 
 // How much a triangle's area, and its area times its size, allow a volume to be off by rounding.
 vec2 sharp;
@@ -94,19 +94,33 @@ Mask behind_plane(Triangle t, vec3 q, vec3 first, float word)
     return samples_between(bounds_of(own, own, own, false), word);
 }
 
-// The sum of the weights of the samples that a mask of words from `first` on does not hide.
-float seen_of(Mask hidden, int first)
+// What all samples count for.
+SUM whole_light()
 {
-    float seen = 0.0;
+#ifdef TEXTURED
+    SUM whole = SUM(0.0);
+    for (int nth = 0; nth < SIDE * SIDE; ++nth) {
+        whole += weight_of(nth, SIDE);
+    }
+    return whole;
+#else
+    return WEIGHED ? frame.weight : float(SIDE * SIDE);
+#endif
+}
+
+// What the samples count for that a mask of words from `first` on does not hide.
+SUM seen_of(Mask hidden, int first)
+{
+    SUM seen = SUM(0.0);
     int count = 0;
     for (int i = 0; i < MASK_WORDS; ++i) {
         uint word = ~word_of(hidden, i);
         count += bitCount(int(word));
-        for (int bit = 0; bit < (frame.weight > 0.0 ? 32 : 0); ++bit) {
-            seen += (word >> bit & 1u) != 0u ? weight_of((first + i) * 32 + bit, SIDE) : 0.0;
+        for (int bit = 0; bit < (WEIGHED ? 32 : 0); ++bit) {
+            seen += (word >> bit & 1u) != 0u ? weight_of((first + i) * 32 + bit, SIDE) : SUM(0.0);
         }
     }
-    return frame.weight > 0.0 ? seen : float(count);
+    return WEIGHED ? seen : SUM(count);
 }
 
 void main()
@@ -136,7 +150,8 @@ void main()
     bool crossing = (entry.kind & CROSSING) != 0u;
     uint few = (entry.kind & WIDE) != 0u ? 0u : entry.few;
     uint many = entry.many + entry.few - few;
-    vec2 seen = vec2(0.0);
+    SUM seen0 = SUM(0.0);
+    SUM seen1 = SUM(0.0);
     for (int m = 0; m < MASKS; ++m) {
         float word = float(m * MASK_WORDS);
         Mask hidden0 = whole_mask(mine0 ? 0u : 0xffffffffu);
@@ -160,13 +175,14 @@ void main()
             hidden0 = either(hidden0, by0);
             hidden1 = either(hidden1, by1);
         }
-        seen += vec2(seen_of(hidden0, m * MASK_WORDS), seen_of(hidden1, m * MASK_WORDS));
+        seen0 += seen_of(hidden0, m * MASK_WORDS);
+        seen1 += seen_of(hidden1, m * MASK_WORDS);
     }
-    seen /= frame.weight > 0.0 ? frame.weight : float(SIDE * SIDE);
+    SUM whole = whole_light();
     if (mine0) {
-        imageStore(visibility, pixel0, vec4(seen.x));
+        imageStore(visibility, pixel0, fraction_of(seen0, whole));
     }
     if (mine1) {
-        imageStore(visibility, pixel1, vec4(seen.y));
+        imageStore(visibility, pixel1, fraction_of(seen1, whole));
     }
 }

@@ -48,12 +48,45 @@ const int TILE_PIXELS = TILE_SIDE * TILE_SIDE;
 // Shafts a tile: its receivers may lie in two groups, one behind the other.
 const uint SHAFTS_A_TILE = 2u;
 
-// The weight of the nth sample of a light with `side` of them along a side; see `weights`.
-float weight_of(int nth, int side)
+// With `#define TEXTURED` samples count for what the light's texture emits in their cells (traced/emission.comp), by color;
+// with `#define COLOR` too there is a visible fraction of each color.
+#ifdef TEXTURED
+#define SUM vec3
+#define WEIGHED true
+layout(set = 0, binding = 8) uniform texture2D emission;
+#else
+#define SUM float
+#define WEIGHED (frame.weight > 0.0)
+#endif
+
+#ifdef COLOR
+#define VISIBILITY_FORMAT rgba32f
+#else
+#define VISIBILITY_FORMAT r32f
+#endif
+
+// What the nth sample of a light with `side` of them along a side counts for; see `weights`.
+SUM weight_of(int nth, int side)
 {
     ivec2 at = ivec2(nth % side, nth / side);
     int place = side == 32 ? (at.y >> 1) * 16 + (at.x >> 1) : nth;
-    return float(frame.weights[place >> 1] >> 16 * (place & 1) & 0xffffu);
+    float share = frame.weight > 0.0 ? float(frame.weights[place >> 1] >> 16 * (place & 1) & 0xffffu) : 1.0;
+#ifdef TEXTURED
+    return share * texelFetch(emission, at, 0).rgb;
+#else
+    return share;
+#endif
+}
+
+// The texel of the visible fraction where samples are seen that count for `seen` of `all`; a light that emits nothing is
+// visible.
+vec4 fraction_of(SUM seen, SUM all)
+{
+#ifdef TEXTURED
+    return vec4(mix(seen / max(all, 1.0e-37), vec3(1.0), equal(all, vec3(0.0))), 1.0);
+#else
+    return vec4(vec3(all > 0.0 ? seen / all : 1.0), 1.0);
+#endif
 }
 
 ivec2 tiles_in(ivec2 extent)

@@ -15,7 +15,7 @@ layout(set = 0, binding = 4, rgba32f) readonly uniform image2D triangles;
 layout(set = 0, binding = 5, std430) readonly buffer Slots { Slot slots[]; };
 layout(set = 0, binding = 6, std430) buffer Entries { Head head; Entry entries[]; };
 layout(set = 0, binding = 7, std430) buffer Lists { uint lists[]; };
-layout(set = 0, binding = 8, r32f) writeonly uniform image2D visibility;
+layout(set = 0, binding = 8, VISIBILITY_FORMAT) writeonly uniform image2D visibility;
 
 #include "traced/shaft.glsl"
 
@@ -242,7 +242,7 @@ void main()
     }
     for (int i = 0; i < (shadowed ? 0 : TILE_PIXELS); ++i) {
         if ((shaft.pixels >> i & 1u) != 0u) {
-            imageStore(visibility, corner + ivec2(i % TILE_SIDE, i / TILE_SIDE), vec4(hidden ? 0.0 : 1.0));
+            imageStore(visibility, corner + ivec2(i % TILE_SIDE, i / TILE_SIDE), vec4(vec3(hidden ? 0.0 : 1.0), 1.0));
         }
     }
 }

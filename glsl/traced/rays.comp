@@ -14,7 +14,7 @@ layout(set = 0, binding = 3, rgba32ui) readonly uniform uimage2D nodes;
 layout(set = 0, binding = 4, rgba32f) readonly uniform image2D triangles;
 layout(set = 0, binding = 5, std430) readonly buffer Slots { Slot slots[]; };
 layout(set = 0, binding = 6, std430) readonly buffer Entries { Head head; Entry entries[]; };
-layout(set = 0, binding = 7, r32f) writeonly uniform image2D visibility;
+layout(set = 0, binding = 7, VISIBILITY_FORMAT) writeonly uniform image2D visibility;
 
 #include "hierarchy/segment.glsl"
 
@@ -63,21 +63,21 @@ void main()
     Receiver r = receiver_of(pixel);
     int turns = MOST_TURNS;
     int sent = 0;
-    float sum = 0.0;
-    float seen = 0.0;
+    SUM sum = SUM(0.0);
+    SUM seen = SUM(0.0);
     while (sent < int(frame.samples) && turns > 0) {
         int number = sample_number(sent, int(frame.side));
         vec2 at = sample_at(number, int(frame.side)) * half_light;
-        float weight = frame.weight > 0.0 ? weight_of(number, int(frame.side)) : 1.0;
+        SUM weight = weight_of(number, int(frame.side));
         vec3 in_light = is_sun() ? vec3(at, -1.0) : vec3(at, 0.0) - r.in_light;
         in_light *= is_sun() ? 1.0 : 1.0 - light_end / r.in_light.z;
         vec3 along = in_light.x * light_x.xyz + in_light.y * light_y.xyz + in_light.z * light_z.xyz;
         Segment s = segment_of(r.position, along, !is_sun());
-        // A sample outside the light's shape needs no ray.
-        bool hit = weight > 0.0 && blocked(s, frame.nodes, turns);
+        // A sample that is dark, or outside the light's shape, needs no ray.
+        bool hit = weight != SUM(0.0) && blocked(s, frame.nodes, turns);
         sent += 1;
         sum += weight;
-        seen += hit ? 0.0 : weight;
+        seen += hit ? SUM(0.0) : weight;
     }
-    imageStore(visibility, pixel, vec4(sum > 0.0 ? seen / sum : 1.0));
+    imageStore(visibility, pixel, fraction_of(seen, sum));
 }

@@ -12,7 +12,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 3, rgba32ui) readonly uniform uimage2D nodes;
 layout(set = 0, binding = 4, std430) buffer Slots { Slot slots[]; };
-layout(set = 0, binding = 5, r32f) writeonly uniform image2D visibility;
+layout(set = 0, binding = 5, VISIBILITY_FORMAT) writeonly uniform image2D visibility;
 
 #include "traced/shaft.glsl"
 

@@ -328,13 +328,9 @@ fn is_line(frame: &Frame) -> bool {
 /// Why no technique that works with the triangles themselves can run, as a sentence; `None` where one can.
 fn no_triangles(description: &Description, frame: &Frame) -> Option<String> {
     let reader = techniques().iter().find(|t| t.room().reads_triangles())?;
-    let why = if description.light_texture.is_some() && !reader.room().takes().texture {
-        Some("the light has a texture, which it does not take".into())
-    } else if let (Some(_), Err(why)) = (description.occluder_maps, reader.room().takes().lent_maps)
-    {
-        Some(format!("the host lends maps, and it {why}"))
-    } else {
-        frame::kept_out(description.capacity, frame.meshes)
+    let why = match (description.occluder_maps, reader.room().takes().lent_maps) {
+        (Some(_), Err(why)) => Some(format!("the host lends maps, and it {why}")),
+        _ => frame::kept_out(description.capacity, frame.meshes),
     };
     why.map(|why| format!("{} is left out: {why}", reader.name()))
 }

@@ -8,7 +8,7 @@ use super::expected::{Expected, drop_the_slow, expect, share};
 use super::shafts::shaft_work;
 use super::tests::{CUBE, auto, description, frame, ground, mesh, over, square};
 use super::*;
-use crate::frame::{Capacity, Description, LightTexture};
+use crate::frame::{Capacity, Description};
 use crate::lent::{Geometry, MeshInstance};
 use crate::scene::Role;
 use ash::vk;
@@ -48,9 +48,7 @@ fn a_room_is_traced_and_the_promise_is_kept() {
 fn where_triangles_cannot_be_had_they_are_no_candidate_and_the_choice_says_why() {
     let small = Capacity { triangles: 40, meshes: 8 };
     let few = Capacity { triangles: 1 << 10, meshes: 1 };
-    let texture = LightTexture { format: vk::Format::R8G8B8A8_UNORM, color: false };
     let with = |capacity| Description { capacity, ..description() };
-    let textured = Description { light_texture: Some(texture), ..description() };
     let mapped = Description { occluder_maps: Some(vk::Format::D32_SFLOAT), ..description() };
     let mut drawn = room();
     drawn[3].geometry = Geometry::HostDrawn(7);
@@ -64,7 +62,6 @@ fn where_triangles_cannot_be_had_they_are_no_candidate_and_the_choice_says_why()
             room(),
             "48 triangles in 1 meshes block light, and the description's capacity is 40",
         ),
-        (textured, room(), "the light has a texture"),
         (mapped, room(), "the host lends maps"),
         (description(), drawn, "mesh 3 blocks light and is drawn by the host; give its buffers"),
         (description(), bytes, "indices of the type"),

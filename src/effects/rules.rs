@@ -288,7 +288,7 @@ pub const RULES: [Rule; COUNT] = [
         name: "texture of the light",
         needed: "the host lends one",
         bound: "0",
-        passes: "the texture in `ray_march.trace`",
+        passes: "the texture in `ray_march.trace`; `traced.emission`",
         soft: false,
         judge: |case| where_present(case.texture),
         why: |_, needed| match needed {

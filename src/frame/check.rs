@@ -37,6 +37,20 @@ fn check_shape(light: &Light, technique: &str, takes: &Takes) -> Result<(), Erro
     ))
 }
 
+/// Checks that a texture can lie on a light: it covers the rectangle around a flat one.
+///
+/// # Errors
+/// [`Error::Frame`] for a light that is not flat.
+fn check_textured(light: &Light) -> Result<(), Error> {
+    match light.shape() {
+        Shape::Rectangle | Shape::Polygon(_) | Shape::Disc { .. } | Shape::Sun { .. } => Ok(()),
+        shape => bad(format!(
+            "the light is a {}, which is not flat, and a light texture lies on flat ones; leave light_texture out",
+            shape.name()
+        )),
+    }
+}
+
 impl Description {
     /// Checks the number of audited pixels, and that their exact fraction can be traced.
     ///
@@ -93,6 +107,9 @@ impl Frame<'_> {
             ));
         }
         check_shape(&self.light, technique, takes)?;
+        if description.light_texture.is_some() {
+            check_textured(&self.light)?;
+        }
         let [width, height] = self.light.rectangle().half_extents().map(|half| 2.0 * half);
         let is_point = self.light.shape() == Shape::Point;
         let is_length = |side: f64| LENGTHS.contains(&side);

@@ -92,7 +92,7 @@ pub struct Description {
     /// `None` where the node draws meshes.
     pub occluder_maps: Option<vk::Format>,
     /// The texture of the light's emission, which the host lends each frame ([`Frame::light_texture`]); `None` for a
-    /// light of uniform emission. Only `ray-march` accepts a texture.
+    /// light of uniform emission. `ray-march` and `traced` accept a texture.
     pub light_texture: Option<LightTexture>,
     /// The most triangles and meshes that block light, where a technique works with the triangles themselves.
     pub capacity: Capacity,
@@ -249,8 +249,8 @@ impl Description {
         room::check_extent(room, self.extent)?;
         if self.light_texture.is_some() && !takes.texture {
             return Err(Error::Frame(format!(
-                "{name} does not weigh what the light emits where; choose ray-march, or leave \
-                 light_texture out"
+                "{name} does not weigh what the light emits where; choose ray-march or traced, or \
+                 leave light_texture out"
             )));
         }
         Ok(())

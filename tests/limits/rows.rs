@@ -49,7 +49,10 @@ fn descriptions() -> Vec<(String, Description)> {
         "technique=traced samples=1024",
     ] {
         let textures: &[Option<bool>] =
-            if words.contains("ray-march") { &[None, Some(false), Some(true)] } else { &[None] };
+            match words.contains("ray-march") || words.contains("traced") {
+                true => &[None, Some(false), Some(true)],
+                false => &[None],
+            };
         for ((mask_format, occluder_maps), texture) in
             [(None, None), (Some(vk::Format::R8_UNORM), None), (None, Some(vk::Format::D32_SFLOAT))]
                 .into_iter()

@@ -1,8 +1,8 @@
-//! Lights that do not emit the same everywhere: rays weigh what they emit, in color where asked for.
+//! Lights that do not emit the same everywhere: rays and samples weigh what they emit, by color where the result is.
 
 use antumbra::scene::{Scene, generate};
 use antumbra::truth::visible_fraction_of_quad;
-use antumbra::{Description, Error, Frame, LightTexture, RectangleLight, Scope};
+use antumbra::{Description, Error, Frame, Light, LightTexture, RectangleLight, Scope};
 use antumbra_harness::{HeadlessDevice, OwnedImage, Stage};
 use antumbra_tests::device;
 use antumbra_tests::measure::{Setup, percent, settings};
@@ -56,6 +56,17 @@ fn exact(setup: &Setup, stage: &Stage, part: &RectangleLight) -> Vec<f32> {
     receivers.iter().map(fraction).collect()
 }
 
+/// All ways of the technique that tests triangles: by each number of samples, and by rays alone.
+const TRACED: [&str; 4] = [
+    "technique=traced",
+    "technique=traced samples=256",
+    "technique=traced samples=1024",
+    "technique=traced leaves=1 samples=256 rays=256",
+];
+
+/// The most that their mean error may be, in percent.
+const MOST: [f64; 4] = [2.5, 1.2, 0.6, 1.2];
+
 fn card(light: RectangleLight) -> Scene {
     generate::card(light)
 }
@@ -66,24 +77,27 @@ fn white_is_no_texture() {
     let device = device();
     let scene = card(generate::square_light(0.4).unwrap());
     let setup = Setup::ground(&scene, 2.2, 96);
-    let words = "technique=ray-march rays=64 filter=off";
-    let plain = setup.visibility(&mut setup.stage(&device, words));
     let white = texture(&device, [3, 5], &[[1.0; 4]; 15]);
-    let mut grey = stage(&device, &setup, words, false);
-    run(&mut grey, &setup.light(), &white);
-    let mut color = stage(&device, &setup, words, true);
-    run(&mut color, &setup.light(), &white);
-    let grey = grey.visibility().unwrap();
-    let color = color.visibility_of_color().unwrap();
-    for ((v, g), c) in plain.iter().zip(&grey).zip(&color) {
-        assert!((v - g).abs() < 1e-6, "{v}, {g}");
-        assert!(c.iter().take(3).all(|x| (x - g).abs() < 1e-6) && c[3] == 1.0, "{g}, {c:?}");
+    for words in ["technique=ray-march rays=64 filter=off"].iter().chain(&TRACED) {
+        let plain = setup.visibility(&mut setup.stage(&device, words));
+        let mut grey = stage(&device, &setup, words, false);
+        run(&mut grey, &setup.light(), &white);
+        let mut color = stage(&device, &setup, words, true);
+        run(&mut color, &setup.light(), &white);
+        let grey = grey.visibility().unwrap();
+        let color = color.visibility_of_color().unwrap();
+        assert!(plain.contains(&0.0) && plain.contains(&1.0));
+        for ((v, g), c) in plain.iter().zip(&grey).zip(&color) {
+            assert!((v - g).abs() < 1e-6, "{words}: {v}, {g}");
+            let same = c.iter().take(3).all(|x| (x - g).abs() < 1e-6) && c[3] == 1.0;
+            assert!(same, "{words}: {g}, {c:?}");
+        }
     }
 }
 
 /// Each color comes from its own quadrant of the light, and is as visible as a light of that size there.
 /// Rays go to a quarter of the light each, 64 of 256: their noise is 0.3 · 64^(−0.77) = 1.2 % before the
-/// filter.
+/// filter. Of 64 samples 16 are in a quarter.
 #[test]
 fn a_color_is_as_visible_as_its_part_of_the_light() {
     let device = device();
@@ -93,19 +107,23 @@ fn a_color_is_as_visible_as_its_part_of_the_light() {
     let [red, green, blue, black] =
         [[1.0, 0.0, 0.0, 1.0], [0.0, 2.0, 0.0, 1.0], [0.0, 0.0, 0.5, 1.0], [0.0; 4]];
     let image = texture(&device, [2, 2], &[red, green, blue, black]);
-    let mut stage = stage(&device, &setup, "technique=ray-march rays=256", true);
-    run(&mut stage, &setup.light(), &image);
-    let seen = stage.visibility_of_color().unwrap();
-    for (channel, name, right, bottom) in
-        [(0, "red", false, false), (1, "green", true, false), (2, "blue", false, true)]
+    for (words, bound) in
+        [("technique=ray-march rays=256", 1.0)].into_iter().chain(TRACED.into_iter().zip(MOST))
     {
-        let channel_of: Vec<f32> = seen.iter().map(|v| v[channel]).collect();
-        let own = exact(&setup, &stage, &quadrant(&light, right, bottom));
-        let other = exact(&setup, &stage, &quadrant(&light, !right, bottom));
-        let (error, wrong) = (percent(&own, &channel_of), percent(&other, &channel_of));
-        println!("{name}: {error:.2} %, against its neighbour's part {wrong:.2} %");
-        assert!(error < 1.0, "{name}: {error:.2} %");
-        assert!(wrong > 5.0 * error, "{name}: {wrong:.2} %");
+        let mut stage = stage(&device, &setup, words, true);
+        run(&mut stage, &setup.light(), &image);
+        let seen = stage.visibility_of_color().unwrap();
+        for (channel, name, right, bottom) in
+            [(0, "red", false, false), (1, "green", true, false), (2, "blue", false, true)]
+        {
+            let channel_of: Vec<f32> = seen.iter().map(|v| v[channel]).collect();
+            let own = exact(&setup, &stage, &quadrant(&light, right, bottom));
+            let other = exact(&setup, &stage, &quadrant(&light, !right, bottom));
+            let (error, wrong) = (percent(&own, &channel_of), percent(&other, &channel_of));
+            println!("{words}, {name}: {error:.2} %, against its neighbour's part {wrong:.2} %");
+            assert!(error < bound, "{words}, {name}: {error:.2} %");
+            assert!(wrong > 5.0 * error, "{words}, {name}: {wrong:.2} %");
+        }
     }
 }
 
@@ -117,19 +135,92 @@ fn grey_weighs_by_luminance() {
     let scene = card(light);
     let setup = Setup::ground(&scene, 2.6, 96);
     let image = texture(&device, [2, 1], &[[2.0; 4], [1.0; 4]]);
-    let mut stage = stage(&device, &setup, "technique=ray-march rays=256", false);
-    run(&mut stage, &setup.light(), &image);
-    let seen = stage.visibility().unwrap();
-    let half = |right| {
-        let [top, bottom] =
-            [false, true].map(|b| exact(&setup, &stage, &quadrant(&light, right, b)));
-        top.iter().zip(bottom).map(|(a, b)| 0.5 * (a + b)).collect::<Vec<f32>>()
+    for (words, bound) in
+        [("technique=ray-march rays=256", 0.6)].into_iter().chain(TRACED.into_iter().zip(MOST))
+    {
+        let mut stage = stage(&device, &setup, words, false);
+        run(&mut stage, &setup.light(), &image);
+        let seen = stage.visibility().unwrap();
+        let half = |right| {
+            let [top, bottom] =
+                [false, true].map(|b| exact(&setup, &stage, &quadrant(&light, right, b)));
+            top.iter().zip(bottom).map(|(a, b)| 0.5 * (a + b)).collect::<Vec<f32>>()
+        };
+        let (left, right) = (half(false), half(true));
+        let truth: Vec<f32> = left.iter().zip(&right).map(|(l, r)| (2.0 * l + r) / 3.0).collect();
+        let error = percent(&truth, &seen);
+        println!("{words}: two halves, one twice as bright: {error:.2} %");
+        assert!(error < bound, "{words}: {error:.2} %");
+    }
+}
+
+/// A sample counts for a mean over the light, into however many texels that is cut, and for nothing where a texel is below
+/// 0 or no number.
+#[test]
+fn samples_count_for_means_of_the_texture() {
+    let device = device();
+    let light = generate::rectangle_light(0.8, 0.5, 0.0).unwrap();
+    let scene = card(light);
+    let setup = Setup::ground(&scene, 2.6, 64);
+    let seen = |extent: [u32; 2], texels: &[[f32; 4]]| {
+        let mut stage = stage(&device, &setup, "technique=traced", true);
+        run(&mut stage, &setup.light(), &texture(&device, extent, texels));
+        stage.visibility_of_color().unwrap()
     };
-    let (left, right) = (half(false), half(true));
-    let truth: Vec<f32> = left.iter().zip(&right).map(|(l, r)| (2.0 * l + r) / 3.0).collect();
-    let error = percent(&truth, &seen);
-    println!("two halves, one twice as bright: {error:.2} %");
-    assert!(error < 0.6, "{error:.2} %");
+    let color = |dark: [f32; 4]| {
+        move |i: u8| {
+            if i % 7 == 3 {
+                dark
+            } else {
+                [f32::from(i % 6), f32::from(i / 6), f32::from(i % 5), 0.0]
+            }
+        }
+    };
+    let few: Vec<[f32; 4]> = (0..24).map(color([0.0; 4])).collect();
+    // Each texel as five by three.
+    let more: Vec<_> = (0..12 * 30).map(|i: usize| few[i / 30 / 3 * 6 + i % 30 / 5]).collect();
+    let base = seen([6, 4], &few);
+    assert!(base.iter().any(|v| v[0] > 0.1 && v[0] < 0.9));
+    let most = |other: &[[f32; 4]]| {
+        let differences =
+            base.iter().flatten().zip(other.iter().flatten()).map(|(a, b)| (a - b).abs());
+        differences.fold(0.0, f32::max)
+    };
+    assert!(most(&seen([30, 12], &more)) < 1e-5);
+    for dark in [-1.0, f32::NAN, f32::NEG_INFINITY] {
+        let texels: Vec<_> = (0..24).map(color([dark; 4])).collect();
+        assert_eq!(most(&seen([6, 4], &texels)), 0.0, "{dark}");
+    }
+    // A light that emits nothing of a color is visible in it.
+    assert!(seen([1, 1], &[[0.0, 1.0, 0.0, 0.0]]).iter().all(|v| v[0] == 1.0 && v[2] == 1.0));
+}
+
+/// A texture on a disc counts where the disc is: that of the rectangle around it where it is white within.
+#[test]
+fn textures_lie_on_flat_lights() {
+    let device = device();
+    let light = generate::square_light(0.6).unwrap();
+    let scene = card(light);
+    let setup = Setup::ground(&scene, 2.2, 96);
+    let place = setup.light();
+    let white = texture(&device, [1, 1], &[[1.0; 4]]);
+    let mut textured = stage(&device, &setup, "technique=traced", false);
+    let mut plain = setup.stage(&device, "technique=traced");
+    let disc = Light::disc(place.center(), place.emission(), 0.3).unwrap();
+    let lent = white.lend(Scope::COMPUTE_SAMPLED, Scope::COMPUTE_SAMPLED);
+    let plan = textured.plan_with(disc, |frame| frame.light_texture = Some(lent)).unwrap();
+    textured.run(&plan).unwrap();
+    let plan = plain.plan_with(disc, |_| ()).unwrap();
+    plain.run(&plan).unwrap();
+    let (textured_disc, plain) = (textured.visibility().unwrap(), plain.visibility().unwrap());
+    let same = |(a, b): (&f32, &f32)| (a - b).abs() < 1e-5;
+    assert!(
+        plain.iter().zip(&textured_disc).all(same) && plain.iter().any(|v| *v > 0.1 && *v < 0.9)
+    );
+    let ball = Light::sphere(place.center(), 0.3).unwrap();
+    let problem =
+        textured.plan_with(ball, |frame| frame.light_texture = Some(lent)).unwrap_err().to_string();
+    assert!(problem.contains("the light is a sphere, which is not flat"), "{problem}");
 }
 
 #[test]
@@ -143,7 +234,7 @@ fn what_cannot_be_weighed_is_refused() {
         ..Description::new([32, 32])
     };
     let refused = |d: Description| d.check().unwrap_err().to_string();
-    assert!(refused(described("map=64", FORMAT)).contains("choose ray-march"));
+    assert!(refused(described("map=64", FORMAT)).contains("choose ray-march or traced"));
     let depth = described("technique=ray-march", vk::Format::D32_SFLOAT);
     assert!(refused(depth).contains("holds no color"));
     let mut stage = stage(&device, &setup, "technique=ray-march", true);

@@ -37,7 +37,8 @@
 //! anything block this segment), so that the image does not change but by rounding.
 //!
 //! **Lights.** A sun is a shaft along directions, wherever the scene ends. A sphere or capsule turns the disc or stadium
-//! that it shows towards the receivers of each shaft. A light texture is refused.
+//! that it shows towards the receivers of each shaft. The texture of a flat light weighs
+//! its samples by what their cells emit, by color where the result is.
 //!
 //! **What it costs.** A walk costs 30 to 40 ns a node and eight shafts side by side, a look at a listed triangle some 40 ns
 //! and a test of it some 30 (two rows of samples) to 50 (all), for eight pixels and 64 samples, on a core of the machine that
@@ -66,8 +67,8 @@ impl Room for Settings {
                 "has no triangles for the hierarchy that traced reads",
             ),
             shapes: Shapes::ALL,
+            texture: true,
             lent_maps: Err("works with triangles, and does not read depth images of occluders"),
-            ..Takes::RECTANGLES
         }
     }
 

@@ -2,11 +2,12 @@
 
 use super::Settings;
 use super::settings::Samples;
-use crate::graph::{Access, Graph, Pass, Push, ResourceId, STORAGE_BYTES, Use, Uses, Work};
-use crate::shaders::module;
+use crate::graph::{Access, Graph, Owner, Pass, Push, ResourceId, STORAGE_BYTES, Use, Uses, Work};
+use crate::shaders::{Module, module};
 use crate::stages::hierarchy::{Hierarchy, groups};
 use crate::stages::visibility::grid;
 use crate::techniques::room::PassInputs;
+use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use smallvec::smallvec;
 
@@ -39,6 +40,66 @@ pub struct ListPush {
     pub capacity: u32,
 }
 
+/// The push constants of `traced/emission.comp`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct EmissionPush {
+    /// Samples along a side of the light.
+    pub side: i32,
+    /// 1 where red, green and blue count each, 0 where luminance does.
+    pub color: i32,
+}
+
+/// The shaders whose result is one visible fraction or one of each color, and which read the light's texture.
+struct Shaders {
+    tiles: Module,
+    gather: Module,
+    cover: Module,
+    rays: Module,
+}
+
+impl Shaders {
+    fn of(settings: &Settings, inputs: &PassInputs) -> Self {
+        let (tiles, gather) = match inputs.color {
+            false => (module!("traced/tiles.comp"), module!("traced/gather.comp")),
+            true => (module!("traced/tiles_color.comp"), module!("traced/gather_color.comp")),
+        };
+        let (rays, covers) = match (inputs.light_texture, inputs.color) {
+            (None, _) => (
+                module!("traced/rays.comp"),
+                [
+                    module!("traced/cover.comp"),
+                    module!("traced/cover_many.comp"),
+                    module!("traced/cover_most.comp"),
+                ],
+            ),
+            (Some(_), false) => (
+                module!("traced/rays_textured.comp"),
+                [
+                    module!("traced/cover_textured.comp"),
+                    module!("traced/cover_many_textured.comp"),
+                    module!("traced/cover_most_textured.comp"),
+                ],
+            ),
+            (Some(_), true) => (
+                module!("traced/rays_color.comp"),
+                [
+                    module!("traced/cover_color.comp"),
+                    module!("traced/cover_many_color.comp"),
+                    module!("traced/cover_most_color.comp"),
+                ],
+            ),
+        };
+        let [few, many, most] = covers;
+        let cover = match settings.samples {
+            Samples::Few => few,
+            Samples::Many => many,
+            Samples::Most => most,
+        };
+        Self { tiles, gather, cover, rays }
+    }
+}
+
 /// The places in the lists of triangles for an image.
 pub(super) fn listed(extent: [u32; 2]) -> u32 {
     let wished = LISTED_A_PIXEL * u64::from(extent[0]) * u64::from(extent[1]);
@@ -61,6 +122,24 @@ pub(super) fn declare(
 ) {
     let PassInputs { gbuffer, need, visibility, .. } = *inputs;
     let extent = gbuffer.extent;
+    let shaders = Shaders::of(settings, inputs);
+    let emission = inputs.light_texture.map(|texture| {
+        let side = settings.samples.side();
+        let format = vk::Format::R32G32B32A32_SFLOAT;
+        let emission = graph.image("traced.emission", format, [side; 2], Owner::Transient);
+        graph.push(Pass::compute(
+            "traced.emission",
+            module!("traced/emission.comp"),
+            [side, side, 1],
+            Push::new(&EmissionPush { side: side as i32, color: inputs.color.into() }),
+            smallvec![
+                Use::bound(0, texture, Access::SampledCompute),
+                Use::bound(1, emission, Access::ImageWrite),
+            ],
+            need,
+        ));
+        Use::bound(8, emission, Access::SampledCompute)
+    });
     let tiles = extent.map(|e| e.div_ceil(TILE_SIDE));
     let slot_count = SHAFTS_A_TILE * tiles[0] * tiles[1];
     let blocks = slot_count.div_ceil(BLOCK);
@@ -87,7 +166,7 @@ pub(super) fn declare(
     };
     graph.push(Pass::compute(
         "traced.tiles",
-        module!("traced/tiles.comp"),
+        shaders.tiles,
         grid(tiles),
         Push::NONE,
         of_frame(&[
@@ -124,12 +203,15 @@ pub(super) fn declare(
     let mut over_list = |name, shader, arguments, offset, uses: &[Use]| {
         let mut uses = of_frame(uses);
         uses.push(Use::fixed(arguments, Access::Indirect));
+        if name != "traced.gather" {
+            uses.extend(emission);
+        }
         let work = Work::Indirect { shader, arguments, offset };
         graph.push(Pass { name, uses, push: Push::NONE, work, need: *need });
     };
     over_list(
         "traced.gather",
-        module!("traced/gather.comp"),
+        shaders.gather,
         arguments,
         0,
         &[
@@ -141,21 +223,16 @@ pub(super) fn declare(
             shown(8),
         ],
     );
-    let cover = match settings.samples {
-        Samples::Few => module!("traced/cover.comp"),
-        Samples::Many => module!("traced/cover_many.comp"),
-        Samples::Most => module!("traced/cover_most.comp"),
-    };
     over_list(
         "traced.cover",
-        cover,
+        shaders.cover,
         entries,
         SHADOWED,
         &[image(3, tree.triangles), read(4, slots), read(5, entries), read(6, lists), shown(7)],
     );
     over_list(
         "traced.rays",
-        module!("traced/rays.comp"),
+        shaders.rays,
         arguments,
         16,
         &[
