@@ -125,8 +125,13 @@ struct GBuffer {
     int flags;              // bit 0: masked; bits 1 to 3: how normals are lent
     mat3 light_from_normal; // turns lent normals, where some are lent
 };
-// A storage buffer, since lavapipe compiles a shader again whenever a uniform buffer that its branches test is bound.
+// A storage buffer, since lavapipe compiles a shader again whenever a uniform buffer that its branches test is bound. In a
+// fragment shader whose derivatives follow from them they are uniforms: llvmpipe's helper invocations read no buffers.
+#ifdef FORWARD
+layout(set = 0, binding = 19, std140) uniform Constants {
+#else
 layout(set = 0, binding = 19, std430) readonly buffer Constants {
+#endif
     GBuffer lent_gbuffer;
 };
 // Read once: some drivers check the bounds of the buffer at each reading.

@@ -13,7 +13,7 @@ use crate::raster::{COLOR_LAYOUT, DEPTH};
 use crate::set::{Bound, BoundSet};
 use crate::shaders::FORWARD_FRAG;
 use crate::{FrameTimes, GBufferPainter, HeadlessDevice, HostBuffer, OwnedImage, Stage};
-use antumbra::graph::{Access, Pass, Work};
+use antumbra::graph::{Access, Graph, Shape, Work};
 use antumbra::node::PlanObject;
 use antumbra::scene::{Instance, Scene};
 use antumbra::stages::visibility;
@@ -50,6 +50,7 @@ impl Forward {
         keep: impl Fn(&Instance) -> bool,
     ) -> Result<Self, Error> {
         use vk::ImageUsageFlags as Usage;
+        const UNIFORM: vk::BufferUsageFlags = vk::BufferUsageFlags::UNIFORM_BUFFER;
         let pass = plan.plan().steps.iter().map(|s| &plan.plan().graph.passes()[s.pass]);
         let is_trace = |work: &Work| matches!(work, Work::Indirect { shader, .. } if *shader == shaders::TRACE);
         let trace = pass.into_iter().find(|p| is_trace(&p.work)).ok_or_else(|| {
@@ -61,15 +62,10 @@ impl Forward {
         })?;
         // Refuses another node's plan.
         stage.run(&plan)?;
-        let constants = plan.plan().graph.passes().iter().find(|p| p.name == "gbuffer.constants");
-        let constants =
-            constants.ok_or_else(|| Error::Frame("the plan has no constants".into()))?;
-        let buffer = |name, pass: &Pass, usage| {
-            HostBuffer::with_data(device, name, pass.push.bytes(), usage)
-        };
-        let push = buffer("forward.push", trace, vk::BufferUsageFlags::UNIFORM_BUFFER)?;
-        let constants =
-            buffer("forward.constants", constants, vk::BufferUsageFlags::STORAGE_BUFFER)?;
+        let push = trace.push.bytes();
+        let push = HostBuffer::with_data(device, "forward.push", push, UNIFORM)?;
+        let constants = constants_of(&plan.plan().graph)?;
+        let constants = HostBuffer::with_data(device, "forward.constants", &constants, UNIFORM)?;
         let extent = stage.gbuffer().depth.extent();
         let image = |name, format, usage| OwnedImage::new(device, name, format, extent, usage);
         let draws = draws(scene, stage.buffers(), stage.view(), keep);
@@ -85,7 +81,7 @@ impl Forward {
         let bound = [
             (0, Bound::Uniform(&push)),
             (2, Bound::Fetched(view, left)),
-            (19, Bound::Storage(&constants)),
+            (19, Bound::Uniform(&constants)),
         ];
         let set = BoundSet::new(device, vk::ShaderStageFlags::FRAGMENT, &bound)?;
         let formats = [visibility::FORMAT];
@@ -163,4 +159,16 @@ impl Forward {
     pub fn visibility(&self) -> Result<Vec<f32>, Error> {
         self.visible.read(COLOR_LAYOUT)
     }
+}
+
+/// The constants of the G-buffer, as long as their buffer is: what the frame does not write of them is zero.
+fn constants_of(graph: &Graph) -> Result<Vec<u8>, Error> {
+    let pass = graph.passes().iter().find(|p| p.name == "gbuffer.constants");
+    let buffer = graph.resources().iter().find(|r| r.name == "gbuffer.constants");
+    let (Some(pass), Some(Shape::Buffer { bytes })) = (pass, buffer.map(|r| r.shape)) else {
+        return Err(Error::Frame("the plan has no constants".into()));
+    };
+    let mut constants = pass.push.bytes().to_vec();
+    constants.resize(bytes as usize, 0);
+    Ok(constants)
 }
