@@ -103,6 +103,7 @@ uint slots_in(ivec2 extent)
 
 struct Receiver {
     bool receives;
+    bool blocks;   // its own surface blocks light
     vec3 position; // the hierarchy's space
     vec3 in_light; // light space
 };
@@ -203,7 +204,7 @@ float slope_along(ivec2 pixel, float depth, ivec2 axis)
 // the viewer's side of its own surface.
 Receiver receiver_of(ivec2 pixel)
 {
-    Receiver r = Receiver(false, vec3(0.0), vec3(0.0));
+    Receiver r = Receiver(false, false, vec3(0.0), vec3(0.0));
     if (any(greaterThanEqual(pixel, frame.extent))) {
         return r;
     }
@@ -228,6 +229,7 @@ Receiver receiver_of(ivec2 pixel)
     float footprint = length(frame.eye_from_ndc[0].xyz) * 2.0 / (float(frame.extent.x) * abs(p.w));
     float snapped = 0.5 * frame.snap * min(length(from_eye - sloped.xyz / sloped.w), STEEP * footprint);
     float off = snapped + 2.0 * length(moved) + 8.0 * ROUNDING * max(max(size.x, size.y), size.z);
+    r.blocks = role > 0.75;
     r.position = frame.eye.xyz + from_eye + towards * off;
     r.in_light = in_light_space(r.position);
     // At the plane of a lamp and behind it there is nothing to hide, nor within a round light.
@@ -239,7 +241,7 @@ Receiver receiver_of(ivec2 pixel)
 void face_light(uint pixels, ivec2 corner)
 {
     int first = findLSB(int(pixels));
-    Receiver r = Receiver(false, vec3(0.0), vec3(0.0));
+    Receiver r = Receiver(false, false, vec3(0.0), vec3(0.0));
     if (frame.kind == ROUND && first >= 0) {
         r = receiver_of(corner + ivec2(first % TILE_SIDE, first / TILE_SIDE));
     }

@@ -60,8 +60,38 @@ mat3 axes_of(vec3 across, vec3 down)
     return mat3(first, cross(normal, first), normal);
 }
 
-// The shaft from some of the tile's receivers, a bit each, to the light, which faces them.
-Shaft shaft_of(uint pixels)
+// A shaft, and whether it needs no walk: its receivers lie on a flat surface that blocks, and the whole light is behind it.
+struct Made {
+    Shaft shaft;
+    bool turned_away;
+};
+
+// Receivers lie on one plane where the box around them is this much lower than it is wide. (On a hundred times lower ones
+// there are edges of another slope: a dozen wrong pixels in a hall.)
+const float FLAT = 1.0e-3;
+// A plane says little of fewer receivers.
+const int PLANE_PIXELS = 8;
+// The least sine of the angle at which light falls onto the plane.
+const float LEAST_SINE = 0.05;
+
+// Whether a surface has the whole light behind it, as the viewer sees it: its own triangles hide all of it. The last of the
+// axes, which are a rotation, is across the surface; `units` makes lengths along z of those along x.
+bool is_turned_away(vec3 middle, mat3 axes, vec3 half_size, vec3 units)
+{
+    vec3 normal = axes[2];
+    vec3 towards = frame.towards.xyz;
+    vec3 to_viewer = frame.towards.w > 0.0
+        ? in_light_space(frame.eye.xyz) * units - middle
+        : vec3(dot(light_x.xyz, towards), dot(light_y.xyz, towards), dot(light_z.xyz, towards)) * units;
+    vec3 to_light = is_sun() ? vec3(0.0, 0.0, -units.z) : -middle;
+    float behind = -dot(normal, to_light) * (dot(normal, to_viewer) < 0.0 ? -1.0 : 1.0);
+    float least = LEAST_SINE * (length(to_light) + length(half_light)) + dot(abs(normal.xy), half_light);
+    return half_size.z < FLAT * min(half_size.x, half_size.y) && behind > least;
+}
+
+// The shaft from some of the tile's receivers, a bit each, to the light, which faces them; `blocking` has a bit for each
+// pixel whose surface blocks.
+Made shaft_of(uint pixels, uint blocking)
 {
     vec3 first = receivers[max(findLSB(int(pixels)), 0)];
     face_light(first);
@@ -101,7 +131,8 @@ Shaft shaft_of(uint pixels)
     shaft.across = axes[0] * half_size.x / units;
     shaft.along = axes[1] * half_size.y / units;
     shaft.over = axes[2] * half_size.z / units;
-    return shaft;
+    bool is_surface = bitCount(int(pixels)) >= PLANE_PIXELS && (pixels & ~blocking) == 0u;
+    return Made(shaft, is_surface && is_turned_away(shaft.middle * units, axes, half_size, units));
 }
 
 // A tile whose receivers lie further apart than this share of their distance from the viewer may be torn.
@@ -146,6 +177,7 @@ void main()
     vec3 low = vec3(3.0e38);
     vec3 high = vec3(-3.0e38);
     uint pixels = 0u;
+    uint blocking = 0u;
     for (int i = 0; i < TILE_PIXELS; ++i) {
         ivec2 pixel = corner + ivec2(i % TILE_SIDE, i / TILE_SIDE);
         Receiver r = receiver_of(pixel);
@@ -154,6 +186,7 @@ void main()
             low = min(low, r.position);
             high = max(high, r.position);
             pixels |= 1u << i;
+            blocking |= r.blocks ? 1u << i : 0u;
         } else if (all(lessThan(pixel, frame.extent))) {
             imageStore(visibility, pixel, vec4(1.0));
         }
@@ -163,8 +196,15 @@ void main()
     slots[slot + 1u].shaft.count = 0u;
     int turns = MOST_TURNS;
     for (uint group = 0u; group < (nearer != 0u ? 2u : 1u); ++group) {
-        Shaft shaft = shaft_of(group == 0u ? pixels & ~nearer : nearer);
-        shaft.count = shaft.pixels != 0u ? 1u + leaves_in(shaft, slot + group, turns) : 0u;
+        Made made = shaft_of(group == 0u ? pixels & ~nearer : nearer, blocking);
+        Shaft shaft = made.shaft;
+        bool needed = shaft.pixels != 0u && !made.turned_away;
+        shaft.count = needed ? 1u + leaves_in(shaft, slot + group, turns) : 0u;
         slots[slot + group].shaft = shaft;
+        for (int i = 0; i < (made.turned_away ? TILE_PIXELS : 0); ++i) {
+            if ((shaft.pixels >> i & 1u) != 0u) {
+                imageStore(visibility, corner + ivec2(i % TILE_SIDE, i / TILE_SIDE), vec4(vec3(0.0), 1.0));
+            }
+        }
     }
 }
