@@ -129,7 +129,7 @@ void main()
     if (nth >= head.shadowed) {
         return;
     }
-    Entry entry = entries[slots_in(frame.extent) + nth];
+    Entry entry = entries[slots_in(frame.extent) + evens_first(nth, head.shadowed)];
     ivec2 corner = corner_of(entry.slot);
     uint pixels = slots[entry.slot].shaft.pixels;
     vec3 middle = slots[entry.slot].shaft.middle;
