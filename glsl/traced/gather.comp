@@ -8,7 +8,7 @@
 // Writes the triangles that may hide some of the light from some receiver of a shaft into the shaft's list. One
 // invocation handles one shaft.
 
-layout(local_size_x = 64) in;
+layout(local_size_x = 32) in;
 
 layout(set = 0, binding = 3, rgba32ui) readonly uniform uimage2D nodes;
 layout(set = 0, binding = 4, rgba32f) readonly uniform image2D triangles;

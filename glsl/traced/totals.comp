@@ -38,8 +38,8 @@ void main()
     }
     head.shafts = sum.y;
     head.dense = sum.z;
-    // 64 shafts a workgroup gather triangles; a dense one is traced by one workgroup.
-    write_groups(0u, (sum.y + 63u) / 64u);
+    // 32 shafts a workgroup gather triangles; a dense one is traced by one workgroup.
+    write_groups(0u, (sum.y + 31u) / 32u);
     write_groups(4u, sum.z);
     head.shadowed = 0u;
     head.groups = uint[3](0u, 0u, 1u);
