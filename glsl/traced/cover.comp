@@ -147,29 +147,25 @@ void main()
     vec3 sample0 = is_sun() ? vec3(first_sample(), -1.0) : vec3(first_sample(), 0.0) - middle;
     vec3 first0 = is_sun() ? sample0 : sample0 - q0;
     vec3 first1 = is_sun() ? sample0 : sample0 - q1;
-    bool crossing = (entry.kind & CROSSING) != 0u;
-    uint few = (entry.kind & WIDE) != 0u ? 0u : entry.few;
-    uint many = entry.many + entry.few - few;
+    bool crossing = entry.crossing != 0u;
     SUM seen0 = SUM(0.0);
     SUM seen1 = SUM(0.0);
     for (int m = 0; m < MASKS; ++m) {
         float word = float(m * MASK_WORDS);
         Mask hidden0 = whole_mask(mine0 ? 0u : 0xffffffffu);
         Mask hidden1 = whole_mask(mine1 ? 0u : 0xffffffffu);
-        for (uint i = 0u; i < few && !(is_full(hidden0) && is_full(hidden1)); ++i) {
-            Triangle t = triangle_of(lists[entry.first + entry.leaves + i], middle);
+        for (uint i = 0u; i < entry.few && !(is_full(hidden0) && is_full(hidden1)); ++i) {
+            Triangle t = triangle_of(lists[entry.first + i], middle);
             hidden0 = either(hidden0, few_hidden_by(t, q0, first0, word));
             hidden1 = either(hidden1, few_hidden_by(t, q1, first1, word));
         }
-        for (uint i = crossing ? many : 0u; i < many && !(is_full(hidden0) && is_full(hidden1)); ++i) {
-            uint place = i < entry.many ? i : i - entry.many + entry.leaves;
-            Triangle t = triangle_of(lists[entry.first + place], middle);
+        for (uint i = crossing ? entry.many : 0u; i < entry.many && !(is_full(hidden0) && is_full(hidden1)); ++i) {
+            Triangle t = triangle_of(lists[entry.others + i], middle);
             hidden0 = either(hidden0, hidden_by(t, q0, first0, word));
             hidden1 = either(hidden1, hidden_by(t, q1, first1, word));
         }
-        for (uint i = crossing ? 0u : many; i < many && !(is_full(hidden0) && is_full(hidden1)); ++i) {
-            uint place = i < entry.many ? i : i - entry.many + entry.leaves;
-            Triangle t = triangle_of(lists[entry.first + place], middle);
+        for (uint i = crossing ? 0u : entry.many; i < entry.many && !(is_full(hidden0) && is_full(hidden1)); ++i) {
+            Triangle t = triangle_of(lists[entry.others + i], middle);
             Mask by0 = both(hidden_by(t, q0, first0, word), behind_plane(t, q0, first0, word));
             Mask by1 = both(hidden_by(t, q1, first1, word), behind_plane(t, q1, first1, word));
             hidden0 = either(hidden0, by0);

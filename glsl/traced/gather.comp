@@ -186,59 +186,68 @@ void main()
     enter_turned_grid(int(frame.side));
     Planes planes = planes_of(shaft);
     // First the leaves: a turn of a walk costs all that it may do, so that the triangles come after it. The first of them
-    // are known.
-    uint leaves = min(shaft.count - 1u, FIRST_LEAVES);
+    // are known. They have the second half of the room for their triangles.
+    uint most = shaft.count - 1u;
+    uint leaves = min(most, FIRST_LEAVES);
+    uint behind = first + most * (LEAF - 1u);
     for (uint i = 0u; i < leaves; ++i) {
-        lists[first + i] = slots[slot].leaves[i];
+        lists[behind + i] = slots[slot].leaves[i];
     }
     uvec2 others = slots[slot].others;
-    uint at = shaft.count - 1u > FIRST_LEAVES ? others.x : others.y;
+    uint at = most > FIRST_LEAVES ? others.x : others.y;
     // Another compiler's rounding must not find more leaves than there is room for.
-    while (at < others.y && leaves < shaft.count - 1u) {
+    while (at < others.y && leaves < most) {
         Node node = node_at(at);
         bool inside = meets(planes, node);
         if (inside && node.leaf) {
-            lists[first + leaves] = node.link;
+            lists[behind + leaves] = node.link;
             leaves += 1u;
         }
         at = inside || node.leaf ? at + 1u : node.link;
     }
-    // Then those of their triangles that may block, behind the leaves.
-    uint behind = first + leaves;
-    uint found = 0u;
+    // Then those of their triangles that may block, from the front: none takes the place of a leaf that is still to be read.
+    uint end = 0u;
     for (uint i = 0u; i < leaves * LEAF; ++i) {
-        uint triangle = lists[first + i / LEAF] * LEAF + i % LEAF;
+        uint triangle = lists[behind + i / LEAF] * LEAF + i % LEAF;
         if (may_block(shaft, corners_of(triangle))) {
-            lists[behind + found] = triangle;
-            found += 1u;
+            lists[first + end] = triangle;
+            end += 1u;
         }
     }
-    // Then what they hide: those that span a few rows of samples stay behind the leaves, the others take the leaves' place.
+    // Then what they hide. Those that span a few rows of samples stay in front, the others go to the end, and the last of
+    // them take the places of those that hide nothing.
     uint few = 0u;
-    uint many = 0u;
-    uint kind = 0u;
+    uint many_from = end;
+    uint crossing = 0u;
     bool hidden = false;
-    for (uint i = 0u; i < found && !hidden; ++i) {
-        uint triangle = lists[behind + i];
+    while (few < many_from && !hidden) {
+        uint triangle = lists[first + few];
         Corners t = corners_of(triangle);
         int part = part_hidden(shaft, t);
-        if (part != NOTHING) {
-            bool is_few = part == FEW || many == leaves;
-            kind |= part != FEW && is_few ? WIDE : 0u;
-            kind |= !is_sun() && min(t.a.z, min(t.b.z, t.c.z)) < light_end ? CROSSING : 0u;
-            lists[is_few ? behind + few : first + many] = triangle;
-            few += is_few ? 1u : 0u;
-            many += is_few ? 0u : 1u;
-            hidden = part == ALL;
+        crossing |= part != NOTHING && !is_sun() && min(t.a.z, min(t.b.z, t.c.z)) < light_end ? 1u : 0u;
+        hidden = part == ALL;
+        many_from -= part == FEW ? 0u : 1u;
+        uint unread = lists[first + many_from];
+        if (part == NOTHING) {
+            end -= 1u;
+            lists[first + many_from] = lists[first + end];
+        } else if (part != FEW) {
+            lists[first + many_from] = triangle;
+        }
+        if (part == FEW) {
+            few += 1u;
+        } else if (few < many_from) {
+            lists[first + few] = unread;
         }
     }
+    uint many = end - many_from;
     bool shadowed = few + many > 0u && !hidden;
     if (shadowed) {
         uint place = atomicAdd(head.shadowed, 1u);
         uvec2 groups = groups_as_far_as(place);
         atomicMax(head.groups[0], groups.x);
         atomicMax(head.groups[1], groups.y);
-        entries[slots_in(frame.extent) + place] = Entry(slot, first, leaves, many, few, kind);
+        entries[slots_in(frame.extent) + place] = Entry(slot, first, few, first + many_from, many, crossing);
     }
     for (int i = 0; i < (shadowed ? 0 : TILE_PIXELS); ++i) {
         if ((shaft.pixels >> i & 1u) != 0u) {

@@ -36,17 +36,12 @@ struct Slot {
 // A listed shaft, with its triangles.
 struct Entry {
     uint slot;
-    uint first;  // where its leaves begin, in whose place come the triangles that may hide any samples
-    uint leaves; // how many places the leaves have
-    uint many;   // the triangles in the leaves' place
-    uint few;    // those behind it, each of which hides samples in a few rows of samples alone
-    uint kind;   // CROSSING, WIDE, or both
+    uint first;    // where its triangles begin
+    uint few;      // the first of them, each of which hides samples in a few rows of samples alone
+    uint others;   // where those begin that may hide any samples
+    uint many;     // how many these are
+    uint crossing; // 1 where some triangles cross a lamp's plane
 };
-
-// Among the triangles some cross a lamp's plane.
-const uint CROSSING = 1u;
-// The leaves' place was full, so that behind it are some that may hide any samples.
-const uint WIDE = 2u;
 
 // What comes before the entries: the shafts of the list from its beginning on, and from its end backwards; those behind
 // it, which have triangles, and the workgroups that cover them.
@@ -70,10 +65,10 @@ bool is_dense(uint count, uint most)
     return count > most + 1u;
 }
 
-// The places of a shaft's leaves and their triangles.
+// The places of the triangles of a shaft's leaves.
 uint room_of(uint count)
 {
-    return (count - 1u) * (LEAF + 1u);
+    return (count - 1u) * LEAF;
 }
 
 // The nth of a number of workgroups, the even ones first: drivers that cut a dispatch in halves get halves of equal work.

@@ -29,7 +29,8 @@
 //! edge, or one that is seen between two rows or columns of samples. Where one triangle hides the whole light from all
 //! receivers, that is the end of it. Of the others, those that span two rows of samples have a list of their own, because
 //! they need two of eight intervals. Receivers are bounded by a box that turns with the surface, as tight as a box in
-//! world axes is not. Measured, triangles listed before and after, in thousands: a bunny 388 / 315, a street under a sun
+//! world axes is not. A flat surface that blocks and has the whole light behind it is hidden by its own triangles, and its
+//! tile is not walked: half of those of the walls and the furniture of a hall. Measured, triangles listed before and after, in thousands: a bunny 388 / 315, a street under a sun
 //! 318 / 43, a hall 483 / 158, where a few shafts more send rays.
 //!
 //! **Dense shafts.** A shaft's leaves are counted before anything else is done. Where there are too many, or where the
