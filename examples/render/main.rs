@@ -8,12 +8,11 @@ mod options;
 mod output;
 mod report;
 
-use antumbra::Error;
-use antumbra::Omit;
 use antumbra::audit::ErrorWindow;
 use antumbra::auto::Auto;
 use antumbra::frame::Capacity;
-use antumbra::scene::{Camera, Scene, from_gltf};
+use antumbra::scene::{AreaLight, Camera, Scene, from_gltf};
+use antumbra::{Error, FramePlan, LightIndex, Omit, Technique, TechniqueIndex};
 use antumbra_harness::shade;
 use antumbra_harness::{
     FrameTimes, GBuffer, HeadlessDevice, HeadlessOptions, Stage, View, technique,
@@ -21,6 +20,7 @@ use antumbra_harness::{
 use image::ExtendedColorType;
 use options::{Options, Stop};
 use output::Files;
+use report::Drawn;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -76,14 +76,71 @@ fn capacity(scene: &Scene, usual: Capacity) -> Capacity {
     }
 }
 
-fn render(options: &Options) -> Result<String, Stop> {
-    let scene = load(options)?;
-    let light = scene.light(options.light.as_deref()).map_err(|e| {
+/// The lights that are drawn: the one that is named, or all.
+fn drawn<'a>(options: &Options, scene: &'a Scene) -> Result<Vec<&'a AreaLight>, Stop> {
+    let path = options.scene.display();
+    let first = scene.light(options.light.as_deref()).map_err(|e| {
         // Who has no light yet wants to see one.
         let more =
             if scene.lights.is_empty() { "; README.md shows one, \"Your own scene\"" } else { "" };
-        Stop::Wrong(format!("{}: {e}{more}", options.scene.display()))
+        Stop::Wrong(format!("{path}: {e}{more}"))
     })?;
+    match (&options.light, scene.lights.len()) {
+        (Some(_), _) => Ok(vec![first]),
+        (None, number) if number > MOST_LIGHTS => Err(Stop::Wrong(format!(
+            "{path}: the scene has {number} lights, and one run draws {MOST_LIGHTS} at most; name one by --light"
+        ))),
+        (None, _) => Ok(scene.lights.iter().collect()),
+    }
+}
+
+/// The most lights of a node.
+const MOST_LIGHTS: usize = 64;
+
+/// The most techniques of a node.
+const MOST_TECHNIQUES: usize = 16;
+
+/// Each light's technique, as the node has them: all different ones, and which of them each light uses. Where there are
+/// more than a node may have, the rest use the first.
+fn different(settings: &[Technique]) -> (Vec<Technique>, Vec<usize>) {
+    let mut all: Vec<Technique> = Vec::new();
+    let mut place = |technique: &Technique| {
+        let known = all.iter().position(|t| t == technique);
+        known.unwrap_or_else(|| match all.len() {
+            MOST_TECHNIQUES => 0,
+            number => {
+                all.push(*technique);
+                number
+            }
+        })
+    };
+    let places = settings.iter().map(&mut place).collect();
+    (all, places)
+}
+
+/// A channel for each light, named by its node. A name that others have too is followed by its number among them.
+fn channels(lights: &[&AreaLight], images: Vec<Vec<f32>>) -> Vec<(String, Vec<f32>)> {
+    let name = |place: usize| {
+        let name = &lights[place].name;
+        let before = lights[..place].iter().filter(|l| l.name == *name).count();
+        // Names end at a zero, and have 255 bytes at most.
+        let mut bytes = 0;
+        let fits = |c: &char| {
+            bytes += c.len_utf8();
+            bytes <= 240
+        };
+        let plain: String = name.chars().filter(|c| *c != '\0').take_while(fits).collect();
+        match before {
+            0 => plain,
+            number => format!("{plain} ({})", number + 1),
+        }
+    };
+    images.into_iter().enumerate().map(|(place, image)| (name(place), image)).collect()
+}
+
+fn render(options: &Options) -> Result<String, Stop> {
+    let scene = load(options)?;
+    let lights = drawn(options, &scene)?;
     let [width, height] = options.size;
     let aspect = f64::from(width) / f64::from(height);
     let camera = scene.camera.unwrap_or_else(|| Camera::framing(&scene, aspect));
@@ -96,63 +153,111 @@ fn render(options: &Options) -> Result<String, Stop> {
     // Before anything is chosen, the technique with the fewest passes.
     let few = technique("hard");
     let mut stage = Stage::new(&device, &scene, &view, options.size, few, |_| true)?;
-    let mut settings = options.settings;
-    let choice = match options.auto {
+    let choices = match options.auto {
         None => None,
         Some(budget) => {
             let mut auto = Auto::new(budget, costs::of(&device)?);
-            let choice = stage.choose(&mut auto, light)?;
-            settings = choice.technique;
-            Some(choice)
+            Some(stage.choose_all(&mut auto, &lights)?)
         }
     };
-    stage.configure_with(settings, |description| {
+    let settings: Vec<Technique> = match &choices {
+        Some(choices) => choices.iter().map(|c| c.technique).collect(),
+        None => vec![options.settings; lights.len()],
+    };
+    let (techniques, of_light) = different(&settings);
+    stage.configure_with(techniques[0], |description| {
+        description.other_techniques = techniques[1..].to_vec();
+        description.lights = lights.len() as u32;
         description.omit = options.max_error.map_or(description.omit, Omit::Below);
         description.audit = options.audit;
         description.capacity = capacity(&scene, description.capacity);
         description.normals = Some(GBuffer::NORMALS);
     })?;
-    let plan = stage.plan_under(light, None)?;
-    for note in notes::of(options, &scene, light, &plan, choice.as_ref()) {
+    let plan = |(place, light): (usize, &&AreaLight)| {
+        let planned = stage.plan_with(light.light, |frame| {
+            frame.light_index = LightIndex(place as u32);
+            frame.technique_index = TechniqueIndex(of_light[place] as u32);
+        });
+        planned.map_err(|e| match lights.len() {
+            1 => Stop::from(e),
+            _ => Stop::Wrong(format!("the light {}: {e}", light.name)),
+        })
+    };
+    let plans: Vec<FramePlan> = lights.iter().enumerate().map(plan).collect::<Result<_, _>>()?;
+    let mut drawn: Vec<Drawn> = lights
+        .iter()
+        .zip(&plans)
+        .enumerate()
+        .map(|(place, (light, plan))| Drawn {
+            light,
+            settings: &techniques[of_light[place]],
+            choice: choices.as_ref().map(|choices| &choices[place]),
+            plan,
+            times: Vec::new(),
+            measured: None,
+        })
+        .collect();
+    for note in notes::of(options, &scene, &drawn) {
         eprintln!("{note}");
     }
     // The first frame is not timed: drivers compile shaders when they first run.
-    stage.run(&plan)?;
+    stage.run_all(&plans)?;
     let mut frames: Vec<FrameTimes> = Vec::new();
-    let mut window = ErrorWindow::new();
+    let mut windows: Vec<ErrorWindow> = plans.iter().map(|_| ErrorWindow::new()).collect();
+    let mut all = ErrorWindow::new();
     for _ in 0..options.repeat {
-        frames.push(stage.run(&plan)?);
-        let measured = stage.node()?.measured_error(plan.slot(), plan.light_index());
-        measured.iter().for_each(|error| window.add(error));
+        frames.push(stage.run_all(&plans)?);
+        let node = stage.node()?;
+        for (window, (drawn, plan)) in windows.iter_mut().zip(drawn.iter_mut().zip(&plans)) {
+            let (slot, light) = (plan.slot(), plan.light_index());
+            drawn.times.extend(node.timings(slot, light));
+            if let Some(error) = node.measured_error(slot, light) {
+                window.add(&error);
+                all.add(&error);
+            }
+        }
+    }
+    if options.audit > 0 {
+        for (drawn, window) in drawn.iter_mut().zip(&windows) {
+            drawn.measured = Some(window.error());
+        }
     }
 
-    let visibility = stage.visibility()?;
+    let indices = (0..lights.len()).map(|place| LightIndex(place as u32));
+    let visible: Vec<Vec<f32>> =
+        indices.map(|light| stage.visibility_under(light)).collect::<Result<_, _>>()?;
     let positions = stage.gbuffer().positions()?;
     let normals = stage.gbuffer().normals()?;
     let memory = stage.node()?.memory();
     let report = report::Report {
         device: &device,
         options,
-        settings: &settings,
-        choice: choice.as_ref(),
         scene: &scene,
-        plan: &plan,
+        lights: &drawn,
         frames,
         memory,
-        measured: (options.audit > 0).then(|| window.error()),
+        measured: (options.audit > 0).then(|| all.error()),
     };
 
     let mut files = Files::default();
-    files.exr_y("visibility.exr", options.size, &visibility)?;
     files.exr_rgb("position.exr", options.size, &positions)?;
     files.exr_rgb("normal.exr", options.size, &normals)?;
-    let gray: Vec<u8> = visibility.iter().map(|v| (v * 255.0).round() as u8).collect();
+    // The mean of all lights.
+    let share = 255.0 / lights.len() as f32;
+    let gray = |pixel: usize| (visible.iter().map(|v| v[pixel]).sum::<f32>() * share).round() as u8;
+    let gray: Vec<u8> = (0..positions.len()).map(gray).collect();
     files.png("visibility.png", options.size, ExtendedColorType::L8, &gray)?;
-    let shaded = shade::shade(light, &visibility, &positions, &normals);
+    let lit: Vec<(&AreaLight, &[f32])> =
+        lights.iter().zip(&visible).map(|(light, image)| (*light, &image[..])).collect();
+    let shaded = shade::shade_all(&lit, &positions, &normals);
     files.png("shaded.png", options.size, ExtendedColorType::Rgb8, &shaded)?;
+    match &visible[..] {
+        [only] => files.exr_y("visibility.exr", options.size, only)?,
+        _ => files.exr_named("visibility.exr", options.size, &channels(&lights, visible))?,
+    }
     files.text("report.json", report.json());
     let summary = report.summary();
-    if let Some(note) = notes::too_slow(options, choice.as_ref(), report.frame_ms()) {
+    if let Some(note) = notes::too_slow(options, &drawn, report.frame_ms()) {
         eprintln!("{note}");
     }
 

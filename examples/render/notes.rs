@@ -1,28 +1,30 @@
 //! Notes on a run that goes well: facts that the picture may not show.
 
 use crate::options::Options;
+use crate::report::Drawn;
 use antumbra::auto::{Budget, Choice};
 use antumbra::effects::{Effect, Outcome};
 use antumbra::scene::{AreaLight, Scene};
 use antumbra::{FramePlan, Shape};
 
 /// One line each, for standard error.
-pub fn of(
-    options: &Options,
-    scene: &Scene,
-    light: &AreaLight,
-    plan: &FramePlan,
-    choice: Option<&Choice>,
-) -> Vec<String> {
-    let notes = [
-        unmet(options, choice),
-        choice.and_then(|c| c.left_out.as_ref()).map(|why| format!("auto: {why}")),
-        unpromised(options),
-        namesakes(scene, light),
-        others(options, scene, light),
-        unshadowed(light, plan),
-    ];
-    notes.into_iter().flatten().collect()
+pub fn of(options: &Options, scene: &Scene, lights: &[Drawn]) -> Vec<String> {
+    let mut notes: Vec<String> = unpromised(options).into_iter().collect();
+    for drawn in lights {
+        let Drawn { light, choice, plan, .. } = *drawn;
+        let left_out = choice.and_then(|c| c.left_out.as_ref());
+        // One line does for all lights of which it says the same.
+        let of = |note: String| match lights.len() {
+            1 => note,
+            _ => format!("{note} (the light {})", light.name),
+        };
+        notes.extend(unmet(options, choice).map(of));
+        let left_out = left_out.map(|why| format!("auto: {why}"));
+        notes.extend(left_out.filter(|note| !notes.contains(note)));
+        notes.extend(unshadowed(light, plan));
+    }
+    notes.extend(namesakes(options, scene));
+    notes
 }
 
 /// A fraction in percent, to three digits.
@@ -33,10 +35,10 @@ pub fn percent(fraction: f64) -> String {
     format!("{} %", (percent * scale).round() / scale)
 }
 
-/// A note that the frames took longer than the budget allows, unless the choice has said so already.
-pub fn too_slow(options: &Options, choice: Option<&Choice>, measured_ms: f64) -> Option<String> {
+/// A note that the frames took longer than the budget allows, unless a choice has said so already.
+pub fn too_slow(options: &Options, lights: &[Drawn], measured_ms: f64) -> Option<String> {
     let most = options.auto?.max_ms?;
-    let known = choice?.problem.is_some();
+    let known = lights.iter().any(|l| l.choice.is_some_and(|c| c.problem.is_some()));
     (measured_ms > most && !known)
         .then(|| format!("auto: {measured_ms:.1} ms were measured, and {most} ms asked for"))
 }
@@ -75,19 +77,10 @@ fn unpromised(options: &Options) -> Option<String> {
 }
 
 /// Lights that the first of their name hides.
-fn namesakes(scene: &Scene, light: &AreaLight) -> Option<String> {
-    let name = &light.name;
+fn namesakes(options: &Options, scene: &Scene) -> Option<String> {
+    let name = options.light.as_ref()?;
     let number = scene.lights.iter().filter(|l| l.name == *name).count();
     (number > 1).then(|| format!("{number} lights are named {name}; the first of them is used"))
-}
-
-/// Lights that were not named and are not used.
-fn others(options: &Options, scene: &Scene, light: &AreaLight) -> Option<String> {
-    let mut names: Vec<&str> = scene.lights.iter().map(|l| l.name.as_str()).collect();
-    names.retain(|name| *name != light.name);
-    let used = &light.name;
-    let silent = options.light.is_some() || names.is_empty();
-    (!silent).then(|| format!("the light {used} is used; --light takes {}", names.join(", ")))
 }
 
 /// That nothing can be shadowed, which looks like a picture without a light.

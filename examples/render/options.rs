@@ -28,7 +28,7 @@ struct Arguments {
     /// Image size
     #[arg(long, value_name = "WxH", default_value = "640x480")]
     size: String,
-    /// The light's node; the first light without it
+    /// The one light that is drawn, by its node; all lights without it
     #[arg(long, value_name = "NODE")]
     light: Option<String>,
     /// Overrides a node's role (occluder, receiver, both), repeatable
@@ -64,6 +64,7 @@ pub struct Options {
     pub max_error: Option<f64>,
     pub settings: Technique,
     pub size: [u32; 2],
+    /// The node of the one light that is drawn; `None` for all.
     pub light: Option<String>,
     pub roles: Vec<(String, Role)>,
     pub repeat: u32,

@@ -1,7 +1,8 @@
 //! The files: encoded whole in memory, then written all or none.
 
 use antumbra::Error;
-use exr::prelude::{Image as ExrImage, SpecificChannels, Vec2, WritableImage};
+use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Image as ExrImage, Layer, Text};
+use exr::prelude::{Encoding, LayerAttributes, SmallVec, SpecificChannels, Vec2, WritableImage};
 use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
 use std::fs;
 use std::io::Cursor;
@@ -28,6 +29,32 @@ impl Files {
         let image = ExrImage::from_channels((width as usize, height as usize), channels);
         let mut bytes = Cursor::new(Vec::new());
         image.write().to_buffered(&mut bytes).map_err(|e| failed(name, e))?;
+        self.0.push((name, bytes.into_inner()));
+        Ok(())
+    }
+
+    /// 32-bit float channels by name, each of them another's.
+    pub fn exr_named(
+        &mut self,
+        name: &'static str,
+        [width, height]: [u32; 2],
+        channels: &[(String, Vec<f32>)],
+    ) -> Result<(), Error> {
+        let channel = |(name, values): &(String, Vec<f32>)| {
+            // In UTF-8, as the format's readers take names.
+            let name = Text::from_slice_unchecked(name.as_bytes());
+            AnyChannel::new(name, FlatSamples::F32(values.clone()))
+        };
+        let list: SmallVec<_> = channels.iter().map(channel).collect();
+        let size = (width as usize, height as usize);
+        let layer = Layer::new(
+            size,
+            LayerAttributes::default(),
+            Encoding::FAST_LOSSLESS,
+            AnyChannels::sort(list),
+        );
+        let mut bytes = Cursor::new(Vec::new());
+        ExrImage::from_layer(layer).write().to_buffered(&mut bytes).map_err(|e| failed(name, e))?;
         self.0.push((name, bytes.into_inner()));
         Ok(())
     }

@@ -4,10 +4,11 @@ use crate::notes;
 use crate::options::Options;
 use antumbra::audit::MeasuredError;
 use antumbra::auto::Choice;
-use antumbra::effects::Outcome;
+use antumbra::effects::{Outcome, Verdict};
+use antumbra::graph::Run;
 use antumbra::knob::Knob;
-use antumbra::scene::Scene;
-use antumbra::{FramePlan, ResourceBytes, Technique};
+use antumbra::scene::{AreaLight, Scene};
+use antumbra::{FramePlan, PassTime, ResourceBytes, Technique};
 use antumbra_harness::{FrameTimes, HeadlessDevice};
 use serde_json::{Map, Value, json};
 use std::time::Duration;
@@ -15,18 +16,29 @@ use std::time::Duration;
 /// The rounding of an allowed error in single precision, as a share of it.
 const ROUNDING: f64 = 1e-4;
 
+/// A light that is drawn, and what belongs to it alone.
+pub struct Drawn<'a> {
+    pub light: &'a AreaLight,
+    /// The technique that ran, given or chosen.
+    pub settings: &'a Technique,
+    pub choice: Option<&'a Choice>,
+    pub plan: &'a FramePlan,
+    /// The times of the passes of each frame, by timestamps; empty where the device has none.
+    pub times: Vec<Vec<PassTime>>,
+    /// The error of all frames together; `None` without an audit.
+    pub measured: Option<MeasuredError>,
+}
+
 /// Everything the report is made of.
 pub struct Report<'a> {
     pub device: &'a HeadlessDevice,
     pub options: &'a Options,
-    /// The technique that ran, given or chosen.
-    pub settings: &'a Technique,
-    pub choice: Option<&'a Choice>,
     pub scene: &'a Scene,
-    pub plan: &'a FramePlan,
+    /// The lights in the order of their indices, at least one.
+    pub lights: &'a [Drawn<'a>],
     pub frames: Vec<FrameTimes>,
     pub memory: Vec<ResourceBytes>,
-    /// The error of all frames together; `None` without an audit.
+    /// The error of all lights and frames together; `None` without an audit.
     pub measured: Option<MeasuredError>,
 }
 
@@ -58,30 +70,64 @@ fn measured(error: &MeasuredError) -> String {
     }
 }
 
+/// A measured error for programs.
+fn error_of(e: &MeasuredError) -> Value {
+    json!({ "mean": e.mean, "low": e.low, "high": e.high, "pixels": e.pixels })
+}
+
+impl Drawn<'_> {
+    /// The median over the frames of a pass's milliseconds.
+    fn pass_ms(&self, name: &str) -> Option<f64> {
+        let passes = self.times.iter().flatten().filter(|p| p.name == name);
+        let times: Vec<f64> = passes.map(|p| p.ms).collect();
+        (!times.is_empty()).then(|| median(times))
+    }
+
+    /// The passes that run, each with its time and its reason.
+    fn passes(&self) -> Vec<Value> {
+        let plan = self.plan.plan();
+        let row = |run: &Run| {
+            let name = run.pass.name;
+            let why = plan.graph.why(run.pass).to_string();
+            json!({ "name": name, "ms": self.pass_ms(name), "times": run.times, "why": why })
+        };
+        plan.runs().iter().map(row).collect()
+    }
+
+    fn skipped(&self) -> Vec<Value> {
+        self.plan.skipped().map(|(name, why)| json!({ "name": name, "why": why })).collect()
+    }
+
+    fn effects(&self) -> Vec<Value> {
+        let verdicts = self.plan.verdicts();
+        let row = |v: &Verdict| {
+            let outcome = match v.outcome {
+                Outcome::Simulated => "simulated",
+                Outcome::LeftOut => "left out",
+                Outcome::NotSimulated => "missing",
+            };
+            let (name, why) = (v.effect.rule().name, verdicts.why(v.effect));
+            json!({ "name": name, "outcome": outcome, "bound": v.bound, "why": why.to_string() })
+        };
+        verdicts.all().iter().map(row).collect()
+    }
+}
+
 impl Report<'_> {
     fn median_ms(&self, of: impl Fn(&FrameTimes) -> Duration) -> f64 {
         median(self.frames.iter().map(|f| of(f).as_secs_f64() * 1e3).collect())
     }
 
-    /// Milliseconds of a frame, from the submit to the fence.
+    /// Milliseconds of a frame of all lights, from the submit to the fence.
     pub fn frame_ms(&self) -> f64 {
         self.median_ms(|f| f.frame)
-    }
-
-    fn pass_ms(&self, name: &str) -> Option<f64> {
-        let times: Vec<f64> = self
-            .frames
-            .iter()
-            .flat_map(|f| f.passes.iter().filter(|p| p.0 == name).map(|p| p.1))
-            .collect();
-        (!times.is_empty()).then(|| median(times))
     }
 
     fn gpu_bytes(&self) -> u64 {
         self.memory.iter().map(|r| r.bytes).sum()
     }
 
-    /// Whether the error promised and the time measured are within the budget.
+    /// Whether the error promised for a light and the time measured for all are within the budget.
     fn met(&self, choice: &Choice) -> bool {
         let budget = self.options.auto.unwrap_or_default();
         let within = |most: Option<f64>, value: Option<f64>| {
@@ -91,40 +137,9 @@ impl Report<'_> {
             && within(budget.max_ms, Some(self.frame_ms()))
     }
 
-    /// The text of report.json.
-    pub fn json(&self) -> String {
-        let graph = &self.plan.plan().graph;
-        let passes: Vec<_> = self
-            .plan
-            .plan()
-            .runs()
-            .iter()
-            .map(|run| {
-                let name = run.pass.name;
-                let why = graph.why(run.pass);
-                json!({ "name": name, "ms": self.pass_ms(name), "times": run.times, "why": why.to_string() })
-            })
-            .collect();
-        let skipped = self.plan.skipped();
-        let skipped: Vec<_> =
-            skipped.map(|(name, why)| json!({ "name": name, "why": why })).collect();
-        let memory: Map<String, Value> =
-            self.memory.iter().map(|r| (r.name.into(), json!(r.bytes))).collect();
-        let verdicts = self.plan.verdicts();
-        let effects: Vec<_> = verdicts
-            .all()
-            .iter()
-            .map(|v| {
-                let outcome = match v.outcome {
-                    Outcome::Simulated => "simulated",
-                    Outcome::LeftOut => "left out",
-                    Outcome::NotSimulated => "missing",
-                };
-                let (name, why) = (v.effect.rule().name, verdicts.why(v.effect));
-                json!({ "name": name, "outcome": outcome, "bound": v.bound, "why": why.to_string() })
-            })
-            .collect();
-        let model = self.choice.map(|c| {
+    /// What belongs to a light alone.
+    fn of_light(&self, drawn: &Drawn) -> Map<String, Value> {
+        let auto = drawn.choice.map(|c| {
             json!({
                 "error": c.error,
                 "ms": c.ms,
@@ -137,27 +152,92 @@ impl Report<'_> {
                 "left_out": c.left_out,
             })
         });
-        let mut report = json!({
-            "driver": self.device.name(),
-            "auto": model,
-            "effects": effects,
-            "technique": self.settings.name(),
-            "settings": settings_of(self.settings),
-            "size": self.options.size,
-            "passes": passes,
-            "skipped": skipped,
-            "frame_ms": self.frame_ms(),
-            "record_us": self.median_ms(|f| f.record) * 1e3,
-            "gpu_bytes": self.gpu_bytes(),
-            "memory": memory,
-            "triangles": self.scene.triangles(),
-            "lights": self.scene.lights.len(),
-        });
-        if let (Some(e), Some(report)) = (&self.measured, report.as_object_mut()) {
-            let error = json!({ "mean": e.mean, "low": e.low, "high": e.high, "pixels": e.pixels });
-            report.insert("measured_error".into(), error);
+        let parts = [
+            ("auto", json!(auto)),
+            ("effects", drawn.effects().into()),
+            ("technique", drawn.settings.name().into()),
+            ("settings", settings_of(drawn.settings).into()),
+            ("passes", drawn.passes().into()),
+            ("skipped", drawn.skipped().into()),
+        ];
+        let measured = drawn.measured.as_ref().map(|e| ("measured_error", error_of(e)));
+        parts.into_iter().chain(measured).map(|(key, value)| (key.to_string(), value)).collect()
+    }
+
+    /// The passes of all lights: the time and the number of those of one name together, with the reason of the first
+    /// light that runs it.
+    fn all_passes(&self) -> Vec<Value> {
+        let mut all: Vec<Value> = Vec::new();
+        for pass in self.lights.iter().flat_map(Drawn::passes) {
+            match all.iter_mut().find(|p| p["name"] == pass["name"]) {
+                Some(same) => {
+                    let ms = same["ms"].as_f64().zip(pass["ms"].as_f64()).map(|(a, b)| a + b);
+                    let times = same["times"].as_u64().zip(pass["times"].as_u64());
+                    same["ms"] = json!(ms);
+                    same["times"] = json!(times.map(|(a, b)| a + b));
+                }
+                None => all.push(pass),
+            }
         }
-        format!("{report:#}\n")
+        all
+    }
+
+    /// The passes that no light runs, with the reason of the first light.
+    fn all_skipped(&self, passes: &[Value]) -> Vec<Value> {
+        let mut all: Vec<Value> = Vec::new();
+        for pass in self.lights.iter().flat_map(Drawn::skipped) {
+            let known = |list: &[Value]| list.iter().any(|p| p["name"] == pass["name"]);
+            if !known(passes) && !known(&all) {
+                all.push(pass);
+            }
+        }
+        all
+    }
+
+    /// The text of report.json. With several lights the technique, its settings, the choice and the effects are those of
+    /// the first, passes are those of all, and `per_light` has what belongs to each.
+    pub fn json(&self) -> String {
+        let memory: Map<String, Value> =
+            self.memory.iter().map(|r| (r.name.into(), json!(r.bytes))).collect();
+        let mut report = self.of_light(&self.lights[0]);
+        let passes = self.all_passes();
+        let skipped = self.all_skipped(&passes);
+        let more = [
+            ("driver", self.device.name().into()),
+            ("size", json!(self.options.size)),
+            ("passes", passes.into()),
+            ("skipped", skipped.into()),
+            ("frame_ms", self.frame_ms().into()),
+            ("record_us", (self.median_ms(|f| f.record) * 1e3).into()),
+            ("gpu_bytes", self.gpu_bytes().into()),
+            ("memory", memory.into()),
+            ("triangles", self.scene.triangles().into()),
+            ("lights", self.lights.len().into()),
+        ];
+        report.extend(more.map(|(key, value)| (key.to_string(), value)));
+        if let Some(error) = &self.measured {
+            report.insert("measured_error".into(), error_of(error));
+        }
+        if self.lights.len() > 1 {
+            let of = |drawn: &Drawn| {
+                let mut row = self.of_light(drawn);
+                row.insert("light".into(), drawn.light.name.clone().into());
+                Value::from(row)
+            };
+            report.insert("per_light".into(), self.lights.iter().map(of).collect());
+        }
+        format!("{:#}\n", Value::from(report))
+    }
+
+    /// The techniques of all lights, each once.
+    fn techniques(&self) -> String {
+        let mut all: Vec<String> = Vec::new();
+        for settings in self.lights.iter().map(|l| l.settings.to_string()) {
+            if !all.contains(&settings) {
+                all.push(settings);
+            }
+        }
+        all.join(" and ")
     }
 
     /// A summary for people: the files to look at, and the times.
@@ -167,14 +247,21 @@ impl Report<'_> {
             1 => "one frame".into(),
             n => format!("median of {n} frames"),
         };
-        let foretold = self.choice.and_then(|c| c.ms).map(|ms| format!(", {ms:.1} ms foretold"));
-        let error = self.choice.and_then(|c| c.error);
+        let choices = || self.lights.iter().filter_map(|l| l.choice);
+        let foretold: f64 = choices().filter_map(|c| c.ms).sum();
+        let foretold =
+            choices().any(|c| c.ms.is_some()).then(|| format!(", {foretold:.1} ms foretold"));
+        let error = choices().filter_map(|c| c.error).reduce(f64::max);
         let promised = error.map(|e| format!(", error ≤ {} promised", notes::percent(e)));
+        let lights = match self.lights.len() {
+            1 => String::new(),
+            n => format!(" under {n} lights"),
+        };
         format!(
-            "{}: {} triangles, {width}×{height} pixels, {}{}{}, {:.1} ms ({frames}{}) on {}, {:.1} MB",
+            "{}: {} triangles, {width}×{height} pixels{lights}, {}{}{}, {:.1} ms ({frames}{}) on {}, {:.1} MB",
             self.options.out.join("shaded.png").display(),
             self.scene.triangles(),
-            self.settings,
+            self.techniques(),
             promised.unwrap_or_default(),
             self.measured.as_ref().map(measured).unwrap_or_default(),
             self.frame_ms(),

@@ -122,32 +122,52 @@ fn srgb(linear: f64) -> u8 {
     (y * 255.0).round() as u8
 }
 
-/// The shaded image, three bytes a pixel, exposed so that the brightest lit pixel is not clipped.
+/// The image shaded by one light, as [`shade_all`] has it.
 pub fn shade(
     light: &AreaLight,
     visibility: &[f32],
     positions: &[[f32; 4]],
     normals: &[[f32; 4]],
 ) -> Vec<u8> {
-    let irradiances = irradiances(&light.light, positions, normals);
-    // The brightest hundredth may clip: a surface close to the light should not darken the rest.
-    let mut sorted: Vec<f64> = irradiances.iter().copied().filter(|e| *e > 0.0).collect();
-    sorted.sort_by(f64::total_cmp);
-    let bright = sorted.get(sorted.len() * 99 / 100).copied().unwrap_or(1.0);
-    let peak = f64::from(light.color.iter().copied().fold(0.0, f32::max)).max(1e-6);
-    let mut pixels = Vec::with_capacity(visibility.len() * 3);
-    for ((v, e), p) in visibility.iter().zip(&irradiances).zip(positions) {
-        if p[3] == 0.0 {
-            pixels.extend(BACKGROUND);
-            continue;
-        }
-        let direct = f64::from(*v) * e / bright;
-        for channel in light.color {
-            let colored = direct * f64::from(channel) / peak;
-            pixels.push(srgb(ALBEDO * (colored * (1.0 - AMBIENT) + AMBIENT)));
+    shade_all(&[(light, visibility)], positions, normals)
+}
+
+/// The image shaded by the sum of some lights, each with the visible fraction of every pixel: three bytes a pixel, exposed
+/// so that the brightest hundredth of what all lights together would light may be clipped, and no more. A light's color
+/// times its intensity is its radiance, that of a sun its irradiance, as directional lights of glTF have it.
+pub fn shade_all(
+    lights: &[(&AreaLight, &[f32])],
+    positions: &[[f32; 4]],
+    normals: &[[f32; 4]],
+) -> Vec<u8> {
+    // The color of each pixel with shadows, and its brightest part without.
+    let mut lit = vec![[0.0; 3]; positions.len()];
+    let mut open = vec![0.0; positions.len()];
+    for (light, visibility) in lights {
+        let unit = match light.light.shape() {
+            Shape::Sun { angular_size } => 1.0 / (PI * (0.5 * angular_size).tan().powi(2)),
+            _ => 1.0,
+        };
+        let color = light.color.map(|c| f64::from(c) * f64::from(light.intensity) * unit);
+        let most = color.into_iter().fold(0.0, f64::max);
+        let irradiances = irradiances(&light.light, positions, normals);
+        for (((lit, open), v), e) in lit.iter_mut().zip(&mut open).zip(*visibility).zip(irradiances)
+        {
+            *open += e * most;
+            for (sum, channel) in lit.iter_mut().zip(color) {
+                *sum += f64::from(*v) * e * channel;
+            }
         }
     }
-    pixels
+    // A surface close to a light should not darken the rest.
+    open.retain(|e| *e > 0.0);
+    open.sort_by(f64::total_cmp);
+    let bright = open.get(open.len() * 99 / 100).copied().unwrap_or(1.0);
+    let shade = |(lit, p): (&[f64; 3], &[f32; 4])| match p[3] > 0.0 {
+        true => lit.map(|c| srgb(ALBEDO * (c / bright * (1.0 - AMBIENT) + AMBIENT))),
+        false => BACKGROUND,
+    };
+    lit.iter().zip(positions).flat_map(shade).collect()
 }
 
 #[cfg(test)]
@@ -193,6 +213,31 @@ mod tests {
     fn a_disc_near_by_is_its_closed_form() {
         let disc = Light::disc(DVec3::Y, DVec3::NEG_Y, 0.5).unwrap();
         near(on(disc, DVec3::Y), PI * 0.25 / 1.25, 1.0 / 30.0);
+    }
+
+    /// Two lights add up, each in its color, and an image does not change with the brightness of all lights.
+    #[test]
+    fn lights_add_up() {
+        let place = DVec3::Y * 2.0;
+        let light = |color: [f32; 3], intensity: f32| AreaLight {
+            name: "lamp".into(),
+            light: Light::disc(place, DVec3::NEG_Y, 0.3).unwrap(),
+            color,
+            intensity,
+        };
+        let positions = [[0.0, 0.0, 0.0, 1.0], [0.3, 0.0, 0.0, 1.0], [0.0; 4]];
+        let normals = [[0.0, 1.0, 0.0, 0.0]; 3];
+        let shade = |lights: &[(&AreaLight, &[f32])]| shade_all(lights, &positions, &normals);
+        let (red, blue) = (light([1.0, 0.0, 0.0], 2.0), light([0.0, 0.0, 1.0], 2.0));
+        let purple = light([1.0, 0.0, 1.0], 1.0);
+        let half = [0.5, 1.0, 0.0];
+        // As bright as both, where the brightest part of each counts for the exposure.
+        let both = shade(&[(&red, &half), (&blue, &half)]);
+        let one = shade(&[(&purple, &half)]);
+        assert!(both[0] == both[2] && both[1] < both[0] && one[0] > both[0], "{both:?} {one:?}");
+        let brighter = light([1.0, 0.0, 1.0], 7.0);
+        assert_eq!(one, shade(&[(&brighter, &half)]));
+        assert_eq!(one[6..], BACKGROUND);
     }
 
     #[test]

@@ -251,6 +251,21 @@ impl Stage {
         auto.choose(node.description(), &frame)
     }
 
+    /// The choices of `auto` for some of a scene's lights, which share its time; the node stays as it is.
+    ///
+    /// # Errors
+    /// See [`Auto::choose_all`].
+    pub fn choose_all(
+        &mut self,
+        auto: &mut Auto,
+        lights: &[&AreaLight],
+    ) -> Result<Vec<Choice>, Error> {
+        let frames: Vec<_> = lights.iter().map(|light| self.frame(light.light)).collect();
+        let node =
+            self.node.as_ref().ok_or_else(|| Error::Frame("the stage has no node".into()))?;
+        auto.choose_all(node.description(), &frames)
+    }
+
     /// Records a plan, submits it and waits.
     ///
     /// # Errors
