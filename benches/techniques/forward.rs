@@ -30,7 +30,7 @@ pub fn forward(device: &HeadlessDevice, scale: &Scale, table: &mut Table) {
         let light = scene.light(None).unwrap().light;
         let aspect = f64::from(EXTENT[0]) / f64::from(EXTENT[1]);
         let camera = scene.camera.unwrap_or_else(|| Camera::framing(&scene, aspect));
-        let view = View::perspective(&camera, EXTENT);
+        let view = View::of(&camera, EXTENT);
         for rays in [4, 9, 16] {
             let settings = technique(&format!("ray-march map=512 rays={rays} filter=off"));
             let keep = |_: &Instance| true;

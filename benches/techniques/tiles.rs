@@ -39,7 +39,7 @@ const EXTENT: [u32; 2] = [640, 480];
 /// Scenes with what looks at them. Occluders receive as well, so that their own shadows are among the pixels.
 fn views(side: f64) -> [(&'static str, Scene, View); 6] {
     let receiving = |name| scene(name, side).with_occluders_as(Role::Both);
-    let perspective = |camera: &Camera| View::perspective(camera, EXTENT);
+    let perspective = |camera: &Camera| View::of(camera, EXTENT);
     let framed = |name, scene: Scene| {
         let view = perspective(&Camera::framing(&scene, 4.0 / 3.0));
         (name, scene, view)

@@ -3,9 +3,9 @@
 use crate::Outcome;
 use crate::gbuffer::GBuffer;
 use crate::geometry::Model;
-use antumbra::scene::{AreaLight, Camera, Mesh, Role, Scene, from_gltf, generate};
+use antumbra::scene::{AreaLight, Camera, Lens, Mesh, Role, Scene, from_gltf, generate};
 use antumbra::{Light, RectangleLight};
-use glam::{DMat3, DMat4, DVec3, DVec4};
+use glam::{DMat3, DMat4, DVec3};
 use std::f64::consts::TAU;
 use std::path::Path;
 
@@ -82,14 +82,7 @@ impl World {
     pub fn clip_from_world(&self, [width, height]: [u32; 2]) -> DMat4 {
         let camera = self.fixed.as_ref().map_or_else(camera, |(_, camera)| *camera);
         let aspect = f64::from(width) / f64::from(height);
-        let scale = 1.0 / (0.5 * camera.yfov).tan();
-        let clip_from_view = DMat4::from_cols(
-            DVec4::new(scale / aspect, 0.0, 0.0, 0.0),
-            DVec4::new(0.0, -scale, 0.0, 0.0), // Vulkan's y runs down the image
-            DVec4::new(0.0, 0.0, 0.0, -1.0),
-            DVec4::new(0.0, 0.0, camera.near, 0.0),
-        );
-        clip_from_view * camera.world_from_view.inverse()
+        camera.clip_from_view(aspect) * camera.world_from_view.inverse()
     }
 }
 
@@ -140,5 +133,5 @@ fn camera() -> Camera {
     let right = DVec3::Y.cross(back).normalize();
     let axes = DMat3::from_cols(right, back.cross(right), back);
     let world_from_view = DMat4::from_translation(eye) * DMat4::from_mat3(axes);
-    Camera { world_from_view, yfov: 0.8, near: 0.1 }
+    Camera { world_from_view, lens: Lens::Perspective { yfov: 0.8 }, near: 0.1 }
 }

@@ -58,6 +58,9 @@ fn load(options: &Options) -> Result<Scene, Stop> {
     for (node, role) in &options.roles {
         scene.set_role(node, *role)?;
     }
+    if let Some(camera) = &options.camera {
+        scene.set_camera(camera)?;
+    }
     if scene.triangles() == 0 {
         let path = options.scene.display();
         return Err(Stop::Wrong(format!(
@@ -144,7 +147,7 @@ fn render(options: &Options) -> Result<String, Stop> {
     let [width, height] = options.size;
     let aspect = f64::from(width) / f64::from(height);
     let camera = scene.camera.unwrap_or_else(|| Camera::framing(&scene, aspect));
-    let view = View::perspective(&camera, options.size);
+    let view = View::of(&camera, options.size);
 
     let device = HeadlessDevice::new(&HeadlessOptions {
         validation: options.validate,

@@ -31,6 +31,9 @@ struct Arguments {
     /// The one light that is drawn, by its node; all lights without it
     #[arg(long, value_name = "NODE")]
     light: Option<String>,
+    /// The camera that shows the scene, by its node; the first one without it, or one that frames the scene
+    #[arg(long, value_name = "NODE")]
+    camera: Option<String>,
     /// Overrides a node's role (occluder, receiver, both), repeatable
     #[arg(long = "role", value_name = "NODE=ROLE")]
     roles: Vec<String>,
@@ -66,6 +69,8 @@ pub struct Options {
     pub size: [u32; 2],
     /// The node of the one light that is drawn; `None` for all.
     pub light: Option<String>,
+    /// The node of the camera; `None` for the first.
+    pub camera: Option<String>,
     pub roles: Vec<(String, Role)>,
     pub repeat: u32,
     /// The pixels of each frame that are traced to measure its error; 0 for none.
@@ -169,6 +174,7 @@ pub fn parse(arguments: impl Iterator<Item = OsString>) -> Result<Options, Stop>
         settings,
         size: size(&a.size)?,
         light: a.light,
+        camera: a.camera,
         roles,
         repeat: a.repeat,
         audit: a.audit,

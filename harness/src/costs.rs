@@ -29,7 +29,7 @@ pub fn probe(device: &HeadlessDevice) -> Result<Measured, Error> {
     let scene = generate::spheres(generate::square_light(0.4)?);
     let light = scene.light(None)?.clone();
     let camera = Camera::framing(&scene, f64::from(EXTENT[0]) / f64::from(EXTENT[1]));
-    let view = View::perspective(&camera, EXTENT);
+    let view = View::of(&camera, EXTENT);
     let settings = "soft-shadow-map map=128".parse()?;
     let mut stage = Stage::new(device, &scene, &view, EXTENT, settings, |_| true)?;
     let plan = stage.plan_under(&light, None)?;

@@ -11,16 +11,9 @@ pub struct View {
 }
 
 impl View {
-    /// A perspective camera with an infinite far plane.
-    pub fn perspective(camera: &Camera, [width, height]: [u32; 2]) -> Self {
-        let scale = 1.0 / (0.5 * camera.yfov).tan();
-        let aspect = f64::from(width) / f64::from(height);
-        let clip_from_view = DMat4::from_cols(
-            DVec4::new(scale / aspect, 0.0, 0.0, 0.0),
-            DVec4::new(0.0, -scale, 0.0, 0.0),
-            DVec4::new(0.0, 0.0, 0.0, -1.0),
-            DVec4::new(0.0, 0.0, camera.near, 0.0),
-        );
+    /// A camera's view on an image of this many pixels.
+    pub fn of(camera: &Camera, [width, height]: [u32; 2]) -> Self {
+        let clip_from_view = camera.clip_from_view(f64::from(width) / f64::from(height));
         Self { clip_from_world: clip_from_view * camera.world_from_view.inverse() }
     }
 

@@ -2,7 +2,7 @@
 
 use antumbra::Shape;
 use antumbra::glam::DVec3;
-use antumbra::scene::{AreaLight, Camera, Scene, from_gltf_bytes};
+use antumbra::scene::{AreaLight, Camera, Lens, Scene, from_gltf_bytes};
 use std::path::Path;
 
 /// A folder that does not exist, where no buffer is found.
@@ -61,10 +61,17 @@ pub fn check(scene: &Scene) {
         assert!(instance.world_from_mesh.is_finite());
     }
     scene.lights.iter().for_each(check_light);
-    for camera in scene.camera.into_iter().chain([Camera::framing(scene, 1.5)]) {
+    let cameras = scene.cameras.iter().map(|(_, camera)| *camera).chain(scene.camera);
+    for camera in cameras.chain([Camera::framing(scene, 1.5)]) {
         let x = camera.world_from_view;
         assert!(x.is_finite() && (x.determinant() - 1.0).abs() < 1e-9);
-        assert!(camera.near > 0.0 && camera.yfov > 0.0);
+        match camera.lens {
+            Lens::Perspective { yfov } => assert!(camera.near > 0.0 && yfov > 0.0),
+            Lens::Orthographic { half, far } => {
+                assert!(half[0] > 0.0 && half[1] > 0.0 && far > camera.near && camera.near >= 0.0);
+            }
+        }
+        assert!(camera.clip_from_view(1.0).inverse().is_finite());
     }
 }
 

@@ -1,6 +1,6 @@
 //! The camera of a scene that brings none.
 
-use super::{Bounds, Camera, Instance, Scene};
+use super::{Bounds, Camera, Instance, Lens, Scene};
 use glam::{DMat3, DMat4, DVec3};
 
 /// The vertical field of view, about 40°: little distortion at the rim.
@@ -49,7 +49,7 @@ impl Camera {
 
         let mut world_from_view = DMat4::from_mat3(axes);
         world_from_view.w_axis = (target + z * distance).extend(1.0);
-        Self { world_from_view, yfov: YFOV, near: nearest * NEAR }
+        Self { world_from_view, lens: Lens::Perspective { yfov: YFOV }, near: nearest * NEAR }
     }
 }
 
@@ -95,7 +95,7 @@ mod tests {
             for aspect in [0.4, 1.0, 2.5] {
                 let camera = Camera::framing(&scene, aspect);
                 let view_from_world = camera.world_from_view.inverse();
-                let tan = (0.5 * camera.yfov).tan();
+                let tan = (0.5 * YFOV).tan();
                 let reach = focus(&scene).corners().map(|c| {
                     let v = view_from_world.transform_point3(c);
                     assert!(-v.z > camera.near, "behind the near plane");

@@ -9,7 +9,7 @@ pub use crate::lent::Role;
 use crate::error::quoted;
 use crate::lent::MeshBounds;
 use crate::{Error, Light};
-use glam::{DMat3, DMat4, DVec3};
+use glam::{DMat3, DMat4, DVec3, DVec4};
 
 mod framing;
 pub mod generate;
@@ -92,15 +92,61 @@ pub struct AreaLight {
     pub intensity: f32,
 }
 
-/// A perspective camera.
+/// A camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// View space (x right, y up, looking along −z) to world space; rigid.
     pub world_from_view: DMat4,
-    /// The vertical field of view, in radians, in (0, π).
-    pub yfov: f64,
-    /// The distance of the near plane, in metres, above 0.
+    /// How view space is projected.
+    pub lens: Lens,
+    /// The distance of the near plane, in metres: above 0, or 0 too for an orthographic camera.
     pub near: f64,
+}
+
+/// How a camera projects what it sees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lens {
+    /// A perspective without a far plane.
+    Perspective {
+        /// The vertical field of view, in radians, in (0, π).
+        yfov: f64,
+    },
+    /// Parallel rays.
+    Orthographic {
+        /// Half the width and height of what is seen at least, in metres, above 0.
+        half: [f64; 2],
+        /// The distance of the far plane, in metres, beyond the near one.
+        far: f64,
+    },
+}
+
+impl Camera {
+    /// View space to Vulkan's clip space, y down, with reversed depth: 1 at the near plane, and 0 infinitely far away or
+    /// at an orthographic camera's far plane. `aspect` is the image's width over its height; where an orthographic
+    /// camera's differs, the image shows more than it says, and not less.
+    pub fn clip_from_view(&self, aspect: f64) -> DMat4 {
+        match self.lens {
+            Lens::Perspective { yfov } => {
+                let scale = 1.0 / (0.5 * yfov).tan();
+                DMat4::from_cols(
+                    DVec4::new(scale / aspect, 0.0, 0.0, 0.0),
+                    DVec4::new(0.0, -scale, 0.0, 0.0),
+                    DVec4::new(0.0, 0.0, 0.0, -1.0),
+                    DVec4::new(0.0, 0.0, self.near, 0.0),
+                )
+            }
+            Lens::Orthographic { half: [x, y], far } => {
+                let half = y.max(x / aspect);
+                let range = far - self.near;
+                DMat4::from_cols(
+                    DVec4::new(1.0 / (half * aspect), 0.0, 0.0, 0.0),
+                    DVec4::new(0.0, -1.0 / half, 0.0, 0.0),
+                    DVec4::new(0.0, 0.0, 1.0 / range, 0.0),
+                    DVec4::new(0.0, 0.0, far / range, 1.0),
+                )
+            }
+        }
+    }
 }
 
 /// The meshes, lights and camera of an image.
@@ -112,8 +158,11 @@ pub struct Scene {
     pub instances: Vec<Instance>,
     /// The area lights, in the order of the file.
     pub lights: Vec<AreaLight>,
-    /// The file's first camera; without one, see [`Camera::framing`].
+    /// The camera that shows the scene: the file's first, or another by [`Self::set_camera`]; without one, see
+    /// [`Camera::framing`].
     pub camera: Option<Camera>,
+    /// All of the file's cameras with their nodes' names, in the order of the nodes.
+    pub cameras: Vec<(String, Camera)>,
 }
 
 /// An axis-aligned box in world space, in metres.
@@ -206,6 +255,28 @@ impl Scene {
                 listed(self.lights.iter().map(|l| l.name.as_str()))
             ))
         })
+    }
+
+    /// Shows the scene from the first camera whose node has that name.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] where no camera has that name; the sentence names those there are.
+    pub fn set_camera(&mut self, node: &str) -> Result<(), Error> {
+        let Some((_, camera)) = self.cameras.iter().find(|(name, _)| name == node) else {
+            let names = || self.cameras.iter().map(|(name, _)| name.as_str());
+            return Err(Error::Scene(match self.cameras.is_empty() {
+                true => format!("no camera is named {}; the scene has none", quoted(node)),
+                false => {
+                    format!(
+                        "no camera is named {}; the cameras are {}",
+                        quoted(node),
+                        listed(names())
+                    )
+                }
+            }));
+        };
+        self.camera = Some(*camera);
+        Ok(())
     }
 
     /// Gives every instance of the node of that name another role.

@@ -100,7 +100,7 @@ fn lit_where_nothing_blocks(words: &str, stage: &mut Stage) {
 fn spares_what_receives_nothing(words: &str, stage: &mut Stage, scene: &Scene) {
     let camera = antumbra::scene::Camera::framing(scene, 1.0);
     let extent = [96, 96];
-    let view = View::perspective(&camera, extent);
+    let view = View::of(&camera, extent);
     let setup = Setup { scene, view, extent, window: None, occluders_seen: true };
     stage.show(scene, &view, |_| true).unwrap();
     let image = setup.visibility(stage);

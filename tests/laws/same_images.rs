@@ -60,7 +60,7 @@ fn render(device: &HeadlessDevice) -> Vec<Line> {
     let models = ["bunny", "suzanne"].map(|name| (name, model(name)));
     let extent = [160, 120];
     let real = models.iter().map(|(name, scene)| {
-        let view = View::perspective(&scene.camera.unwrap(), extent);
+        let view = View::of(&scene.camera.unwrap(), extent);
         (*name, Setup { scene, view, extent, window: None, occluders_seen: true })
     });
     let mut lines = Vec::new();

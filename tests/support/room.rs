@@ -1,7 +1,7 @@
 //! A furnished room in code: everything in it blocks and receives, as in the rooms that people have.
 
 use antumbra::RectangleLight;
-use antumbra::scene::{AreaLight, Camera, Role, Scene, generate};
+use antumbra::scene::{AreaLight, Camera, Lens, Role, Scene, generate};
 use glam::{DMat3, DMat4, DVec3};
 
 /// A room of 4 by 4 by 2.6 metres with a table, chairs, shelves and a ball, under a panel at its ceiling.
@@ -51,5 +51,5 @@ pub fn camera() -> Camera {
     let x = DVec3::Y.cross(z).normalize();
     let world_from_view =
         DMat4::from_translation(eye) * DMat4::from_mat3(DMat3::from_cols(x, z.cross(x), z));
-    Camera { world_from_view, yfov: 0.9, near: 0.05 }
+    Camera { world_from_view, lens: Lens::Perspective { yfov: 0.9 }, near: 0.05 }
 }

@@ -154,7 +154,7 @@ fn real_models_are_within_two_and_a_half_percent() {
     for name in ["bunny", "suzanne"] {
         let scene = model(name);
         let extent = [640, 480];
-        let view = View::perspective(&scene.camera.unwrap(), extent);
+        let view = View::of(&scene.camera.unwrap(), extent);
         let setup = Setup { scene: &scene, view, extent, window: None, occluders_seen: true };
         let mut stage = setup.stage(&device, "map=256");
         let image = setup.visibility(&mut stage);
@@ -185,7 +185,7 @@ fn no_acne_where_every_mesh_is_both() {
             scene.set_role(&instance.name, Role::Both).unwrap();
         }
         let extent = [320, 240];
-        let view = View::perspective(&scene.camera.unwrap(), extent);
+        let view = View::of(&scene.camera.unwrap(), extent);
         let setup = Setup { scene: &scene, view, extent, window: None, occluders_seen: true };
         let mut stage = setup.stage(&device, "map=512");
         let image = setup.visibility(&mut stage);

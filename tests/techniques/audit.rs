@@ -54,7 +54,7 @@ const TECHNIQUES: [&str; 4] = [
 
 /// A scene as a camera sees it, occluders too.
 pub fn seen<'a>(scene: &'a Scene, camera: &Camera) -> Setup<'a> {
-    let view = View::perspective(camera, EXTENT);
+    let view = View::of(camera, EXTENT);
     Setup { scene, view, extent: EXTENT, window: None, occluders_seen: true }
 }
 
@@ -362,7 +362,7 @@ fn a_camera_that_moves_over_kept_maps_sees_what_it_sees_alone() {
     let device = unwatched();
     let (scene, camera) = (room::room(), room::camera());
     let setup = seen(&scene, &camera);
-    let other = View::perspective(&Camera::framing(&scene, 157.0 / 118.0), EXTENT);
+    let other = View::of(&Camera::framing(&scene, 157.0 / 118.0), EXTENT);
     let moved = Setup { view: other, ..seen(&scene, &camera) };
     let words = "technique=traced";
     let mut stage = audited(&device, &setup, words, 64);

@@ -7,7 +7,7 @@ use antumbra_tests::measure::{Setup, model, percent};
 
 fn seen(scene: &Scene) -> Setup<'_> {
     let extent = [320, 240];
-    let view = View::perspective(&scene.camera.unwrap(), extent);
+    let view = View::of(&scene.camera.unwrap(), extent);
     Setup { scene, view, extent, window: None, occluders_seen: true }
 }
 
@@ -62,7 +62,7 @@ fn forward_and_deferred_images_differ_beside_edges_alone() {
     let scene = generate::tall_box(light).with_occluders_as(Role::Both);
     let extent = [320, 240];
     let camera = antumbra::scene::Camera::framing(&scene, 4.0 / 3.0);
-    let view = View::perspective(&camera, extent);
+    let view = View::of(&camera, extent);
     let setup = Setup { scene: &scene, view, extent, window: None, occluders_seen: true };
     let words = "technique=ray-march map=128 rays=16 filter=off";
     let both = images(&device, &setup, words);

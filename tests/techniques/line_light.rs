@@ -29,7 +29,7 @@ fn errors_are_what_they_were_measured_to_be() {
     for (n, (scene, name)) in scenes.iter().zip(["card", "spheres", "bunny"]).enumerate() {
         let setup = if name == "bunny" {
             let extent = [320, 240];
-            let view = View::perspective(&scene.camera.unwrap(), extent);
+            let view = View::of(&scene.camera.unwrap(), extent);
             Setup { scene, view, extent, window: None, occluders_seen: true }
         } else {
             Setup::ground(scene, 2.2, 160)

@@ -17,7 +17,7 @@ use proptest::prelude::Strategy;
 fn setup_of<'a>(name: &str, scene: &'a Scene) -> Setup<'a> {
     if name.contains("both") {
         let extent = [320, 240];
-        let view = View::perspective(&scene.camera.unwrap(), extent);
+        let view = View::of(&scene.camera.unwrap(), extent);
         Setup { scene, view, extent, window: None, occluders_seen: true }
     } else {
         Setup::ground(scene, 2.2, 160)

@@ -22,7 +22,7 @@ const TECHNIQUES: [&str; 7] = [
 ];
 
 fn bunny(scene: &Scene) -> Setup<'_> {
-    let view = View::perspective(&scene.camera.unwrap(), EXTENT);
+    let view = View::of(&scene.camera.unwrap(), EXTENT);
     Setup { scene, view, extent: EXTENT, window: None, occluders_seen: true }
 }
 

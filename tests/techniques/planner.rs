@@ -72,7 +72,7 @@ fn chosen(stage: &mut Stage, setup: &Setup, max_error: f64) -> Choice {
 fn a_room_is_within_the_error_that_auto_promises() {
     let device = device();
     let (scene, extent) = (room::room(), [157, 118]);
-    let view = View::perspective(&room::camera(), extent);
+    let view = View::of(&room::camera(), extent);
     let setup = Setup { scene: &scene, view, extent, window: None, occluders_seen: true };
     let mut stage = setup.stage(&device, "technique=hard map=256");
     let (truth, _) = setup.traced(&stage, 1024);

@@ -13,7 +13,7 @@ fn light(side: f64) -> antumbra::RectangleLight {
 /// The view of a scene's own camera, everything in it seen.
 fn seen(scene: &Scene) -> Setup<'_> {
     let extent = [320, 240];
-    let view = View::perspective(&scene.camera.unwrap(), extent);
+    let view = View::of(&scene.camera.unwrap(), extent);
     Setup { scene, view, extent, window: None, occluders_seen: true }
 }
 

@@ -1,6 +1,6 @@
 //! What ray marching makes of lights larger than any map's window, and of eyes inside occluders.
 
-use antumbra::scene::{Camera, Role, Scene, generate};
+use antumbra::scene::{Camera, Lens, Role, Scene, generate};
 use antumbra_harness::{GBuffer, View};
 use antumbra_tests::device;
 use antumbra_tests::measure::{Setup, percent, settings};
@@ -65,10 +65,10 @@ fn an_eye_inside_an_occluder_sees_its_umbra() {
     let eye = DVec3::new(0.3, 1.2, 0.8);
     for (where_to, turn) in [("down", -0.3), ("up", 0.6)] {
         let world_from_view = DMat4::from_translation(eye) * DMat4::from_rotation_x(turn);
-        let camera = Camera { world_from_view, yfov: 1.9, near: 0.05 };
+        let camera = Camera { world_from_view, lens: Lens::Perspective { yfov: 1.9 }, near: 0.05 };
         let setup = Setup {
             scene: &scene,
-            view: View::perspective(&camera, extent),
+            view: View::of(&camera, extent),
             extent,
             window: None,
             occluders_seen: true,

@@ -36,7 +36,7 @@ fn listed(device: &HeadlessDevice, setup: &Setup, words: &str) -> Listed {
 /// A view by the scene's own camera, of a size that is no multiple of a tile's.
 fn framed(scene: &Scene) -> Setup<'_> {
     let extent = [157, 99];
-    let view = View::perspective(&Camera::framing(scene, 157.0 / 99.0), extent);
+    let view = View::of(&Camera::framing(scene, 157.0 / 99.0), extent);
     Setup { scene, view, extent, window: None, occluders_seen: true }
 }
 

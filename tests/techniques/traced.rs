@@ -53,7 +53,7 @@ fn rays_and_shafts_see_the_same_samples() {
     let camera = scene.camera.unwrap();
     let setup = Setup {
         scene: &scene,
-        view: View::perspective(&camera, [160, 120]),
+        view: View::of(&camera, [160, 120]),
         extent: [160, 120],
         window: None,
         occluders_seen: true,

@@ -147,7 +147,7 @@ impl Group {
                 let [width, height] = self.extent.map(f64::from);
                 let camera =
                     scene.camera.unwrap_or_else(|| Camera::framing(&scene, width / height));
-                let view = View::perspective(&camera, self.extent);
+                let view = View::of(&camera, self.extent);
                 Ok(Ready { scene, view, window: None, occluders_seen: true })
             }
             Stage::Moved { model, light, by, half, reach } => {

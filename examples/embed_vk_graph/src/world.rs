@@ -2,7 +2,7 @@
 
 use crate::Outcome;
 use antumbra::scene::{AreaLight, Camera, Scene, from_gltf};
-use glam::{DMat4, DVec4};
+use glam::DMat4;
 use std::path::Path;
 
 /// A scene with a light.
@@ -30,14 +30,7 @@ impl World {
     pub fn clip_from_world(&self, [width, height]: [u32; 2]) -> DMat4 {
         let aspect = f64::from(width) / f64::from(height);
         let camera = self.scene.camera.unwrap_or_else(|| Camera::framing(&self.scene, aspect));
-        let scale = 1.0 / (0.5 * camera.yfov).tan();
-        let clip_from_view = DMat4::from_cols(
-            DVec4::new(scale / aspect, 0.0, 0.0, 0.0),
-            DVec4::new(0.0, -scale, 0.0, 0.0), // Vulkan's y runs down the image
-            DVec4::new(0.0, 0.0, 0.0, -1.0),
-            DVec4::new(0.0, 0.0, camera.near, 0.0),
-        );
-        clip_from_view * camera.world_from_view.inverse()
+        camera.clip_from_view(aspect) * camera.world_from_view.inverse()
     }
 
     /// The radiance at which white paper amid the occluders, facing the light, is just white.

@@ -3,7 +3,7 @@
 use crate::Outcome;
 use antumbra::RectangleLight;
 use antumbra::scene::{AreaLight, Camera, Scene, from_gltf};
-use glam::{DMat4, DVec3, DVec4, Vec3};
+use glam::{DMat4, DVec3, Vec3};
 use std::f64::consts::PI;
 use std::path::Path;
 
@@ -44,14 +44,9 @@ impl World {
     pub fn view(&self, [width, height]: [u32; 2]) -> View {
         let aspect = f64::from(width) / f64::from(height);
         let camera = self.scene.camera.unwrap_or_else(|| Camera::framing(&self.scene, aspect));
-        let scale = 1.0 / (0.5 * camera.yfov).tan();
-        // Reversed depth, no far plane.
-        let clip_from_view = DMat4::from_cols(
-            DVec4::new(scale / aspect, 0.0, 0.0, 0.0),
-            DVec4::new(0.0, scale, 0.0, 0.0),
-            DVec4::new(0.0, 0.0, 0.0, -1.0),
-            DVec4::new(0.0, 0.0, camera.near, 0.0),
-        );
+        // wgpu's y runs up the image, and Vulkan's down.
+        let clip_from_view =
+            DMat4::from_scale(DVec3::new(1.0, -1.0, 1.0)) * camera.clip_from_view(aspect);
         View { clip_from_world: clip_from_view * camera.world_from_view.inverse() }
     }
 }

@@ -92,8 +92,16 @@ pub(super) struct Attributes {
 
 #[derive(Debug, Deserialize)]
 pub(super) struct Camera {
-    /// Absent on an orthographic camera.
     pub perspective: Option<Perspective>,
+    pub orthographic: Option<Orthographic>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Orthographic {
+    pub xmag: f64,
+    pub ymag: f64,
+    pub znear: f64,
+    pub zfar: f64,
 }
 
 #[derive(Debug, Deserialize)]

@@ -48,7 +48,7 @@ const MAX_COORDINATE: f64 = 1e9;
 ///   wherever the node stands; each optionally with `"color"` and `"intensity"`;
 ///   `"shadow_role": "occluder"`, `"receiver"` or `"both"`. A scene without a light is returned all
 ///   the same: [`Scene::light`] is what refuses it.
-/// - The camera is that of the first node with a perspective one; orthographic ones are passed over.
+/// - The camera is that of the first node with one, perspective or orthographic; [`Scene::set_camera`] takes another.
 /// - Buffers come from the file itself, from data URIs, and from files in its folder or below.
 /// - Meshes that differ in name and material alone, and so look the same in a shadow, are one
 ///   [`Mesh`](super::Mesh).
@@ -106,8 +106,10 @@ fn parse(bytes: &[u8], folder: &Path) -> Result<Scene, Problem> {
     for placed in &all_placed {
         let label = || nodes::label(&root, placed.node);
         let node = json::at(&root.nodes, placed.node, "nodes", label)?;
-        if let (None, Some(camera)) = (scene.camera, node.camera) {
-            scene.camera = nodes::camera(&root, camera, placed)?;
+        if let Some(camera) = node.camera {
+            let camera = nodes::camera(&root, camera, placed)?;
+            scene.cameras.push((nodes::name(&root, placed.node), camera));
+            scene.camera.get_or_insert(camera);
         }
         let Some(index) = node.mesh else { continue };
         let role = extras::role(&node.extras).map_err(|e| format!("{}: {e}", label()))?;

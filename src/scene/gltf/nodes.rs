@@ -1,9 +1,9 @@
 //! The node hierarchy: where everything stands, and the camera.
 
-use super::json::{Root, at};
+use super::json::{self, Root, at};
 use super::{MAX_COORDINATE, Problem};
 use crate::error::quoted;
-use crate::scene::Camera;
+use crate::scene::{Camera, Lens};
 use glam::{DMat3, DMat4, DQuat, DVec3};
 use std::f64::consts::PI;
 
@@ -118,20 +118,51 @@ fn local(root: &Root, index: usize) -> Result<DMat4, Problem> {
     Ok(DMat4::from_scale_rotation_translation(scale, rotation / length, translation))
 }
 
-/// `cameras[index]`, seen from a node; `None` for an orthographic one.
-pub(super) fn camera(
-    root: &Root,
-    index: usize,
-    at_node: &Placed,
-) -> Result<Option<Camera>, Problem> {
-    let camera = at(&root.cameras, index, "cameras", || label(root, at_node.node))?;
-    let Some(perspective) = &camera.perspective else { return Ok(None) };
-    let (yfov, near) = (perspective.yfov, perspective.znear);
-    if !(yfov > 0.0 && yfov < PI) {
-        return Err(format!("cameras[{index}] has a yfov of {yfov}; it must be between 0 and π"));
+/// The lens and the near plane of `cameras[index]`.
+fn lens(camera: &json::Camera, index: usize) -> Result<(Lens, f64), Problem> {
+    let wrong = |what: String| Err(format!("cameras[{index}] has {what}"));
+    match (&camera.perspective, &camera.orthographic) {
+        (Some(of), _) => {
+            let (yfov, near) = (of.yfov, of.znear);
+            if !(yfov > 0.0 && yfov < PI) {
+                return wrong(format!("a yfov of {yfov}; it must be between 0 and π"));
+            }
+            if !(near > 0.0 && near.is_finite()) {
+                return wrong(format!("a znear of {near}; it must be above 0"));
+            }
+            Ok((Lens::Perspective { yfov }, near))
+        }
+        (None, Some(of)) => {
+            // A negative size mirrors, which glTF advises against and says nothing of.
+            let half = [of.xmag, of.ymag].map(f64::abs);
+            let (near, far) = (of.znear, of.zfar);
+            if !half.iter().all(|x| (1e-9..=MAX_COORDINATE).contains(x)) {
+                let [x, y] = [of.xmag, of.ymag];
+                return wrong(format!(
+                    "an xmag of {x} and a ymag of {y}; they must be above 0 and finite"
+                ));
+            }
+            if !(near >= 0.0 && far > near && far <= MAX_COORDINATE) {
+                return wrong(format!(
+                    "a znear of {near} and a zfar of {far}; zfar must be beyond znear, and that at 0 or more"
+                ));
+            }
+            Ok((Lens::Orthographic { half, far }, near))
+        }
+        (None, None) => wrong("neither a perspective nor an orthographic projection".into()),
     }
-    if !(near > 0.0 && near.is_finite()) {
-        return Err(format!("cameras[{index}] has a znear of {near}; it must be above 0"));
+}
+
+/// `cameras[index]`, seen from a node.
+pub(super) fn camera(root: &Root, index: usize, at_node: &Placed) -> Result<Camera, Problem> {
+    let camera = at(&root.cameras, index, "cameras", || label(root, at_node.node))?;
+    let (lens, near) = lens(camera, index)?;
+    let clip_from_view =
+        Camera { world_from_view: DMat4::IDENTITY, lens, near }.clip_from_view(1.0);
+    if !clip_from_view.inverse().is_finite() || !clip_from_view.determinant().is_normal() {
+        return Err(format!(
+            "cameras[{index}] has numbers beyond those that a projection can have"
+        ));
     }
     // A camera's scale has no meaning (glTF 2.0 §3.10.3): keep where it looks, then what is up.
     let m = at_node.world;
@@ -146,5 +177,5 @@ pub(super) fn camera(
     };
     let mut world_from_view = DMat4::from_mat3(DMat3::from_cols(x, z.cross(x), z));
     world_from_view.w_axis = eye.extend(1.0);
-    Ok(Some(Camera { world_from_view, yfov, near }))
+    Ok(Camera { world_from_view, lens, near })
 }

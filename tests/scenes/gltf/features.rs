@@ -1,7 +1,7 @@
 //! Features that the loader must read.
 
 use super::*;
-use antumbra::scene::Role;
+use antumbra::scene::{Lens, Role};
 use std::f64::consts::FRAC_1_SQRT_2;
 
 #[test]
@@ -295,25 +295,46 @@ fn the_camera_is_the_first_perspective_one_without_its_scale() {
     let (file, primitives) = square();
     let nodes = json!([
         {"mesh": 0},
-        {"camera": 0},
+        {"camera": 0, "name": "plan"},
         {"camera": 2, "scale": [3, -3, 2], "translation": [1, 2, 3]},
         {"camera": 1},
     ]);
     let cameras = json!([
-        {"type": "orthographic", "orthographic": {"xmag": 1, "ymag": 1, "znear": 0, "zfar": 9}},
+        {"type": "orthographic", "orthographic": {"xmag": 3, "ymag": -1, "znear": 0, "zfar": 9}},
         {"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.2}},
         {"type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.1}},
     ]);
     let scenes = json!([{"nodes": [3, 2, 1, 0]}]);
     let members = json!({"nodes": nodes, "cameras": cameras, "scenes": scenes});
-    let camera = file.scene(&primitives, members).unwrap().camera.unwrap();
-    assert_eq!((camera.yfov, camera.near), (0.7, 0.1));
+    let mut scene = file.scene(&primitives, members).unwrap();
+    let plan = Lens::Orthographic { half: [3.0, 1.0], far: 9.0 };
+    let names: Vec<&str> = scene.cameras.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["plan", "node 2", "node 3"]);
+    assert_eq!((scene.camera.unwrap().lens, scene.camera.unwrap().near), (plan, 0.0));
+    // The far plane has depth 0, the near one 1, and the image holds what is 3 m aside and 1 m above.
+    for (aspect, corner) in [(3.0, [1.0, 1.0]), (2.0, [1.0, 2.0 / 3.0]), (6.0, [0.5, 1.0])] {
+        let clip_from_view = scene.camera.unwrap().clip_from_view(aspect);
+        let seen = |x, y, z| clip_from_view.transform_point3(DVec3::new(x, y, z));
+        assert!(
+            (seen(3.0, -1.0, -9.0) - DVec3::new(corner[0], corner[1], 0.0)).length() < 1e-12,
+            "{aspect}"
+        );
+        assert!((seen(0.0, 0.0, 0.0) - DVec3::Z).length() < 1e-12);
+    }
+    let missing = scene.set_camera("nobody").unwrap_err().to_string();
+    assert!(missing.contains("no camera is named \"nobody\"; the cameras are"), "{missing}");
+    scene.set_camera("node 2").unwrap();
+    let camera = scene.camera.unwrap();
+    assert_eq!((camera.lens, camera.near), (Lens::Perspective { yfov: 0.7 }, 0.1));
     // Looking along −z from (1, 2, 3), upside down, and rigid.
     let expected = DMat4::from_cols_array(&[
         -1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 2.0, 3.0, 1.0,
     ]);
     assert!(close(camera.world_from_view, expected), "{}", camera.world_from_view);
-    assert!(with_nodes(&json!([{"mesh": 0}])).unwrap().camera.is_none());
+    let mut none = with_nodes(&json!([{"mesh": 0}])).unwrap();
+    assert!(none.camera.is_none() && none.cameras.is_empty());
+    let missing = none.set_camera("eye").unwrap_err().to_string();
+    assert!(missing.contains("no camera is named \"eye\"; the scene has none"), "{missing}");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The models that come with the repository.
 
 use super::*;
-use antumbra::scene::{Role, generate};
+use antumbra::scene::{Lens, Role, generate};
 
 fn model(name: &str) -> Scene {
     from_gltf(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name)).unwrap()
@@ -21,7 +21,7 @@ fn the_bunny() {
     let to_origin = (DVec3::new(0.0, 0.4, 0.0) - light.center()).normalize();
     assert!(light.emission().dot(to_origin) > 0.95, "{}", light.emission());
     let camera = scene.camera.unwrap();
-    assert_eq!((camera.yfov, camera.near), (0.75, 0.05));
+    assert_eq!((camera.lens, camera.near), (Lens::Perspective { yfov: 0.75 }, 0.05));
     assert_eq!(camera.world_from_view.w_axis.truncate(), DVec3::new(1.3, 2.1, 2.4));
 }
 

@@ -206,6 +206,23 @@ fn cameras_that_see_nothing() {
         let found = file.scene(&primitives, members).unwrap_err();
         assert!(found.contains(sentence), "{found}");
     }
+    let nodes = json!([{"mesh": 0}, {"camera": 0}]);
+    for (camera, sentence) in [
+        (json!({}), "neither a perspective nor an orthographic projection"),
+        (
+            json!({"orthographic": {"xmag": 0, "ymag": 1, "znear": 0, "zfar": 1}}),
+            "an xmag of 0 and",
+        ),
+        (
+            json!({"orthographic": {"xmag": 1, "ymag": 1, "znear": 2, "zfar": 2}}),
+            "zfar must be beyond",
+        ),
+        (json!({"orthographic": {"xmag": 1, "ymag": 1, "znear": -1, "zfar": 2}}), "a znear of -1"),
+    ] {
+        let members = json!({"nodes": nodes, "cameras": [camera], "scenes": [{"nodes": [0, 1]}]});
+        let found = file.scene(&primitives, members).unwrap_err();
+        assert!(found.contains(sentence), "{found}");
+    }
 }
 
 #[test]

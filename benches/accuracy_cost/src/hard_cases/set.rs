@@ -209,7 +209,7 @@ impl Set {
                 let seen = View::map_of_ground(half, top).clip_from_world;
                 View { clip_from_world: seen * at.inverse() }
             }
-            Pixels::Camera(camera) => View::perspective(&camera, extent),
+            Pixels::Camera(camera) => View::of(&camera, extent),
         };
         View { clip_from_world: there.clip_from_world * place.matrix().inverse() }
     }

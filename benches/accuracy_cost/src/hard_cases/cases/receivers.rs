@@ -5,7 +5,7 @@ use super::{
     sheet,
 };
 use crate::hard_cases::set::{Floor, Pixels, Set};
-use antumbra::scene::{Camera, Role};
+use antumbra::scene::{Camera, Lens, Role};
 use glam::{DMat4, DVec3};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3};
 
@@ -59,7 +59,7 @@ fn distances() -> Vec<HardCase> {
     let near = Floor { at: moved(0.0, 3.0, 0.0), ..ground() };
     let camera = Camera {
         world_from_view: moved(0.0, 1.0, 6.0) * DMat4::from_rotation_x(-0.2),
-        yfov: FRAC_PI_3,
+        lens: Lens::Perspective { yfov: FRAC_PI_3 },
         near: 0.01,
     };
     let wide = Floor { size: [500.0; 2], tiles: 128, ..ground() };
