@@ -1,4 +1,4 @@
-//! Files with several lights: each is drawn as if it were alone, into a channel of its own.
+//! Files with several lights, of which each is drawn as if it were alone, and with several cameras.
 
 use super::{FILES, files, report, run};
 use antumbra_tests::example::{folder, root};
@@ -65,16 +65,68 @@ fn every_light_of_a_file_has_its_channel_and_its_row() {
     fs::remove_dir_all(there).unwrap();
 }
 
+/// The first camera shows the scene, or the one that is named: the ground below an orthographic camera that looks down is
+/// a grid, whatever its height.
+#[test]
+fn a_camera_is_the_first_or_the_one_that_is_named() {
+    let there = folder("cameras");
+    let scene = there.join("cameras.glb");
+    bunny_with(&scene, |json| {
+        let down = [-FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2];
+        let plan = json!({ "name": "plan", "camera": 1, "translation": [0.5, 3.0, 0.0], "rotation": down });
+        json["nodes"].as_array_mut().unwrap().push(plan);
+        let lens = json!({ "xmag": 1.5, "ymag": 1.0, "znear": 0.0, "zfar": 4.0 });
+        json["cameras"]
+            .as_array_mut()
+            .unwrap()
+            .push(json!({ "type": "orthographic", "orthographic": lens }));
+    });
+    let positions = |camera: &[&str]| {
+        let out = folder("of_cameras");
+        let options =
+            [&["--size", "60x40", "--technique", "traced", "--validate"], camera].concat();
+        let output = run(&scene, &out, &options);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let positions = channels(&out.join("position.exr"));
+        let visible = channels(&out.join("visibility.exr")).remove(0).1;
+        fs::remove_dir_all(out).unwrap();
+        (positions, visible)
+    };
+    let first = positions(&[]);
+    assert!(first == positions(&["--camera", "camera"]));
+    let (plan, visible) = positions(&["--camera", "plan"]);
+    assert!(visible.contains(&0.0) && visible.contains(&1.0));
+    // Blue, green and red: z, y and x.
+    let of = |channel: usize| &plan[channel].1;
+    let ground = |pixel: &usize| of(1)[*pixel].abs() < 1e-6;
+    assert!((0..2400).filter(ground).count() > 1200);
+    for pixel in (0..2400).filter(ground) {
+        let [x, z] = [of(2)[pixel], of(0)[pixel]];
+        let [column, row] = [pixel % 60, pixel / 60].map(|i| i as f32 + 0.5);
+        let [from_left, from_top] = [x - 0.5 + 1.5, z + 1.0];
+        assert!((from_left - column * 0.05).abs() < 1e-4, "{pixel}: x {x}");
+        assert!((from_top - row * 0.05).abs() < 1e-4, "{pixel}: z {z}");
+    }
+    fs::remove_dir_all(there).unwrap();
+}
+
 /// The bunny's scene with other lights.
 fn bunny_under(lights: &[Value], path: &Path) {
+    bunny_with(path, |json| {
+        let nodes = json["nodes"].as_array_mut().unwrap();
+        nodes.retain(|node| node["extras"]["area_light"].is_null());
+        nodes.extend(lights.iter().cloned());
+    });
+}
+
+/// The bunny's scene, changed.
+fn bunny_with(path: &Path, change: impl FnOnce(&mut Value)) {
     let glb = fs::read(root().join("scenes/bunny.glb")).unwrap();
     let word = |at: usize| u32::from_le_bytes(glb[at..at + 4].try_into().unwrap()) as usize;
     let json_bytes = word(12);
     let mut json: Value = serde_json::from_slice(&glb[20..20 + json_bytes]).unwrap();
-    let nodes = json["nodes"].as_array_mut().unwrap();
-    nodes.retain(|node| node["extras"]["area_light"].is_null());
-    nodes.extend(lights.iter().cloned());
-    let number = nodes.len();
+    change(&mut json);
+    let number = json["nodes"].as_array().unwrap().len();
     json["scenes"][0]["nodes"] = (0..number).collect();
     let mut text = json.to_string().into_bytes();
     text.resize(text.len().next_multiple_of(4), b' ');

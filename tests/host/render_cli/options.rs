@@ -20,6 +20,8 @@ fn wrong_options_are_one_sentence() {
     refuse("repeat", &bunny, &["--repeat", "0"], "--repeat");
     refuse("audit", &bunny, &["--audit", "5"], "--audit: 5 pixels");
     refuse("light", &bunny, &["--light", "sun"], "sun");
+    let camera = "no camera is named \"nobody\"; the cameras are \"camera\"";
+    refuse("camera", &bunny, &["--camera", "nobody"], camera);
     refuse("role", &bunny, &["--role", "ground=wall"], "wall");
     refuse("node", &bunny, &["--role", "nobody=both"], "nobody");
     refuse("option", &bunny, &["--sides", "two"], "--sides");
