@@ -8,7 +8,8 @@
 #include "common/lists.glsl"
 
 // Lists the tiles whose pixels may find a blocker. The others are lit: no texel of the part of the map that they
-// search, the light seen through the near plane, lies before any of their receivers. One invocation handles one tile.
+// search, the light seen through the nearest occluder, lies before any of their receivers. One invocation handles one
+// tile.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -32,9 +33,10 @@ float nearest_w()
 
 bool may_be_shadowed(Tile tile)
 {
-    vec2 reach = push.half_light * push.texels_per_uv * (push.inv_near - tile.w.x);
-    ivec4 around = nodes_around(push.map, tile.t_min - reach, tile.t_max + reach);
     int row = nodes_a_row(push.map);
+    float most = nearest[row * row];
+    vec2 reach = push.half_light * push.texels_per_uv * max(most - tile.w.x, 0.0) + 1.0;
+    ivec4 around = nodes_around(push.map, tile.t_min - reach, tile.t_max + reach);
     for (int y = around.y; y <= around.w; ++y) {
         for (int x = around.x; x <= around.z; ++x) {
             if (nearest[y * row + x] > tile.w.x) {

@@ -1,10 +1,11 @@
 //! What users would pick instead: their laws, and how far from the truth each is.
 
 use antumbra::RectangleLight;
-use antumbra::scene::generate;
+use antumbra::scene::{Role, generate};
 use antumbra_harness::View;
 use antumbra_tests::device;
 use antumbra_tests::measure::{Setup, as_measured, model, percent, summary};
+use glam::{DMat4, DVec3};
 
 /// Many lights against the closed form. Two errors: the points, whose stratified mean is off by at most
 /// n^(−3/4)/√2 in its standard error for a convex outline (see `truth::Sampling`), about 0.8 of that in
@@ -108,6 +109,31 @@ fn errors_are_what_they_were_measured_to_be() {
         }
     }
     assert!(problems.is_empty(), "not as measured:\n{}", problems.join("\n"));
+}
+
+/// A wall beside the ground that reaches up to the light's plane is nearer than all other blockers, and hides none of the
+/// light from the ground: PCSS looks for blockers no further aside than those that are there can lie, so that it misses
+/// none for the wall.
+#[test]
+fn pcss_finds_blockers_whatever_stands_beside_the_light() {
+    let device = device();
+    let light = generate::square_light(0.4).unwrap();
+    let alone = generate::card(light);
+    let height = light.center().y;
+    let mut beside = alone.clone();
+    let at = DMat4::from_translation(DVec3::new(3.2, 0.5 * height, 0.0));
+    beside.add("wall", generate::cuboid(DVec3::new(0.1, height, 1.0)), at, Role::Both);
+    let setups = [&alone, &beside].map(|scene| Setup::ground(scene, 2.2, 160));
+    for words in ["technique=pcss taps=64 map=1024", "technique=pcss taps=64 map=1024 classify=off"]
+    {
+        let mut stages = setups.each_ref().map(|setup| setup.stage(&device, words));
+        // The closed form is the card's; the wall's shadow falls beside the image.
+        let truth = setups[0].closed_form_of_card(&stages[0]);
+        let [plain, other] =
+            [0, 1].map(|i: usize| percent(&truth, &setups[i].visibility(&mut stages[i])));
+        println!("{words}: {plain:.2} %, beside a wall {other:.2} %");
+        assert!(plain < 0.6 && other < 2.0, "{words}: {plain:.2} %, {other:.2} %");
+    }
 }
 
 /// A light of a two-thousandth of the occluders' size is a point to all of them. What is left is how each
