@@ -111,7 +111,8 @@ pub fn halves(settings: &Technique) -> f64 {
     match settings {
         // It sees the light's centre alone, and halves have others: a known fault, small where lights are.
         Technique::Hard(_) => 0.11,
-        Technique::Pcss(_) => 0.14,
+        // One distance for all blockers, of which each half sees others.
+        Technique::Pcss(_) => 0.25,
         // Up to twelve points, and others for the halves: the noise of a dozen is 0.16.
         Technique::ManyLights(_) => 0.16,
         // Nearest faces alone, of which each half sees others.
