@@ -225,7 +225,7 @@ fn a_budget_without_sense_or_hope_gets_a_sentence_and_the_nearest() {
         let c = of(None, Some(ms));
         assert!(c.problem.is_some() && c.technique == fastest.technique, "{c}");
     }
-    let both = of(Some(0.01), Some(fastest.ms.unwrap() * 1.01));
+    let both = of(Some(best.error.unwrap() * 1.01), Some(fastest.ms.unwrap() * 1.01));
     assert!(both.problem.as_ref().unwrap().contains("what the time buys"), "{both}");
 }
 
