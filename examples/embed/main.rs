@@ -188,7 +188,8 @@ fn run(options: &Options) -> Outcome<()> {
         shadows.record(&gpu, cmd, &plan, &seen)?;
         let record_time = started.elapsed();
 
-        // What the node was lent, and visibility, are ready to be fetched, as the frame says. The engine takes care of the rest.
+        // What the node was lent, and visibility, are ready to be fetched, as the frame says. The
+        // engine takes care of the rest.
         for image in [&gbuffer.albedo, &gbuffer.normal] {
             barrier(&gpu, cmd, image, COLOR_DRAWN, COMPOSE_READS);
         }

@@ -33,7 +33,7 @@ impl Files {
         Ok(())
     }
 
-    /// 32-bit float channels by name, each of them another's.
+    /// 32-bit float channels, each with its own name.
     pub fn exr_named(
         &mut self,
         name: &'static str,

@@ -1,7 +1,7 @@
 // Entered from one_map.glsl, soft_shadow_map/gather_pixels.comp, ray_march/pixel.glsl and others; at first skip what is behind GBUFFER.
 //
-// Light space: the light's own coordinates. It holds the light's texture, the receivers, their planes, the occlusion by a micro-patch, and
-// the error of the test whether an occluder lies above a receiver's plane.
+// Light space: the light's own coordinates. It holds the light's texture, the receivers, their planes, the occlusion by a
+// micro-patch, and the error of the test whether an occluder lies above a receiver's plane.
 //
 // A point of light space at distance d is kept as (u, v, w) = (x/d, y/d, 1/d). A texel of a light-space
 // map covers one step of u and v. t is (u, v) in occluder-map texels: texel (i, j) covers
@@ -49,7 +49,7 @@ float luminance(vec3 color)
 }
 
 // ---------------------------------------------------------------------------------------------
-// Receivers from the host's G-buffer: depth alone gives the position and the geometric plane.
+// Receivers from the host's G-buffer: depth gives the position, and lent normals or the depths around it the plane.
 
 struct Receiver {
     bool receives;
@@ -185,9 +185,9 @@ const float DEPTH_ROUNDING = 4.0e-7;
 
 // The normal of the facet that a pixel shows, by the depths around it. A plane's depth is linear over the image, so the
 // four quadrants around the pixel weigh by the square of how little their depths bend, along both axes and across: one
-// flat quadrant decides, and on wires, where none is flat, the mean of their slopes does. (Mean error of ray marching at a fence of
-// wires with the flattest quadrant alone, this, and the triangles' own normals: 9.4, 6.5 and 4.0 %. Elsewhere the first
-// two differ by at most 0.1 points.)
+// flat quadrant decides, and on wires, where none is flat, the mean of their slopes does. (Mean error of ray marching at a
+// fence of wires with the flattest quadrant alone, this, and the triangles' own normals: 9.4, 6.5 and 4.0 %. Elsewhere the
+// first two differ by at most 0.1 points.)
 vec3 facet_normal(ivec2 p, float depth)
 {
     // How depth changes to the neighbours along x and y, after and before, and how much it bends behind them.
@@ -220,13 +220,13 @@ vec3 facet_normal(ivec2 p, float depth)
 
 // The normal of the plane that a pixel shows, on the viewer's side: the lent one, or without it that of the depths.
 //
-// Mean error in percent over shadow at 480x360, of soft-shadow-map, ray-march, occlusion-textures and pcss, without
-// normals / with the triangles':
-//     bunny     2.6/2.2    1.8/1.4    2.0/1.6    4.7/4.4
-//     kitchen  18.2/18.1  13.0/12.8  19.4/19.2  61.4/61.1
-//     hall     22.3/22.1  18.3/18.1  33.1/33.0  53.9/53.8
-//     yard     39.6/32.5  35.6/28.4  37.3/30.8  30.9/25.2
-//     fence     9.0/6.5    6.5/4.0    6.0/3.3    8.0/5.6
+// Mean error in percent over shadow at 480x360, of soft-shadow-map, ray-march and occlusion-textures, without normals /
+// with the triangles':
+//     bunny     2.6/2.2    1.8/1.4    2.0/1.6
+//     kitchen  18.2/18.1  13.0/12.8  19.4/19.2
+//     hall     22.3/22.1  18.3/18.1  33.1/33.0
+//     yard     39.6/32.5  35.6/28.4  37.3/30.8
+//     fence     9.0/6.5    6.5/4.0    6.0/3.3
 // Normals that are interpolated between vertices would not do: 3.5 % on the bunny and 28 in the hall (soft-shadow-map).
 vec3 receiver_normal(ivec2 p, vec3 position)
 {

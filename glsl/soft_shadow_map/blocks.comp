@@ -120,7 +120,8 @@ void main()
     for (int x = 0; x < BLOCK; ++x) {
         columns[x] = vec4(0.0);
     }
-    // Maps of more than 1984 texels a side have more blocks than these sums have room for; see GUARANTEED_RANGE.
+    // With both sides, maps of more than 1984 texels have more blocks than there is room for their sums: a storage buffer
+    // of more than 128 MB is not guaranteed.
     bool room = push.sums + (index + 1) * BLOCK_TEXELS <= nodes.length();
     for (int y = 0; y < BLOCK; ++y) {
         vec4 row = vec4(0.0);

@@ -48,8 +48,8 @@ const int TILE_PIXELS = TILE_SIDE * TILE_SIDE;
 // Shafts a tile: its receivers may lie in two groups, one behind the other.
 const uint SHAFTS_A_TILE = 2u;
 
-// With `#define TEXTURED` samples count for what the light's texture emits in their cells (traced/emission.comp), by color;
-// with `#define COLOR` too there is a visible fraction of each color.
+// With `#define TEXTURED` samples count for what the light's texture emits around them (traced/emission.comp), by color; with
+// `#define COLOR` too there is a visible fraction of each color.
 #ifdef TEXTURED
 #define SUM vec3
 #define WEIGHED true

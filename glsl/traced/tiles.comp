@@ -66,8 +66,8 @@ struct Made {
     bool turned_away;
 };
 
-// Receivers lie on one plane where the box around them is this much lower than it is wide. (On a hundred times lower ones
-// there are edges of another slope: a dozen wrong pixels in a hall.)
+// Receivers lie on one plane where the height of the box around them is at most this share of its width. (With a share of
+// 0.01 some boxes hold an edge between two slopes: a dozen wrong pixels in a hall.)
 const float FLAT = 1.0e-3;
 // A plane says little of fewer receivers.
 const int PLANE_PIXELS = 8;

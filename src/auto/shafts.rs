@@ -7,7 +7,7 @@ const SHAFT: f64 = 32.0;
 
 /// The most triangles in a shaft, by the technique's defaults: those of a denser one are not tested one by one. Its pixels
 /// send rays, which take about as long as the tests of so many (`traced`'s knob `leaves`, of two triangles each).
-const DENSE: f64 = 2048.0;
+const DENSE: f64 = 4096.0;
 
 /// The time that pixels take where triangles are tested in shafts, over that of pixels with empty shafts: 1 and more.
 ///

@@ -50,7 +50,8 @@ pub struct EmissionPush {
     pub color: i32,
 }
 
-/// The shaders whose result is one visible fraction or one of each color, and which read the light's texture.
+/// The shaders that there are more than one of: for a light with a texture or without, for one visible fraction or one of
+/// each color, for each number of samples.
 struct Shaders {
     tiles: Module,
     gather: Module,
@@ -200,12 +201,11 @@ pub(super) fn declare(
         smallvec![read(0, slots), read(1, sums), update(2, entries)],
         need,
     ));
+    // What the passes use that sum what the samples emit.
+    let weighed = |uses: &[Use]| uses.iter().copied().chain(emission).collect::<Uses>();
     let mut over_list = |name, shader, arguments, offset, uses: &[Use]| {
         let mut uses = of_frame(uses);
         uses.push(Use::fixed(arguments, Access::Indirect));
-        if name != "traced.gather" {
-            uses.extend(emission);
-        }
         let work = Work::Indirect { shader, arguments, offset };
         graph.push(Pass { name, uses, push: Push::NONE, work, need: *need });
     };
@@ -228,19 +228,25 @@ pub(super) fn declare(
         shaders.cover,
         entries,
         SHADOWED,
-        &[image(3, tree.triangles), read(4, slots), read(5, entries), read(6, lists), shown(7)],
+        &weighed(&[
+            image(3, tree.triangles),
+            read(4, slots),
+            read(5, entries),
+            read(6, lists),
+            shown(7),
+        ]),
     );
     over_list(
         "traced.rays",
         shaders.rays,
         arguments,
         16,
-        &[
+        &weighed(&[
             image(3, tree.nodes),
             image(4, tree.triangles),
             read(5, slots),
             read(6, entries),
             shown(7),
-        ],
+        ]),
     );
 }
