@@ -5,6 +5,7 @@
 //! that. This file names no technique.
 
 use crate::Error;
+use crate::stages::views::MOST_VIEWS;
 use std::fmt;
 
 /// The values that a knob may have.
@@ -115,6 +116,13 @@ impl<S> Field<S> {
     pub const fn map(get: fn(&S) -> u32, set: fn(&mut S, u32)) -> Self {
         const ABOUT: &str = "side of the occluder map, or of each of several; any whole number";
         Self::whole("map", "texels", [1, 4096], ABOUT, get, set)
+    }
+
+    /// The knob for the most views that a light is seen through.
+    pub const fn views(get: fn(&S) -> u32, set: fn(&mut S, u32)) -> Self {
+        const ABOUT: &str = "most views of a light, each with a map for a part of what the light reaches; a light that \
+                             one serves gets one. Any whole number";
+        Self::whole("views", "views", [1, MOST_VIEWS], ABOUT, get, set)
     }
 
     /// The switch of techniques that skip tiles of pixels.

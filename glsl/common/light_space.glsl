@@ -122,7 +122,7 @@ struct GBuffer {
     mat3x4 plane_to_normal; // see normal_of_plane
     ivec2 extent;           // the G-buffer's width and height
     float background;       // the depth of a pixel that shows no surface
-    int flags;              // bit 0: masked; bits 1 to 3: how normals are lent
+    int flags;              // bit 0: masked; bits 1 to 3: how normals are lent; from bit 8 on: see is_served
     mat3 light_from_normal; // turns lent normals, where some are lent
 };
 // A storage buffer, since lavapipe compiles a shader again whenever a uniform buffer that its branches test is bound. In a
@@ -133,6 +133,7 @@ layout(set = 0, binding = 19, std140) uniform Constants {
 layout(set = 0, binding = 19, std430) readonly buffer Constants {
 #endif
     GBuffer lent_gbuffer;
+    vec4 regions[16]; // two numbers of a view: see is_within
 };
 // Read once: some drivers check the bounds of the buffer at each reading.
 GBuffer gbuffer = lent_gbuffer;
@@ -233,6 +234,31 @@ vec3 receiver_normal(ivec2 p, vec3 position)
     vec3 to_viewer = towards_viewer(gbuffer.light_from_ndc, position, gbuffer.background);
     vec3 lent = encoding() == NOT_LENT ? vec3(0.0) : lent_normal(p, to_viewer);
     return lent == vec3(0.0) ? facet_normal(p, depth_at(p)) : lent;
+}
+
+// Whether a point lies within a view's region, whose least x and y and largest x and y change evenly with z.
+bool is_within(int view, vec3 position)
+{
+    vec4 rim = regions[2 * view] + regions[2 * view + 1] * position.z;
+    return all(greaterThanEqual(position.xy, rim.xy)) && all(lessThanEqual(position.xy, rim.zw));
+}
+
+bool is_first_view()
+{
+    return (gbuffer.flags & 15 << 8) == 0;
+}
+
+// Whether the passes' view serves a point: the first view whose region holds it does, and the last one all others.
+bool is_served(vec3 position)
+{
+    int view = gbuffer.flags >> 8 & 15;
+    int last = gbuffer.flags >> 12 & 15;
+    for (int finer = 0; finer < view; ++finer) {
+        if (is_within(finer, position)) {
+            return false;
+        }
+    }
+    return view == last || is_within(view, position);
 }
 
 // The receiver that a pixel shows, without its normal.

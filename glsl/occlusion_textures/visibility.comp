@@ -123,6 +123,9 @@ void main()
         return;
     }
     Receiver r = receiver_without_normal(p);
+    if (!is_served(r.position)) {
+        return;
+    }
     float v = 1.0;
     // Behind the light's plane there is nothing to hide.
     if (r.receives && r.position.z > 0.0) {

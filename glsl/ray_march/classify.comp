@@ -24,6 +24,14 @@ void main()
         return;
     }
     Receiver r = receiver_without_normal(p);
+    if (!is_served(r.position)) {
+        // The filter of the first view finds no neighbours there, that of a later one those of the views before.
+        if (filters() && is_first_view()) {
+            put_known(p, NO_RECEIVER);
+            imageStore(halfway, p, vec4(NO_RECEIVER));
+        }
+        return;
+    }
     float v;
     Reach reach;
     bool open = is_open(p, r, v, reach);

@@ -20,8 +20,13 @@ void classify_tile(ivec2 tile)
     }
     Tile bounds = empty_tile();
     bool blocks = false; // whether some of its pixels' own surfaces may hide light from them
+    uvec2 served = uvec2(0u); // a bit for each pixel that the view serves
     for (int i = 0; i < TILE * TILE; ++i) {
         Receiver r = receiver_without_normal(first + ivec2(i % TILE, i / TILE));
+        if (!is_served(r.position)) {
+            continue;
+        }
+        served[i / 32] |= 1u << (i % 32);
         // Behind the light's plane there is nothing to hide.
         if (r.receives && r.position.z > 0.0) {
             blocks = blocks || r.blocks;
@@ -45,7 +50,7 @@ void classify_tile(ivec2 tile)
     }
     for (int i = 0; i < TILE * TILE; ++i) {
         ivec2 p = first + ivec2(i % TILE, i / TILE);
-        if (all(lessThan(p, gbuffer.extent))) {
+        if ((served[i / 32] & 1u << (i % 32)) != 0u && all(lessThan(p, gbuffer.extent))) {
             imageStore(visibility, p, vec4(1.0));
         }
     }

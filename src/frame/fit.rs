@@ -11,7 +11,7 @@ use crate::graph::{Need, Why};
 use crate::lent::{MeshBounds, MeshInstance};
 use crate::light::Light;
 use crate::stages::depth_layers::{self, HostMapView, LightBox, MapView, Projection};
-use crate::stages::views::Views;
+use crate::stages::views::{Region, Served, Views, fit_served};
 use crate::technique::Technique;
 use crate::techniques::room::{Maps, Room, Seen as ViewsSeen, Takes};
 use glam::DMat4;
@@ -69,6 +69,9 @@ impl Placed {
     }
 }
 
+/// A view for passes that do not run, which serves all pixels.
+const ALONE: Served = Served { map: PLACEHOLDER, region: Region::ALL };
+
 /// The inputs of a fit: frames with equal inputs have the same fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Inputs {
@@ -89,13 +92,15 @@ pub(super) struct FitRequest {
     pub takes: Takes,
     /// The maps that the technique draws.
     pub maps: Maps,
+    /// The most views that may share the pixels.
+    pub most_served: u32,
 }
 
 impl FitRequest {
     /// The request of a technique.
     pub fn of(technique: &Technique) -> Self {
         let room = technique.room();
-        Self { technique: Some(*technique), takes: room.takes(), maps: room.maps() }
+        Self { technique: Some(*technique), takes: room.takes(), maps: room.maps(), most_served: room.most_served() }
     }
 }
 
@@ -112,8 +117,11 @@ pub(super) struct Fit {
     pub centre: Option<MapView>,
     /// The view from the light's centre of the receivers that the occluders may shadow.
     pub shadowed: Option<MapView>,
-    /// The view of the occluders from behind the light, for techniques whose projection point lies there.
-    pub behind: Option<MapView>,
+    /// The views of the occluders that share the pixels, the finest first: from behind the light where the technique's
+    /// projection point lies there. Empty where nothing lies before the light.
+    pub served: Vec<Served>,
+    /// The view from the light's centre, which serves all pixels where a hard shadow stands in for the technique.
+    pub alone: Served,
     /// Whether anything can be shadowed, and why or why not.
     pub need: Need<Why>,
     /// The situation as far as the meshes' boxes show it; `None` where nothing can be shadowed.
@@ -136,7 +144,8 @@ impl Default for Fit {
             host_maps: None,
             centre: None,
             shadowed: None,
-            behind: None,
+            served: Vec::new(),
+            alone: ALONE,
             need: Need::No(Why::default()),
             situation: None,
             odd: Odd::default(),
@@ -168,7 +177,7 @@ impl Fit {
         self.number += 1;
         let (boxes, near) = mesh_boxes.of(frame.meshes);
         frame.check_meshes(boxes, &request.takes)?;
-        self.make(description, &request.maps, frame, boxes, near)?;
+        self.make(description, request, frame, boxes, near)?;
         self.of = of;
         Ok(())
     }
@@ -176,11 +185,12 @@ impl Fit {
     fn make(
         &mut self,
         description: &Description,
-        maps: &Maps,
+        FitRequest { maps, most_served, .. }: &FitRequest,
         frame: &Frame,
         boxes: &Boxes,
         near: &mut Vec<u32>,
     ) -> Result<(), Error> {
+        let most = *most_served;
         let light = frame.light.rectangle();
         let half = light.half_extents();
         self.light_from_world = light.light_from_world();
@@ -212,10 +222,12 @@ impl Fit {
         self.need = self.need_of(boxes.blockers, gone);
         // Lent maps look from the light's centre.
         let eye = if self.host_maps.is_some() { Projection::Centre } else { maps.eye };
-        self.behind = match eye {
-            Projection::Centre => None,
-            _ => depth_layers::view_from(half, &self.occluders.boxes, eye, maps.side),
-        };
+        self.alone = Served { map: self.centre.unwrap_or(PLACEHOLDER), ..ALONE };
+        self.served.clear();
+        match eye {
+            Projection::Centre => self.served.extend(self.centre.map(|_| self.alone)),
+            _ => fit_served(half, &self.occluders.boxes, eye, maps.side, most, &mut self.served),
+        }
         self.situation = match (self.need, &self.centre, &self.shadowed) {
             (Need::Yes(_), Some(centre), Some(shadowed)) => {
                 let occluders = &self.occluders;
@@ -224,7 +236,7 @@ impl Fit {
                     given: boxes.blockers,
                     receivers: &self.receivers.boxes,
                     shadowed,
-                    map: self.behind.as_ref().unwrap_or(centre),
+                    map: self.served.last().map_or(centre, |served| &served.map),
                 };
                 let placed = occluders.meshes(frame.meshes).zip(&occluders.boxes);
                 Some(Situation::of(&seen, placed))
@@ -248,7 +260,8 @@ impl Fit {
                 occluders.push(place as u32, placed);
             }
         }
-        (self.centre, self.shadowed, self.behind, self.situation) = (None, None, None, None);
+        (self.centre, self.shadowed, self.situation) = (None, None, None);
+        (self.served, self.alone) = (Vec::new(), ALONE);
         self.odd = Odd::default();
         self.need = match (occluders.boxes.len(), receivers.boxes.len()) {
             (0, _) => Need::No("there are no occluders".into()),
@@ -330,20 +343,22 @@ impl Fit {
         self.number
     }
 
-    /// The technique's own views, made on the first call after an update.
+    /// Makes the technique's own views, on the first call after an update.
     ///
     /// # Errors
     /// [`Error::Setting`] where the light takes more views than the technique allows.
-    pub fn views(&mut self, room: &dyn Room, frame: &Frame) -> Result<&Views, Error> {
-        let views = match self.views.take() {
-            Some(views) => views,
-            None => {
-                self.occluders.fill_bounds(frame.meshes);
-                self.receivers.fill_bounds(frame.meshes);
-                self.make_views(room, frame)?
-            }
-        };
-        Ok(self.views.insert(views))
+    pub fn find_views(&mut self, room: &dyn Room, frame: &Frame) -> Result<(), Error> {
+        if self.views.is_none() {
+            self.occluders.fill_bounds(frame.meshes);
+            self.receivers.fill_bounds(frame.meshes);
+            self.views = Some(self.make_views(room, frame)?);
+        }
+        Ok(())
+    }
+
+    /// The technique's own views, once they are made.
+    pub fn views(&self) -> &Views {
+        self.views.as_ref().unwrap_or(&Views::Centre)
     }
 
     fn make_views(&self, room: &dyn Room, frame: &Frame) -> Result<Views, Error> {

@@ -14,6 +14,7 @@ use crate::stages::views::Views;
 use crate::stages::visibility::{self, Constants, NormalConstants};
 use crate::techniques::room::{Maps, Shapes, Takes};
 use glam::DMat3;
+use std::slice;
 
 /// The inputs of a frame's passes, and the verdict on each effect.
 ///
@@ -43,15 +44,20 @@ pub(super) fn frame_inputs<'a>(
     }
     let turned = DMat3::from_mat4(fit.light_from_world) * frame.world_from_normal;
     let from_normal = [turned.x_axis, turned.y_axis, turned.z_axis];
-    let (behind, centre, host_maps) = (fit.behind, fit.centre, fit.host_maps);
-    let receivers = fit.shadowed.unwrap_or(PLACEHOLDER);
-    let views = match is_soft {
-        true => fit.views(room, frame)?,
-        false => &Views::Centre,
+    if is_soft {
+        fit.find_views(room, frame)?;
+    }
+    let fit = &*fit;
+    let (host_maps, receivers) = (fit.host_maps, fit.shadowed.unwrap_or(PLACEHOLDER));
+    let served = &fit.served[..];
+    let (views, occluders) = match (is_soft, served.is_empty()) {
+        (true, false) => (fit.views(), served),
+        (true, true) => (fit.views(), slice::from_ref(&fit.alone)),
+        (false, _) => (&Views::Centre, slice::from_ref(&fit.alone)),
     };
     let inputs = FrameInputs {
         views,
-        occluders: behind.filter(|_| is_soft).or(centre).unwrap_or(PLACEHOLDER),
+        occluders,
         host_maps,
         receivers,
         needs,
@@ -87,7 +93,7 @@ fn situation_seen(fit: &Fit, frame: &Frame, extent: [u32; 2]) -> Option<Situatio
         world_from_ndc: frame.world_from_ndc,
         extent,
     };
-    let map = fit.behind.as_ref().unwrap_or(centre);
+    let map = fit.served.last().map_or(centre, |served| &served.map);
     Some(fit.situation?.seen_by(&camera, shadowed, map))
 }
 
@@ -123,7 +129,7 @@ impl SituationCache {
             Some(_) => description.technique.map(),
             None => SITUATION_MAP,
         };
-        let request = FitRequest { technique: None, takes, maps: Maps::front(side) };
+        let request = FitRequest { technique: None, takes, maps: Maps::front(side), most_served: 1 };
         let frame = Frame { light: (*frame.light.rectangle()).into(), ..*frame };
         self.fit.update(description, &request, &frame, mesh_boxes)?;
         Ok(situation_seen(&self.fit, &frame, description.extent))

@@ -5,7 +5,7 @@ use super::boxes::MeshBoxes;
 use super::doubts::Sight;
 use super::fit::{Fit, FitRequest};
 use super::inputs::frame_inputs;
-use super::passes::{Ids, Limits, build};
+use super::passes::{Clips, Ids, Limits, build};
 use super::plan::{FramePlan, Stamp};
 use super::reuse::{self, Cached, CameraDependence, Revisions};
 use super::triangles::TreeKey;
@@ -14,8 +14,7 @@ use crate::Error;
 use crate::graph::{self, Border, Compiler, Draw, Graph, MeshList, ResourceId, Work};
 use crate::lent::{BorderBarriers, HostImage, LightIndex, MeshInstance, Visibility};
 use ash::vk;
-use glam::DMat4;
-use smallvec::{SmallVec, smallvec};
+use smallvec::smallvec;
 
 /// Memory that planning uses again from frame to frame and from light to light.
 #[derive(Debug, Default)]
@@ -36,9 +35,6 @@ pub(crate) struct Memory {
     /// The number of the fit and the views that the last lists of draws were made for.
     drawn: Option<(u64, Clips, Clips)>,
 }
-
-/// Matrices from light space to the clip space of views: few techniques have more than one.
-type Clips = SmallVec<[DMat4; 1]>;
 
 /// What decides which passes a description has in a frame, and which of them run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -126,7 +122,7 @@ pub(crate) fn plan_into(
     let ids = build(graph, description, limits, light.rectangle(), &inputs);
     let occluder_clips = inputs.occluder_clips();
     let (receiver_view, views, needs) =
-        (inputs.receivers, inputs.views.count(), inputs.needs.bits());
+        (inputs.receivers, inputs.views.count() + inputs.occluders.len(), inputs.needs.bits());
     let lit = inputs.needs.unshadowed().is_some();
     // Description, needs and views decide which passes there are; only then can the cache leave some of them out.
     let before = built
@@ -172,7 +168,7 @@ pub(crate) fn plan_into(
     let receiver_clips = match maps.layers.receiver_map {
         Some(_) => smallvec![receiver_view.clip_from_light()],
         None if maps.receivers_in_views => occluder_clips.clone(),
-        None => SmallVec::new(),
+        None => Clips::new(),
     };
     let of = (fit.number(), occluder_clips, receiver_clips);
     if !same || drawn.as_ref() != Some(&of) {

@@ -7,13 +7,13 @@ use crate::effects::{Effect, Verdicts};
 use crate::graph::{Graph, Need, Owner, ResourceId, Why};
 use crate::stages::depth_layers::{self, Eye, HostMapView, LightLayers, MapView};
 use crate::stages::hierarchy::{self, Sizes};
-use crate::stages::views::Views;
+use crate::stages::views::{MOST_VIEWS, Region, Served, Views};
 use crate::stages::visibility::{self, Constants, GBuffer, NormalConstants};
 use crate::techniques::hard::{self, Filter};
 use crate::techniques::room::PassInputs;
 use bytemuck::Zeroable;
 use glam::DMat4;
-use smallvec::{SmallVec, smallvec};
+use smallvec::SmallVec;
 
 /// The device's limits that a plan depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,8 +54,8 @@ pub(super) const PLACEHOLDER: MapView =
 
 /// One frame's numbers for its passes.
 pub(super) struct FrameInputs<'a> {
-    /// The view of the occluder map.
-    pub occluders: MapView,
+    /// The views of the occluder maps, one at least, which share the pixels; the finest first.
+    pub occluders: &'a [Served],
     /// The technique's own views; there are none where nothing can be shadowed.
     pub views: &'a Views,
     pub host_maps: Option<HostMapView>,
@@ -70,6 +70,9 @@ pub(super) struct FrameInputs<'a> {
     /// The sizes of the hierarchy, and how the pixels see its space.
     pub tree: (Sizes, Space),
 }
+
+/// Matrices from light space to the clip space of views.
+pub(super) type Clips = SmallVec<[DMat4; MOST_VIEWS as usize]>;
 
 /// Which passes a frame needs.
 #[derive(Clone, Debug)]
@@ -154,9 +157,9 @@ impl Needs {
 
 impl FrameInputs<'_> {
     /// Matrices from light space to the clip space of each view of the occluders.
-    pub fn occluder_clips(&self) -> SmallVec<[DMat4; 1]> {
+    pub fn occluder_clips(&self) -> Clips {
         match self.views.count() {
-            0 => smallvec![self.occluders.clip_from_light()],
+            0 => self.occluders.iter().map(|served| served.map.clip_from_light()).collect(),
             _ => self.views.clips(),
         }
     }
@@ -166,8 +169,9 @@ impl FrameInputs<'_> {
 pub(crate) fn all_passes(description: &Description, limits: Limits) -> Graph {
     let room = description.technique.room();
     let view = MapView { side: room.maps().side, ..PLACEHOLDER };
+    let served = vec![Served { map: view, region: Region::ALL }; room.most_served() as usize];
     let frame = FrameInputs {
-        occluders: view,
+        occluders: &served,
         views: &room.most_views(view),
         host_maps: description.occluder_maps.map(|_| HostMapView {
             view,
@@ -218,12 +222,17 @@ pub(super) fn build(
     let [need, hard, front_need, back_need, inner, filter] = &needs.each().map(|n| graph.need(n));
     // A hard shadow may stand in for the technique.
     let shadowed = if hard.is_yes() { hard } else { need };
-    frame.constants.write(frame.normals.as_ref(), graph, constants, shadowed);
+    let first = frame.constants.for_view(0, frame.occluders.len());
+    first.write(frame.normals.as_ref(), graph, constants, shadowed);
+    if frame.occluders.len() > 1 {
+        Constants::write_regions(graph, constants, frame.occluders, shadowed);
+    }
     let layers = LightLayers {
         occluders: match (front, &frame.host_maps) {
             (Some(front), Some(camera)) => depth_layers::Occluders::Maps { front, back, camera },
             _ => depth_layers::Occluders::Meshes,
         },
+        view: 0,
         needs: depth_layers::Needs {
             front: if maps.front_is_whole { front_need } else { need },
             back: back_need,
@@ -236,7 +245,8 @@ pub(super) fn build(
     let tree = of_technique.then(|| hierarchy::declare(graph, frame.tree.0, shadowed));
     let inputs = PassInputs {
         light,
-        occluders: &frame.occluders,
+        occluders: &frame.occluders[0].map,
+        view: 0,
         receivers: &frame.receivers,
         views: frame.views,
         layers: &layers,
@@ -253,7 +263,16 @@ pub(super) fn build(
         tree: &frame.tree,
         hierarchy: tree,
     };
+    let declared = graph.declared();
     let nearest = room.declare(graph, &inputs);
+    for (view, served) in (0..).zip(frame.occluders).skip(1) {
+        let own = frame.constants.for_view(view, frame.occluders.len());
+        own.write(None, graph, constants, shadowed);
+        graph.again(declared);
+        let layers = LightLayers { view, ..layers };
+        let inputs = PassInputs { occluders: &served.map, view, layers: &layers, ..inputs };
+        room.declare(graph, &inputs);
+    }
     if hardens(description) {
         let front = nearest.unwrap_or_else(|| depth_layers::hard(graph, maps.side, hard));
         hard::declare(graph, front, Filter::One, hard, &inputs);

@@ -33,6 +33,7 @@ pub use show::Run;
 pub use why::{Part, Why};
 
 use ash::vk;
+use std::ops::Range;
 
 /// Resources, and the passes that use them in the order in which they may run.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -44,6 +45,8 @@ pub struct Graph {
     kinds: Vec<u16>,
     /// The index of the first pass of each kind.
     firsts: Vec<usize>,
+    /// The resources that are still to be declared again; see [`Self::again`].
+    again: Range<usize>,
 }
 
 impl Graph {
@@ -150,6 +153,7 @@ impl Graph {
         self.passes.clear();
         self.kinds.clear();
         self.firsts.clear();
+        self.again = 0..0;
     }
 
     /// Reserves memory for a graph as large as `other`.
@@ -171,7 +175,23 @@ impl Graph {
             && self.passes.iter().zip(&other.passes).all(same)
     }
 
+    /// The number of resources that are declared.
+    pub(crate) fn declared(&self) -> usize {
+        self.resources.len()
+    }
+
+    /// Makes the next declarations stand for the resources from the `first` on, which are declared again in the same
+    /// order and form: what follows is done once more, with other numbers, on the same resources.
+    pub(crate) fn again(&mut self, first: usize) {
+        self.again = first..self.resources.len();
+    }
+
     fn add(&mut self, resource: Resource) -> ResourceId {
+        if let Some(index) = self.again.next() {
+            let Resource { name, shape, .. } = self.resources[index];
+            debug_assert_eq!((name, shape), (resource.name, resource.shape));
+            return self.id(index);
+        }
         // A graph has tens of resources; the id would wrap at 65536.
         let id = ResourceId(self.resources.len() as u16);
         self.resources.push(resource);

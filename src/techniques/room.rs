@@ -196,6 +196,8 @@ pub struct PassInputs<'a> {
     pub light: &'a RectangleLight,
     /// The occluder map's view.
     pub occluders: &'a MapView,
+    /// The number of that view, of those that share the pixels.
+    pub view: u32,
     /// The receiver map's view.
     pub receivers: &'a MapView,
     /// The technique's own views.
@@ -261,6 +263,12 @@ pub trait Room: Tune + std::fmt::Debug {
     /// As many views as a frame may have; they size the node's objects.
     fn most_views(&self, _view: MapView) -> Views {
         Views::Centre
+    }
+
+    /// The most views from behind the light or from its centre that may share the pixels. The passes of
+    /// [`Self::declare`] run for each of them, on the same resources.
+    fn most_served(&self) -> u32 {
+        1
     }
 
     /// The light with its axes turned as the technique needs them.

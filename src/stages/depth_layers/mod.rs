@@ -30,7 +30,10 @@ pub(crate) use eye::view_from;
 pub use eye::{Projection, view};
 pub(crate) use host_maps::HostMapView;
 pub use view::{Eye, MapView, fit_from, fit_occluders, fit_receivers, is_aside};
-pub(crate) use view::{fit_boxes, fit_boxes_from, fit_receiver_boxes, tangents_of, window_of};
+pub(crate) use view::{
+    fit_boxes, fit_boxes_from, fit_boxes_within, fit_receiver_boxes, tangents_of, tangents_within,
+    window_of,
+};
 
 use crate::graph::{
     Access, Draw, Graph, Layer, Need, Owner, Pass, Push, ResourceId, Target, Use, Work,
@@ -101,6 +104,7 @@ pub struct DepthLayers {
 }
 
 /// The source of the occluders.
+#[derive(Clone, Copy)]
 pub(crate) enum Occluders<'a> {
     /// The frame's meshes.
     Meshes,
@@ -109,8 +113,11 @@ pub(crate) enum Occluders<'a> {
 }
 
 /// The source of a light's layers in a frame, and which of them it needs.
+#[derive(Clone, Copy)]
 pub struct LightLayers<'a> {
     pub(crate) occluders: Occluders<'a>,
+    /// The number of the view that the layers are drawn through.
+    pub(crate) view: u32,
     pub(crate) needs: Needs<'a>,
 }
 
@@ -126,32 +133,32 @@ pub(crate) struct Needs<'a> {
 /// Adds the layers and the passes that make them. A layer that this frame does not need is `None`, although its pass
 /// and image are declared.
 pub(crate) fn declare(graph: &mut Graph, wanted: Wanted, layers: &LightLayers) -> DepthLayers {
-    let LightLayers { occluders, needs } = layers;
+    let LightLayers { occluders, view, needs } = *layers;
     let map = wanted.map;
     let need = needs.front;
     let (front, back) = match occluders {
         Occluders::Meshes => {
             let names = [FRONT, "depth_layers.front"];
-            let front = drawn(graph, Layer::Front, names, map, need);
+            let front = drawn(graph, Layer::Front, names, map, view, need);
             let names = [BACK, "depth_layers.back"];
-            (front, wanted.back.then(|| drawn(graph, Layer::Back, names, map, needs.back)))
+            (front, wanted.back.then(|| drawn(graph, Layer::Back, names, map, view, needs.back)))
         }
         Occluders::Maps { front, back, camera } => {
-            let front = copied(graph, *front, map, camera, Layer::Front, need);
+            let front = copied(graph, front, map, camera, Layer::Front, need);
             let back = back.filter(|_| wanted.back);
             (front, back.map(|b| copied(graph, b, map, camera, Layer::Back, needs.back)))
         }
     };
     let inner = (wanted.inner && matches!(occluders, Occluders::Meshes)).then(|| {
         let names = ["depth_layers.near_back_depth", "depth_layers.near_back"];
-        let near_back = drawn(graph, Layer::NearBack, names, map, needs.inner);
+        let near_back = drawn(graph, Layer::NearBack, names, map, view, needs.inner);
         let names = ["depth_layers.far_front_depth", "depth_layers.far_front"];
-        [near_back, drawn(graph, Layer::FarFront, names, map, needs.inner)]
+        [near_back, drawn(graph, Layer::FarFront, names, map, view, needs.inner)]
     });
     let names = ["depth_layers.receiver_depth", "depth_layers.receivers"];
     let receivers = wanted
         .receiver_map
-        .map(|side| drawn(graph, Layer::Receivers, names, side, needs.receivers));
+        .map(|side| drawn(graph, Layer::Receivers, names, side, 0, needs.receivers));
     DepthLayers {
         front,
         back: back.filter(|_| needs.back.is_yes()),
@@ -162,7 +169,7 @@ pub(crate) fn declare(graph: &mut Graph, wanted: Wanted, layers: &LightLayers) -
 
 /// Adds the depth map of a hard shadow, for a technique that draws none from the light's centre.
 pub(crate) fn hard(graph: &mut Graph, side: u32, need: &Need) -> ResourceId {
-    drawn(graph, Layer::Front, ["depth_layers.hard_depth", "depth_layers.hard"], side, need)
+    drawn(graph, Layer::Front, ["depth_layers.hard_depth", "depth_layers.hard"], side, 0, need)
 }
 
 /// The raster state of a layer.
@@ -202,10 +209,11 @@ fn drawn(
     layer: Layer,
     [image, pass]: [&'static str; 2],
     side: u32,
+    view: u32,
     need: &Need,
 ) -> ResourceId {
     let image = graph.image(image, FORMAT, [side, side], Owner::Transient);
-    draw(graph, pass, image, layer, 0, need);
+    draw(graph, pass, image, layer, view, need);
     image
 }
 

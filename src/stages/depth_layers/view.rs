@@ -107,9 +107,14 @@ impl MapView {
     }
 }
 
-/// The tangents under which the light's centre sees the part of the boxes beyond `near`.
-fn tangents(boxes: &[LightBox], near: f64) -> Option<([f64; 2], [f64; 2])> {
-    extents(boxes, near, |p| [p.x, p.y].map(|x| (x / p.z).clamp(-MAX_TANGENT, MAX_TANGENT)))
+/// The tangents, up to `most`, under which the light's centre sees the part of the boxes beyond `near`.
+fn tangents(boxes: &[LightBox], near: f64, most: f64) -> Option<([f64; 2], [f64; 2])> {
+    extents(boxes, near, |p| [p.x, p.y].map(|x| (x / p.z).clamp(-most, most)))
+}
+
+/// The least and largest u and v, up to `most`, under which the light's centre sees boxes; none where all lie behind it.
+pub(crate) fn tangents_within(boxes: &[LightBox], most: f64) -> Option<([f64; 2], [f64; 2])> {
+    tangents(boxes, planes_of(boxes)?.0, most)
 }
 
 /// The least and largest u and v under which the light's centre sees meshes beyond `near`; none without any.
@@ -118,7 +123,7 @@ pub(crate) fn tangents_of(
     meshes: &[(MeshBounds, DMat4)],
     near: f64,
 ) -> Option<([f64; 2], [f64; 2])> {
-    tangents(&LightBox::of_all(light, meshes), near)
+    tangents(&LightBox::of_all(light, meshes), near, MAX_TANGENT)
 }
 
 /// The least and largest u and v under which an eye behind the light sees the part of a box beyond `near`, which is
@@ -255,12 +260,20 @@ pub fn fit_from(
 
 /// The view of [`fit_from`] for boxes in light space.
 pub(crate) fn fit_boxes_from(eye: Eye, occluders: &[LightBox], side: u32) -> Option<MapView> {
+    fit_boxes_within(eye, occluders, MAX_TANGENT, side)
+}
+
+/// The view of [`fit_from`] for boxes in light space, with tangents up to `most` as its eye sees them.
+pub(crate) fn fit_boxes_within(
+    eye: Eye,
+    occluders: &[LightBox],
+    most: f64,
+    side: u32,
+) -> Option<MapView> {
     let (near, far) = planes_of(occluders)?;
     let (mut window, near, far) = match eye {
         Eye::Behind(behind) => {
-            let of = |p: DVec3| {
-                [p.x, p.y].map(|x| (x / (p.z + behind)).clamp(-MAX_TANGENT, MAX_TANGENT))
-            };
+            let of = |p: DVec3| [p.x, p.y].map(|x| (x / (p.z + behind)).clamp(-most, most));
             (extents(occluders, near, of)?, near + behind, far + behind)
         }
         Eye::Infinity => {
@@ -296,7 +309,7 @@ pub(crate) fn fit_receiver_boxes(
         return None;
     }
     let near = least.max(occluders.near) * (1.0 - NEAR_MARGIN);
-    let (mut min, mut max) = tangents(receivers, near)?;
+    let (mut min, mut max) = tangents(receivers, near, MAX_TANGENT)?;
     // A penumbra reaches (L/2)(w_o − w_r) around its occluder in u (Atty 2006 section 3.3).
     let spread = 1.0 / occluders.near - 1.0 / far;
     for (i, half) in light.into_iter().enumerate() {

@@ -2,9 +2,12 @@
 
 mod line;
 mod point;
+mod served;
 
 pub use line::Line;
 pub use point::LightPoint;
+pub use served::MOST_VIEWS;
+pub(crate) use served::{Region, Served, fit_served};
 
 use glam::DMat4;
 use smallvec::SmallVec;
@@ -42,7 +45,7 @@ impl Views {
     }
 
     /// The matrices from light space to the clip space of each view.
-    pub fn clips(&self) -> SmallVec<[DMat4; 1]> {
+    pub fn clips(&self) -> SmallVec<[DMat4; MOST_VIEWS as usize]> {
         match self {
             Self::Centre => SmallVec::new(),
             Self::Points(points) => points.iter().map(LightPoint::clip_from_light).collect(),

@@ -1,6 +1,7 @@
 //! The host's G-buffer as passes over its pixels read it.
 
 use crate::graph::{Access, Graph, Need, Pass, ResourceId, Use};
+use crate::stages::views::{MOST_VIEWS, Region, Served};
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat4, DVec3};
 
@@ -8,6 +9,9 @@ use glam::{DMat4, DVec3};
 const NORMAL_AT: u8 = 18;
 /// The binding of the constants.
 const CONSTANTS_AT: u8 = 19;
+
+/// Where the regions of the views begin in the buffer of constants, in bytes.
+const REGIONS_AT: u64 = (size_of::<Constants>() + size_of::<NormalConstants>()) as u64;
 
 /// The host's G-buffer, as resources of the graph.
 #[derive(Clone, Copy, Debug)]
@@ -39,7 +43,8 @@ pub struct Constants {
     pub extent: [i32; 2],
     /// The depth of a pixel that shows no surface.
     pub background: f32,
-    /// Bit 0: there is a mask; bits 1 to 3: the [encoding](crate::NormalEncoding) of lent normals, 0 without them.
+    /// Bit 0: there is a mask; bits 1 to 3: the [encoding](crate::NormalEncoding) of lent normals, 0 without them;
+    /// bits 8 to 11: the view, of those that share the pixels; bits 12 to 15: the last of these.
     pub flags: i32,
 }
 
@@ -50,6 +55,11 @@ pub struct NormalConstants {
     /// The space of the lent normals to light space, by column; the fourth number of each is not read.
     pub light_from_normal: [[f32; 4]; 3],
 }
+
+/// The numbers behind [`NormalConstants`]: the regions of four views that share the pixels.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct RegionConstants([Region; 4]);
 
 /// A plane (a, b, c, d) of the image, which holds what a column + b row + c depth + d is 0 of, to x, y and z of its
 /// normal in light space, on the viewer's side: the inverse's transpose, as for all planes, of which a normal takes
@@ -78,8 +88,14 @@ pub(crate) fn plane_to_normal(
 impl Constants {
     /// Adds the buffer that holds the constants.
     pub(crate) fn declare(graph: &mut Graph) -> ResourceId {
-        let bytes = size_of::<Self>() + size_of::<NormalConstants>();
-        graph.buffer("gbuffer.constants", bytes as u64)
+        let regions = size_of::<Region>() * MOST_VIEWS as usize;
+        graph.buffer("gbuffer.constants", REGIONS_AT + regions as u64)
+    }
+
+    /// The constants for one of the views that share the pixels.
+    pub(crate) fn for_view(&self, view: u32, count: usize) -> Self {
+        let last = count as i32 - 1;
+        Self { flags: self.flags | (view as i32) << 8 | last << 12, ..*self }
     }
 
     /// Adds the pass that writes the constants, and where normals are lent the one that writes theirs.
@@ -94,6 +110,21 @@ impl Constants {
         if let Some(normals) = normals {
             let behind = size_of::<Self>() as u64;
             graph.push(Pass::constants("gbuffer.normals", buffer, behind, normals, need));
+        }
+    }
+
+    /// Adds the passes that write the regions of several views that share the pixels.
+    pub(crate) fn write_regions(
+        graph: &mut Graph,
+        buffer: ResourceId,
+        views: &[Served],
+        need: &Need,
+    ) {
+        for (nth, four) in views.chunks(4).enumerate() {
+            let mut regions = RegionConstants([Region::ALL; 4]);
+            regions.0.iter_mut().zip(four).for_each(|(to, from)| *to = from.region);
+            let at = REGIONS_AT + (nth * size_of::<RegionConstants>()) as u64;
+            graph.push(Pass::constants("gbuffer.regions", buffer, at, &regions, need));
         }
     }
 }

@@ -154,6 +154,10 @@ impl Room for Settings {
         None
     }
 
+    fn most_served(&self) -> u32 {
+        self.views
+    }
+
     fn check_agreement(&self) -> Result<(), Error> {
         self.check_together()
     }

@@ -51,6 +51,8 @@ choices! { Combine: "product" => Product, "sum" => Sum, "max" => Max, "correlate
 pub struct Settings {
     /// The side of the slices, texels, 1 to 4096; 256 by default.
     pub map: u32,
+    /// The most views of a light, 1 to 8; 4 by default.
+    pub views: u32,
     /// The number of slices, 4 to 32; 16 by default.
     pub slices: u32,
     /// The placement of the slices.
@@ -69,6 +71,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             map: 256,
+            views: 4,
             slices: 16,
             placement: Placement::default(),
             prefilter: Prefilter::default(),
@@ -92,6 +95,7 @@ impl Knobs for Settings {
     const NAME: &'static str = "occlusion-textures";
     const FIELDS: &'static [Field<Self>] = &[
         Field::map(|s| s.map, |s, map| s.map = map),
+        Field::views(|s| s.views, |s, views| s.views = views),
         Field::classify(|s| s.classify, |s, on| s.classify = on),
         Field::whole(
             "slices",

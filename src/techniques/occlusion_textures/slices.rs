@@ -218,7 +218,7 @@ fn draw(
                 ),
                 cull: raster.cull,
                 target: Target::Add,
-                draw: Draw::Layer { layer: drawn.layer, view: 0 },
+                draw: Draw::Layer { layer: drawn.layer, view: inputs.view },
             },
             need: *inputs.need,
         });

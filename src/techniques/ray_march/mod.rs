@@ -108,6 +108,10 @@ impl Room for Settings {
         Some(layers.front)
     }
 
+    fn most_served(&self) -> u32 {
+        self.views
+    }
+
     fn check_agreement(&self) -> Result<(), Error> {
         self.check_together()
     }

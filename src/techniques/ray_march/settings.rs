@@ -63,6 +63,8 @@ choices! { Hash: "pcg" => Pcg, "md5" => Md5 }
 pub struct Settings {
     /// The side of the depth layers and the N-buffer, texels, 1 to 4096; 256 by default.
     pub map: u32,
+    /// The most views of a light, 1 to 8; 4 by default.
+    pub views: u32,
     /// Rays a pixel, 1 to 256; 16 by default.
     pub rays: u32,
     /// The points of the light that rays go to.
@@ -89,6 +91,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             map: 256,
+            views: 4,
             rays: 16,
             sampling: Sampling::default(),
             hash: Hash::default(),
@@ -107,6 +110,7 @@ impl Knobs for Settings {
     const NAME: &'static str = "ray-march";
     const FIELDS: &'static [Field<Self>] = &[
         Field::map(|s| s.map, |s, map| s.map = map),
+        Field::views(|s| s.views, |s, views| s.views = views),
         Field::whole(
             "seed",
             "whole number",

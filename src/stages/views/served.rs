@@ -1,0 +1,111 @@
+//! The views of a light that share its receivers, and which of them serves a receiver.
+//!
+//! ```text
+//!        ══╤══  light                 every view's region begins at the light's rim and opens
+//!      ╱  ╱ ╲  ╲                      as widely as the view's window: a ray from a receiver in it
+//!    ╱   ╱   ╲   ╲                    to any point of the light stays inside, and the view's map
+//!  ╱  1 ╱  0  ╲ 1  ╲                  has all that the ray meets. The finest view whose region
+//!      ╱       ╲                      holds a receiver serves it, and the last one all others.
+//! ```
+//! A map's texels are equally large in u and v, tangents at the light. Where walls reach up to the light's plane, a
+//! map that shows them all has few texels for what lies below the light, where most of the light falls. Far aside, the
+//! same tangents cover less of the light's surroundings, and less light arrives. So the windows of nested views grow
+//! by a constant factor, and each map has texels as fine, over its distance from the axis, as the others.
+
+use crate::stages::depth_layers::{Eye, LightBox, MapView, Projection, fit_boxes_within, tangents_within, view_from};
+
+/// The most views of a light.
+pub const MOST_VIEWS: u32 = 8;
+
+/// The widest window of several views (89°).
+const WIDEST: f64 = 64.0;
+
+/// The tangents up to which one view is enough.
+const NARROW: f64 = 2.0;
+
+/// The window of the finest of several views.
+const FINEST: f64 = 1.0;
+
+/// The least factor by which the windows of views grow.
+const LEAST_RATIO: f64 = 2.5;
+
+/// A view of the occluders, and the receivers that it may serve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Served {
+    /// The view of its maps.
+    pub map: MapView,
+    /// Where receivers lie whose rays the map holds.
+    pub region: Region,
+}
+
+/// The points p of light space for which p.xy lies between `at.xy + slope.xy p.z` and `at.zw + slope.zw p.z`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct Region {
+    /// The least x and y in the light's plane, then the largest.
+    pub at: [f32; 4],
+    /// How these change with the distance from that plane.
+    pub slope: [f32; 4],
+}
+
+impl Region {
+    /// Everything before the light.
+    pub const ALL: Self = Self {
+        at: [f32::NEG_INFINITY, f32::NEG_INFINITY, f32::INFINITY, f32::INFINITY],
+        slope: [0.0; 4],
+    };
+
+    /// The points under `tangent` or less beyond the rim of a light of these half-extents.
+    fn opening(half: [f64; 2], tangent: f64) -> Self {
+        let [x, y] = half.map(|h| h as f32);
+        let t = tangent as f32;
+        Self { at: [-x, -y, x, y], slope: [-t, -t, t, t] }
+    }
+}
+
+/// Finds the views through which a light of these half-extents sees boxes of occluders, the finest first: one where
+/// that is enough, or up to `most` nested ones; none where nothing lies before the light.
+pub(crate) fn fit_served(
+    half: [f64; 2],
+    occluders: &[LightBox],
+    projection: Projection,
+    side: u32,
+    most: u32,
+    views: &mut Vec<Served>,
+) {
+    views.clear();
+    let widest = match tangents_within(occluders, WIDEST) {
+        Some((min, max)) => min.iter().chain(&max).fold(0.0f64, |most, t| most.max(t.abs())),
+        None => return,
+    };
+    if most > 1 && widest > NARROW && projection == Projection::Behind {
+        let more = (widest / FINEST).ln() / LEAST_RATIO.ln();
+        nested(half, occluders, side, widest, (1 + more.ceil() as u32).min(most), views);
+    }
+    if views.is_empty() {
+        let one = view_from(half, occluders, projection, side);
+        views.extend(one.map(|map| Served { map, region: Region::ALL }));
+    }
+}
+
+/// Finds several views whose windows reach up to `widest`.
+fn nested(
+    half: [f64; 2],
+    occluders: &[LightBox],
+    side: u32,
+    widest: f64,
+    count: u32,
+    views: &mut Vec<Served>,
+) {
+    let ratio = (widest / FINEST).powf(1.0 / f64::from(count - 1));
+    for nth in 0..count {
+        let tangent = FINEST * ratio.powi(nth as i32);
+        let behind = half.iter().fold(0.0f64, |most, h| most.max(h / tangent));
+        let Some(map) = fit_boxes_within(Eye::Behind(behind), occluders, tangent, side) else {
+            views.clear();
+            return;
+        };
+        let region = if nth + 1 < count { Region::opening(half, tangent) } else { Region::ALL };
+        views.push(Served { map, region });
+    }
+}
