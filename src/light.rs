@@ -210,6 +210,11 @@ impl RectangleLight {
         Self { axes: DMat3::from_cols(y, -x, z), half_extents: [b, a], ..*self }
     }
 
+    /// The light with other half-extents.
+    pub(crate) fn with_half_extents(&self, half_extents: [f64; 2]) -> Self {
+        Self { half_extents, ..*self }
+    }
+
     /// Half the light's width and height, in metres.
     pub fn half_extents(&self) -> [f64; 2] {
         self.half_extents

@@ -30,7 +30,7 @@ vec2 range_over(ivec2 lo, ivec2 hi)
 // A texel's magnification onto the light; 0 where its surface is not in front.
 float magnification_at(MapPlane m, ivec2 texel)
 {
-    float w_o = w_of(texel);
+    float w_o = occluder_w(texel);
     return in_front(m, vec2(texel) + 0.5, w_o) ? 1.0 / (w_o - m.w) : 0.0;
 }
 

@@ -18,17 +18,24 @@ struct MapPlane {
     float slope;   // how steeply the receiver's own surface may rise above its plane
 };
 
+// The plane dot(normal, uv) + n_0 - c w = 0 through a receiver at `uv` and `w`.
+MapPlane map_plane_at(vec2 uv, float w, vec2 normal, float n_0, float c, bool blocks, vec2 texels_per_uv, vec2 first,
+                      float snap, float depth_error)
+{
+    vec2 t = uv * texels_per_uv + first;
+    vec2 n = normal / texels_per_uv;
+    n_0 -= dot(n, first);
+    float rounding = plane_rounding(n, n_0, c, t, w, snap, depth_error);
+    return MapPlane(t, w, n, n_0, c, rounding, 1.0 / texels_per_uv, own_slope(blocks));
+}
+
 // `position` and `normal` are in light space with the map's eye as the origin.
 MapPlane map_plane(vec3 position, vec3 normal, bool blocks, vec2 texels_per_uv, vec2 first,
                    float snap, float depth_error)
 {
     float w = 1.0 / position.z;
-    vec2 t = position.xy * w * texels_per_uv + first;
-    vec2 n = normal.xy / texels_per_uv;
-    float n_0 = normal.z - dot(n, first);
-    float c = dot(normal, position);
-    float rounding = plane_rounding(n, n_0, c, t, w, snap, depth_error);
-    return MapPlane(t, w, n, n_0, c, rounding, 1.0 / texels_per_uv, own_slope(blocks));
+    return map_plane_at(position.xy * w, w, normal.xy, normal.z, dot(normal, position), blocks, texels_per_uv, first,
+                        snap, depth_error);
 }
 
 // How far a texel's surface, w_o at its centre `at`, lies above the receiver's plane beyond the height that the

@@ -122,7 +122,8 @@ struct GBuffer {
     mat3x4 plane_to_normal; // see normal_of_plane
     ivec2 extent;           // the G-buffer's width and height
     float background;       // the depth of a pixel that shows no surface
-    int flags;              // bit 0: masked; bits 1 to 3: how normals are lent; from bit 8 on: see is_served
+    int flags;              // bit 0: masked; bits 1 to 3: how normals are lent; bit 4: see is_parallel; from bit 8 on: see
+                            // is_served
     mat3 light_from_normal; // turns lent normals, where some are lent
 };
 // A storage buffer, since lavapipe compiles a shader again whenever a uniform buffer that its branches test is bound. In a
@@ -137,6 +138,42 @@ layout(set = 0, binding = 19, std430) readonly buffer Constants {
 };
 // Read once: some drivers check the bounds of the buffer at each reading.
 GBuffer gbuffer = lent_gbuffer;
+
+// Whether the light's rays to a point are parallel but for an angle, as a sun's are. Light space is then in metres
+// without a light in it: a point has x and y for u and v, and its height -z for w. The light's half-extents are the
+// tangents of half its angular size, and all that follows from u, v and w alone is the same.
+bool is_parallel()
+{
+    return (gbuffer.flags & 16) != 0;
+}
+
+// Behind the light's plane there is nothing to hide.
+bool is_before_light(vec3 position)
+{
+    return is_parallel() || position.z > 0.0;
+}
+
+float w_of(vec3 position)
+{
+    return is_parallel() ? -position.z : 1.0 / position.z;
+}
+
+vec2 uv_of(vec3 position, float w)
+{
+    return is_parallel() ? position.xy : position.xy * w;
+}
+
+// The numbers n_0 and c of the plane through a point with a normal n: dot(n.xy, uv) + n_0 - c w is 0 on it. The light's
+// centre lies below the plane where c is above 0.
+float n_0_of(vec3 normal, vec3 position)
+{
+    return is_parallel() ? -dot(normal, position) : normal.z;
+}
+
+float c_of(vec3 normal, vec3 position)
+{
+    return is_parallel() ? normal.z : dot(normal, position);
+}
 #endif
 
 #ifdef GBUFFER

@@ -12,8 +12,8 @@
 layout(push_constant) uniform Push {
     vec2 texels_per_uv; // map texels a unit of u and v
     vec2 first;         // texel coordinates of u = v = 0
-    vec2 half_light;    // half the light's width and height, m
-    float inv_near;     // 1 over the map's near plane, 1/m; no occluder is nearer
+    vec2 half_light;    // half the light's width and height, m; tangents for a sun
+    float inv_near;     // the w of the map's near plane; no occluder is nearer
     float snap;         // how far a raster moves a vertex, in texels
     float depth_error;  // how far off an occluder's w may be beyond its rounding, 1/m
     int map;            // the map's side in texels
@@ -31,19 +31,19 @@ layout(set = 0, binding = 3, r32f) writeonly uniform image2D visibility;
 Receiver pixel_receiver(ivec2 p)
 {
     Receiver r = receiver_at(p);
-    // Behind the light's plane there is nothing to hide.
-    r.receives = r.receives && r.position.z > 0.0;
+    r.receives = r.receives && is_before_light(r.position);
     return r;
 }
 
 MapPlane pixel_plane(Receiver r)
 {
-    return map_plane(r.position, r.normal, r.blocks, push.texels_per_uv, push.first, push.snap,
-                     push.depth_error);
+    float w = w_of(r.position);
+    return map_plane_at(uv_of(r.position, w), w, r.normal.xy, n_0_of(r.normal, r.position), c_of(r.normal, r.position),
+                        r.blocks, push.texels_per_uv, push.first, push.snap, push.depth_error);
 }
 
 // The w of a texel's occluder, 0 where there is none.
-float w_of(ivec2 texel)
+float occluder_w(ivec2 texel)
 {
     bool outside = any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(push.map)));
     return outside ? 0.0 : texelFetch(front_depth, texel, 0).x * push.inv_near;
@@ -52,7 +52,7 @@ float w_of(ivec2 texel)
 // 1 where the texel's surface hides the receiver for a filter around it, else 0.
 float hides(MapPlane m, ivec2 texel)
 {
-    return in_front_of_filter(m, vec2(texel) + 0.5, w_of(texel)) ? 1.0 : 0.0;
+    return in_front_of_filter(m, vec2(texel) + 0.5, occluder_w(texel)) ? 1.0 : 0.0;
 }
 
 // The four texels around a place, each compared for itself and weighted as a bilinear filter does.

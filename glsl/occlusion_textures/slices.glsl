@@ -22,9 +22,11 @@ const int BINS = 960;
 // The bin of a depth that a projection from behind the light stores (near/d), with `near` the distance of the near
 // plane from the projection point and `span` that of the far plane from the near one, both in metres or both in units
 // of near.
+//
+// A projection from infinitely far stores depths that fall evenly from 1 to 0; `near` is 0 for it.
 int bin_of(float stored, float near, float span)
 {
-    float t = (near / stored - near) / span;
+    float t = near > 0.0 ? (near / stored - near) / span : 1.0 - stored;
     return clamp(int(t * float(BINS)), 0, BINS - 1);
 }
 
@@ -37,11 +39,12 @@ int equal_bin(int slice, int slices)
 // ---------------------------------------------------------------------------------------------
 // The part of a slice that the light's rays to a point cross (Eisemann and Decoret 2008, eq. 4).
 
-// The window of a map that is seen from `eye` metres behind the light.
+// The window of a map that is seen from `eye` metres behind the light, or for parallel light from infinitely far.
 struct MapWindow {
     vec2 texels_per_uv;
     vec2 first; // texel coordinates of u = v = 0
     float eye;
+    bool parallel;
 };
 
 // The rectangle (least x and y, largest x and y) in texels that the rays from a light of `half_light` to `position`
@@ -50,10 +53,11 @@ struct MapWindow {
 // missed.
 vec4 kernel_of(MapWindow m, vec3 position, float plane, vec2 half_light)
 {
-    vec2 per_metre = m.texels_per_uv / (plane + m.eye);
-    float share = plane / position.z;
+    vec2 per_metre = m.texels_per_uv / (m.parallel ? 1.0 : plane + m.eye);
+    float share = m.parallel ? 1.0 : plane / position.z;
+    float spread = m.parallel ? position.z - plane : 1.0 - share;
     vec2 centre = position.xy * share * per_metre + m.first;
-    vec2 reach = max(half_light * max(1.0 - share, 0.0) * per_metre, vec2(0.5));
+    vec2 reach = max(half_light * max(spread, 0.0) * per_metre, vec2(0.5));
     return vec4(centre - reach, centre + reach);
 }
 
@@ -74,22 +78,23 @@ float slice_weight(float z, float upper, float lower, bool blocks)
 // The place t of a point at w, in texels from u = v = 0, as if the eye were at the light's centre.
 vec2 centred(MapWindow m, vec3 position, float w)
 {
-    return position.xy * w * m.texels_per_uv;
+    return position.xy * (m.parallel ? 1.0 : w) * m.texels_per_uv;
 }
 
 // Half the width and height in texels of the kernel of a tile's furthest point, which is the widest.
 vec2 tile_reach(MapWindow m, Tile tile, float plane, vec2 half_light)
 {
-    return max(half_light * max(1.0 - plane * tile.w.x, 0.0) * m.texels_per_uv / (plane + m.eye), vec2(0.5));
+    float spread = m.parallel ? -tile.w.x - plane : (1.0 - plane * tile.w.x) / (plane + m.eye);
+    return max(half_light * max(spread, 0.0) * m.texels_per_uv, vec2(0.5));
 }
 
 // A rectangle that holds the kernels of all of a tile's points in a plane, for any rounding of the pass over the
 // pixels. A kernel's centre is t, moved towards u = v = 0 by the eye's distance behind the light.
 vec4 tile_kernel(MapWindow m, Tile tile, float plane, vec2 half_light)
 {
-    float share = plane / (plane + m.eye);
+    float share = m.parallel ? 1.0 : plane / (plane + m.eye);
     vec2 reach = tile_reach(m, tile, plane, half_light);
-    vec2 widest = half_light * m.texels_per_uv / (plane + m.eye);
+    vec2 widest = half_light * m.texels_per_uv * (m.parallel ? abs(plane) : 1.0 / (plane + m.eye));
     reach += (abs(m.first) + widest) * TILE_ROUNDING + TILE_TEXEL;
     return vec4(tile.t_min * share + m.first - reach, tile.t_max * share + m.first + reach);
 }
@@ -152,7 +157,7 @@ float hidden_with_correlated(float hidden, float before, vec3 window)
 layout(push_constant) uniform Push {
     vec2 texels_per_uv; // map texels a unit of u and v
     vec2 first;         // texel coordinates of u = v = 0
-    vec2 half_light;    // half the light's width and height, m
+    vec2 half_light;    // half the light's width and height, m; tangents for a sun
     float eye;          // how far behind the light the projection point is, m
     int map;            // the map's side in texels
     int flags;          // bits 0 to 7: slices; from bit 8 on how slices are combined; bit 11: mip
@@ -165,7 +170,7 @@ int level_kind() { return (push.flags & 1 << 11) != 0 ? 2 : 0; } // MIP, N_BUFFE
 
 MapWindow map_window()
 {
-    return MapWindow(push.texels_per_uv, push.first, push.eye);
+    return MapWindow(push.texels_per_uv, push.first, push.eye, is_parallel());
 }
 #endif
 

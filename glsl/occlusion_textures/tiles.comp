@@ -40,7 +40,7 @@ vec4 planes_of(int slice)
 
 bool is_below(vec4 planes, Tile tile)
 {
-    return planes.x * tile.w.x >= 1.0;
+    return is_parallel() ? planes.x >= -tile.w.x : planes.x * tile.w.x >= 1.0;
 }
 
 // The slices in which a tile may meet an occluder, with a bit each.

@@ -127,12 +127,11 @@ void main()
         return;
     }
     float v = 1.0;
-    // Behind the light's plane there is nothing to hide.
-    if (r.receives && r.position.z > 0.0) {
+    if (r.receives && is_before_light(r.position)) {
         if (r.blocks) {
             // The part of the light above the pixel's own plane.
             r.normal = receiver_normal(p, r.position);
-            v = fraction_above(r.normal.xy * push.half_light, dot(r.normal, r.position));
+            v = fraction_above(r.normal.xy * push.half_light, c_of(r.normal, r.position));
         }
         if (meets != 0u && v > 0.0) {
             v = min(v, 1.0 - hidden_at(r, meets));

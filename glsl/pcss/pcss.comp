@@ -55,9 +55,9 @@ float blocker_distance(MapPlane m, vec2 reach, float turn)
     for (int i = 0; i < push.count; ++i) {
         vec2 at = m.t + reach * disc_to_square(disc_point(i, push.count) + vec2(0.0, turn));
         ivec2 texel = ivec2(floor(at));
-        float w_o = w_of(texel);
+        float w_o = occluder_w(texel);
         if (in_front_of_filter(m, vec2(texel) + 0.5, w_o)) {
-            sum += 1.0 / w_o;
+            sum += is_parallel() ? w_o : 1.0 / w_o;
             found += 1.0;
         }
     }
@@ -96,7 +96,7 @@ void main()
             blockers = blocker_distance(m, texels * (most - m.w), turn);
         }
         if (blockers > 0.0) {
-            vec2 reach = texels * max(1.0 / blockers - m.w, 0.0);
+            vec2 reach = texels * max((is_parallel() ? blockers : 1.0 / blockers) - m.w, 0.0);
             float hidden = 0.0;
             float taps = 0.0;
             for (int i = 0; i < push.count; ++i) {

@@ -23,7 +23,7 @@ layout(set = 0, binding = 5, r32f) writeonly uniform image2D visibility;
 
 vec2 place_of(vec3 position, float w)
 {
-    return position.xy * w * push.texels_per_uv + push.first;
+    return uv_of(position, w) * push.texels_per_uv + push.first;
 }
 
 float nearest_w()

@@ -49,7 +49,7 @@ void main()
         imageStore(visibility, p, stored_fraction(FRACTION(v)));
         if (filters()) {
             // An exact fraction is not filtered, but its neighbours are filtered with it.
-            float known = r.receives && r.position.z > 0.0 ? v : NO_RECEIVER;
+            float known = r.receives && is_before_light(r.position) ? v : NO_RECEIVER;
             put_known(p, known);
             imageStore(halfway, p, vec4(known));
         }

@@ -91,14 +91,14 @@ vec3 pixel_normal(ivec2 p, Receiver r)
 {
     vec3 normal = receiver_normal(p, r.position);
     // A surface that does not block light is lit through its other side as well.
-    return !r.blocks && dot(normal, r.position) > 0.0 ? -normal : normal;
+    return !r.blocks && c_of(normal, r.position) > 0.0 ? -normal : normal;
 }
 #endif
 
 // The part of the light above the pixel's own plane; all of it where the pixel's surface does not block.
 float part_above(Receiver r)
 {
-    return r.blocks ? fraction_above(r.normal.xy * push.half_light, dot(r.normal, r.position)) : 1.0;
+    return r.blocks ? fraction_above(r.normal.xy * push.half_light, c_of(r.normal, r.position)) : 1.0;
 }
 
 // The pixel's place in the map. For a receiver without a normal the plane is the map's own and must not be used.
@@ -133,10 +133,13 @@ float distance_of(float w)
     return is_orthographic() ? push.eye - w : 1.0 / w - push.eye;
 }
 
-// Texels a unit of height along the ray to a point of the light, which is given in metres from the light's centre.
+// Texels a unit of height along the ray to a point of the light, which is given as its half-extents are.
 vec2 slope_to(Place p, float distance_from_light, vec2 point)
 {
     vec2 across = push.texels_per_unit * point;
+    if (is_parallel()) {
+        return across;
+    }
     return is_orthographic()
                ? (across + push.first - p.t) / distance_from_light
                : (across + push.eye * (push.first - p.t)) / (distance_from_light * p.w);
@@ -199,8 +202,7 @@ bool is_open(ivec2 p, inout Receiver r, out float v, out Reach reach)
 {
     v = 1.0;
     reach = Reach(0.0, -1.0, false, vec2(0.0), 0.0, vec4(0.0));
-    // Behind the light's plane there is nothing to hide.
-    if (!r.receives || r.position.z <= 0.0) {
+    if (!r.receives || !is_before_light(r.position)) {
         return false;
     }
     reach = reach_of(place_of(r), r.position.z);
@@ -264,7 +266,7 @@ Found found_by_rays(ivec2 p, Receiver r, float start, float end)
         emitted += weight;
 #endif
         // The pixel's own surface hides this point of the light; no ray is needed.
-        if (r.blocks && dot(r.normal, vec3(point, 0.0) - r.position) <= 0.0) {
+        if (r.blocks && dot(r.normal.xy, point) <= c_of(r.normal, r.position)) {
             continue;
         }
         Ray ray = over_map(place, Ray(slope_to(place, r.position.z, point), start, end), push.map);

@@ -59,7 +59,7 @@ void main()
     float s = found.hidden > 0 ? found.heights / float(found.hidden) : 0.5 * (start + end);
     float z = distance_of(place_of(r).w + s);
     float side = 2.0 * min(push.half_light.x, push.half_light.y);
-    float penumbra = side * max(r.position.z - z, 0.0) / max(z, 1.0e-30);
+    float penumbra = side * (is_parallel() ? s : max(r.position.z - z, 0.0) / max(z, 1.0e-30));
     float pixel = pixel_width(gbuffer.light_from_ndc, vec2(p), gbuffer.extent, depth_at(p));
     float width = filter_width(penumbra, pixel, noise_of(rays(), sampling() == RANDOM));
     put_noisy(p, found.visible, width, r.normal);

@@ -87,16 +87,16 @@ void main()
     vec4 below; // the part of the light under the pixel's own surface, where that blocks
     for (int i = 0; i < 4; ++i) {
         Receiver p = receiver_at(quad + ivec2(i & 1, i >> 1));
-        bool there = p.receives && p.position.z > 0.0; // behind the light's plane nothing is to hide
-        float w = there ? 1.0 / p.position.z : 0.0;
+        bool there = p.receives && is_before_light(p.position);
+        float w = there ? w_of(p.position) : 0.0;
         vec2 t = place_of(p.position, w);
         vec2 n = p.normal.xy / push.texels_per_uv;
-        float c = dot(p.normal, p.position);
+        float c = c_of(p.normal, p.position);
         r.t_x[i] = t.x;
         r.t_y[i] = t.y;
         r.n_x[i] = n.x;
         r.n_y[i] = n.y;
-        r.n_0[i] = p.normal.z - dot(n, push.first);
+        r.n_0[i] = n_0_of(p.normal, p.position) - dot(n, push.first);
         r.c[i] = c;
         // A patch stands for the surface within half a texel's diagonal of its centre.
         r.bias[i] = own_slope(p.blocks) * 0.5 * length(1.0 / push.texels_per_uv) +

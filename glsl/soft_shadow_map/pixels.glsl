@@ -21,7 +21,7 @@ layout(push_constant) uniform Push {
 // The place t, in texels of the occluder map, of a point of light space with w = 1/position.z.
 vec2 place_of(vec3 position, float w)
 {
-    return position.xy * w * push.texels_per_uv + push.first;
+    return uv_of(position, w) * push.texels_per_uv + push.first;
 }
 
 #endif

@@ -27,10 +27,9 @@ void classify_tile(ivec2 tile)
             continue;
         }
         served[i / 32] |= 1u << (i % 32);
-        // Behind the light's plane there is nothing to hide.
-        if (r.receives && r.position.z > 0.0) {
+        if (r.receives && is_before_light(r.position)) {
             blocks = blocks || r.blocks;
-            float w = 1.0 / r.position.z;
+            float w = w_of(r.position);
             // A receiver that is nearer to the light than every occluder is shadowed by none.
             if (w < nearest_w()) {
                 bounds = with_receiver(bounds, place_of(r.position, w), w);

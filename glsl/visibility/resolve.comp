@@ -39,18 +39,17 @@ const float MAP_ROUNDING = 1.0 / 1048576.0;
 
 float filtered(vec3 position, vec3 normal)
 {
-    vec2 uv = position.xy / position.z;
-    vec2 at = uv * push.texels_per_uv + push.first;
+    float w = w_of(position);
+    vec2 at = uv_of(position, w) * push.texels_per_uv + push.first;
     // Outside the map no penumbra reaches.
     if (any(lessThan(at, vec2(0.0))) || any(greaterThan(at, vec2(push.receiver_map)))) {
         return 0.0;
     }
     vec2 corner = floor(at - 0.5);
     vec2 f = at - 0.5 - corner;
-    // On the plane n.(u, v, 1) = c w, so w is linear over the map.
-    float c = dot(normal, position);
+    // On the plane w is linear over the map.
+    float c = c_of(normal, position);
     vec2 slope = abs(c) > 0.0 ? normal.xy / (c * push.texels_per_uv) : vec2(0.0);
-    float w = 1.0 / position.z;
 
     float sum = 0.0;
     float weight = 0.0;
@@ -82,8 +81,7 @@ void main()
     }
     Receiver r = receiver_without_normal(p);
     float v = 1.0;
-    // Behind the light's plane there is nothing to hide.
-    if (r.receives && r.position.z > 0.0) {
+    if (r.receives && is_before_light(r.position)) {
         vec3 normal = receiver_normal(p, r.position);
         v = 1.0 - min(filtered(r.position, normal), 1.0);
     }

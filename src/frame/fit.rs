@@ -1,20 +1,22 @@
 //! Fits a light's maps to the meshes that matter to it. The result stays valid while light and meshes do.
 
-use super::boxes::{Boxes, MeshBoxes, has_triangles};
+use super::boxes::{Boxes, MeshBoxes, around, has_triangles};
 use super::hull::Hull;
 use super::odd::Odd;
 use super::passes::PLACEHOLDER;
+use super::seen::{Bounds, Frustum};
 use super::{Description, Frame};
 use crate::Error;
 use crate::effects::{Seen, Situation};
 use crate::graph::{Need, Why};
 use crate::lent::{MeshBounds, MeshInstance};
-use crate::light::Light;
+use crate::light::{Light, RectangleLight, Shape};
 use crate::stages::depth_layers::{self, HostMapView, LightBox, MapView, Projection};
-use crate::stages::views::{Region, Served, Views, fit_served};
+use crate::stages::views::{Extent, Region, Served, UnderSun, Views, fit_served, fit_sun};
 use crate::technique::Technique;
 use crate::techniques::room::{Maps, Room, Seen as ViewsSeen, Takes};
-use glam::DMat4;
+use glam::{DMat4, DVec3};
+use std::f64::consts::PI;
 
 /// Meshes that matter to a light: their indices in the frame's list, and their boxes in light space.
 #[derive(Clone, Debug, Default)]
@@ -81,6 +83,8 @@ struct Inputs {
     window: Option<[[f64; 2]; 2]>,
     request: FitRequest,
     meshes: usize,
+    /// The camera, where the views follow it.
+    camera: Option<DMat4>,
 }
 
 /// What a technique needs from a fit.
@@ -94,13 +98,21 @@ pub(super) struct FitRequest {
     pub maps: Maps,
     /// The most views that may share the pixels.
     pub most_served: u32,
+    /// Whether the technique takes a sun's light as parallel.
+    pub parallel: bool,
 }
 
 impl FitRequest {
     /// The request of a technique.
     pub fn of(technique: &Technique) -> Self {
         let room = technique.room();
-        Self { technique: Some(*technique), takes: room.takes(), maps: room.maps(), most_served: room.most_served() }
+        Self {
+            technique: Some(*technique),
+            takes: room.takes(),
+            maps: room.maps(),
+            most_served: room.most_served(),
+            parallel: room.takes_parallel(),
+        }
     }
 }
 
@@ -109,6 +121,16 @@ impl FitRequest {
 pub(super) struct Fit {
     of: Option<Inputs>,
     pub light_from_world: DMat4,
+    /// The space of the technique's maps: light space, or under a sun that of parallel light.
+    pub space_from_world: DMat4,
+    /// The light in that space, by its half-extents: tangents for parallel light.
+    pub light: RectangleLight,
+    /// Whether the space is that of parallel light.
+    pub parallel: bool,
+    /// The view of the receivers in that space.
+    pub receiver_view: MapView,
+    /// The parts of the receivers that are seen, under a sun; kept for their memory.
+    parts: Vec<Extent>,
     /// The meshes that may block the light; empty where the host lends occluder maps.
     pub occluders: Placed,
     pub receivers: Placed,
@@ -139,6 +161,11 @@ impl Default for Fit {
         Self {
             of: None,
             light_from_world: DMat4::IDENTITY,
+            space_from_world: DMat4::IDENTITY,
+            light: RectangleLight::unit(),
+            parallel: false,
+            receiver_view: PLACEHOLDER,
+            parts: Vec::new(),
             occluders: Placed::default(),
             receivers: Placed::default(),
             host_maps: None,
@@ -185,15 +212,17 @@ impl Fit {
     fn make(
         &mut self,
         description: &Description,
-        FitRequest { maps, most_served, .. }: &FitRequest,
+        request: &FitRequest,
         frame: &Frame,
         boxes: &Boxes,
         near: &mut Vec<u32>,
     ) -> Result<(), Error> {
-        let most = *most_served;
+        let (maps, most) = (&request.maps, request.most_served);
         let light = frame.light.rectangle();
         let half = light.half_extents();
         self.light_from_world = light.light_from_world();
+        (self.space_from_world, self.light, self.parallel) = (self.light_from_world, *light, false);
+        self.receiver_view = PLACEHOLDER;
         self.host_maps = match (&frame.occluder_maps, description.occluder_maps) {
             (Some(lent), Some(format)) => {
                 Some(HostMapView::new(light, &lent.clip_from_world, maps.side, format)?)
@@ -228,6 +257,7 @@ impl Fit {
             Projection::Centre => self.served.extend(self.centre.map(|_| self.alone)),
             _ => fit_served(half, &self.occluders.boxes, eye, maps.side, most, &mut self.served),
         }
+        self.receiver_view = self.shadowed.unwrap_or(PLACEHOLDER);
         self.situation = match (self.need, &self.centre, &self.shadowed) {
             (Need::Yes(_), Some(centre), Some(shadowed)) => {
                 let occluders = &self.occluders;
@@ -243,7 +273,60 @@ impl Fit {
             }
             _ => None,
         };
+        if let (true, Shape::Sun { angular_size }) = (request.parallel, frame.light.shape())
+            && self.need.is_yes()
+            && self.host_maps.is_none()
+        {
+            self.fit_parallel(description, request, frame, (0.5 * angular_size).tan());
+        }
         Ok(())
+    }
+
+    /// Fits the views of parallel light.
+    fn fit_parallel(
+        &mut self,
+        description: &Description,
+        request: &FitRequest,
+        frame: &Frame,
+        half: f64,
+    ) {
+        let rectangle = frame.light.rectangle();
+        // The rectangle of a sun is as far away as its size says.
+        let away = rectangle.half_extents()[0] / half;
+        let moved = |boxes: &mut Vec<LightBox>| boxes.iter_mut().for_each(|b| *b = b.moved(-away));
+        moved(&mut self.occluders.boxes);
+        moved(&mut self.receivers.boxes);
+        let sun_from_world =
+            DMat4::from_translation(DVec3::new(0.0, 0.0, -away)) * self.light_from_world;
+        self.parts.clear();
+        if request.most_served > 1 {
+            parts_seen(
+                description,
+                request,
+                frame,
+                self.receivers.meshes(frame.meshes),
+                &sun_from_world,
+                &mut self.parts,
+            );
+        }
+        let maps = &request.maps;
+        let under = UnderSun {
+            half,
+            occluders: &self.occluders.boxes,
+            receivers: &self.receivers.boxes,
+            parts: &self.parts,
+            side: maps.side,
+            receiver_side: maps.layers.receiver_map.unwrap_or(maps.side),
+        };
+        if let Some(views) = fit_sun(&under, &mut self.served) {
+            self.alone = views.alone;
+            self.receiver_view = views.receivers;
+            self.space_from_world = DMat4::from_translation(-views.origin) * sun_from_world;
+            // A square of the disc's area.
+            let square = half * (0.25 * PI).sqrt();
+            self.light = rectangle.with_half_extents([square; 2]);
+            self.parallel = true;
+        }
     }
 
     /// Sorts all meshes into receivers and occluders of a light that shines to all sides, which no map is fitted to.
@@ -373,6 +456,76 @@ impl Fit {
     }
 }
 
+/// Whether the views of a frame follow its camera.
+pub(super) fn follows_camera(request: &FitRequest, frame: &Frame) -> bool {
+    request.parallel && request.most_served > 1 && matches!(frame.light.shape(), Shape::Sun { .. })
+}
+
+/// How many times further the furthest part of a sun's view is than its nearest.
+const DEEPER: f64 = 3.5;
+
+/// How many receivers are looked at for the nearest that is seen.
+const LOOKED_AT: usize = 64;
+
+/// The texel, over the pixel that looks at the nearest receiver, that is small enough.
+const FINE_TEXEL: f64 = 1.5;
+
+/// Finds the parts of the receivers that a camera sees, from the nearest on, in the sun's space; none where one view of
+/// all is fine enough.
+fn parts_seen<'a>(
+    description: &Description,
+    request: &FitRequest,
+    frame: &Frame,
+    receivers: impl Iterator<Item = &'a MeshInstance> + Clone,
+    sun_from_world: &DMat4,
+    parts: &mut Vec<Extent>,
+) {
+    let Some(frustum) = Frustum::new(&frame.world_from_ndc) else { return };
+    let bounds_of = |mesh: &MeshInstance| {
+        let [center, half] = around(mesh);
+        Bounds { min: center - half, max: center + half }
+    };
+    let mut all = Bounds::NONE;
+    for mesh in receivers.clone() {
+        let of = bounds_of(mesh);
+        all.add(of.min);
+        all.add(of.max);
+    }
+    let [mut nearest, mut furthest] = [f64::INFINITY, 0.0f64];
+    for mesh in receivers.take(LOOKED_AT) {
+        if let Some([from, to]) = frustum.distances(&bounds_of(mesh)) {
+            nearest = nearest.min(from);
+            furthest = furthest.max(to);
+        }
+    }
+    let deepest = frustum.furthest(&all);
+    if !nearest.is_finite() {
+        (nearest, furthest) = (0.01 * deepest, deepest);
+    }
+    let nearest = nearest.max(1e-3 * furthest);
+    if nearest <= 0.0 {
+        return;
+    }
+    let whole = frustum.slice(&all, [0.0, deepest], sun_from_world);
+    let texel = (whole.max - whole.min).truncate().max_element() / f64::from(request.maps.side);
+    let pixel = nearest * frustum.pixel(description.extent[0]);
+    if texel <= FINE_TEXEL * pixel {
+        return;
+    }
+    let deeper = (furthest / nearest).ln() / DEEPER.ln();
+    let count = (deeper.ceil() as u32).clamp(1, request.most_served);
+    let ratio = (furthest / nearest).powf(1.0 / f64::from(count));
+    let mut from = 0.0;
+    for nth in 1..=count {
+        let to = if nth == count { deepest } else { nearest * ratio.powi(nth as i32) };
+        let seen = frustum.slice(&all, [from, to], sun_from_world);
+        if seen.is_some() {
+            parts.push([seen.min, seen.max]);
+        }
+        from = to;
+    }
+}
+
 impl Inputs {
     /// The inputs of a frame's fit; `None` where the frame has no revision or lends occluder maps, whose camera may
     /// change: its fit is made anew.
@@ -387,6 +540,7 @@ impl Inputs {
             window: frame.window,
             request: *request,
             meshes: frame.meshes.len(),
+            camera: follows_camera(request, frame).then_some(frame.world_from_ndc),
         })
     }
 }

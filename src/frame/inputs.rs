@@ -4,7 +4,7 @@
 use super::boxes::MeshBoxes;
 use super::check::bad;
 use super::fit::{Fit, FitRequest};
-use super::passes::{FrameInputs, Needs, PLACEHOLDER};
+use super::passes::{FrameInputs, Needs};
 use super::triangles::TriangleList;
 use super::{Description, Frame};
 use crate::Error;
@@ -33,7 +33,7 @@ pub(super) fn frame_inputs<'a>(
     let verdicts = Verdicts::judge(situation, room, description.omit.most(), texture);
     let needs = Needs::of(description, fit.need, &verdicts);
     let is_soft = needs.technique.is_yes();
-    let light_from_ndc = fit.light_from_world * frame.world_from_ndc;
+    let light_from_ndc = fit.space_from_world * frame.world_from_ndc;
     let ndc_from_light = light_from_ndc.inverse();
     let [from_ndc, from_light] = [light_from_ndc, ndc_from_light].map(|m| m.as_mat4());
     if !(from_ndc.is_finite() && from_light.is_finite()) {
@@ -42,13 +42,13 @@ pub(super) fn frame_inputs<'a>(
              32-bit floats tell",
         );
     }
-    let turned = DMat3::from_mat4(fit.light_from_world) * frame.world_from_normal;
+    let turned = DMat3::from_mat4(fit.space_from_world) * frame.world_from_normal;
     let from_normal = [turned.x_axis, turned.y_axis, turned.z_axis];
     if is_soft {
         fit.find_views(room, frame)?;
     }
     let fit = &*fit;
-    let (host_maps, receivers) = (fit.host_maps, fit.shadowed.unwrap_or(PLACEHOLDER));
+    let (host_maps, receivers) = (fit.host_maps, fit.receiver_view);
     let served = &fit.served[..];
     let (views, occluders) = match (is_soft, served.is_empty()) {
         (true, false) => (fit.views(), served),
@@ -56,6 +56,7 @@ pub(super) fn frame_inputs<'a>(
         (false, _) => (&Views::Centre, slice::from_ref(&fit.alone)),
     };
     let inputs = FrameInputs {
+        light: &fit.light,
         views,
         occluders,
         host_maps,
@@ -72,7 +73,8 @@ pub(super) fn frame_inputs<'a>(
             extent: description.extent.map(|e| e as i32),
             background: frame.far_depth(),
             flags: i32::from(description.mask_format.is_some())
-                | Normals::code(description.normals) << 1,
+                | Normals::code(description.normals) << 1
+                | i32::from(fit.parallel) << 4,
         },
         normals: description.normals.map(|_| NormalConstants {
             light_from_normal: from_normal.map(|c| c.as_vec3().extend(0.0).to_array()),
@@ -129,7 +131,13 @@ impl SituationCache {
             Some(_) => description.technique.map(),
             None => SITUATION_MAP,
         };
-        let request = FitRequest { technique: None, takes, maps: Maps::front(side), most_served: 1 };
+        let request = FitRequest {
+            technique: None,
+            takes,
+            maps: Maps::front(side),
+            most_served: 1,
+            parallel: false,
+        };
         let frame = Frame { light: (*frame.light.rectangle()).into(), ..*frame };
         self.fit.update(description, &request, &frame, mesh_boxes)?;
         Ok(situation_seen(&self.fit, &frame, description.extent))

@@ -3,7 +3,7 @@
 use super::accesses::{HostAccess, NodeUse};
 use super::boxes::MeshBoxes;
 use super::doubts::Sight;
-use super::fit::{Fit, FitRequest};
+use super::fit::{Fit, FitRequest, follows_camera};
 use super::inputs::frame_inputs;
 use super::passes::{Clips, Ids, Limits, build};
 use super::plan::{FramePlan, Stamp};
@@ -111,7 +111,9 @@ pub(crate) fn plan_into(
     let frame = &Frame { light, ..*frame };
     let Workspace { graph, compiler, borders, mesh_boxes } = workspace;
     let Memory { fit, camera, built, drawn } = memory;
-    fit.update(description, &FitRequest::of(&description.technique), frame, mesh_boxes)?;
+    let request = FitRequest::of(&description.technique);
+    fit.update(description, &request, frame, mesh_boxes)?;
+    let fit_number = if follows_camera(&request, frame) { fit.number() } else { 0 };
     plan.triangles.meshes.clear();
     if description.has_hierarchy() {
         plan.triangles.fill(description, frame.meshes)?;
@@ -119,7 +121,7 @@ pub(crate) fn plan_into(
     let tree = description.has_hierarchy().then(|| TreeKey::of(&plan.triangles, frame));
     let (inputs, verdicts) = frame_inputs(description, frame, fit, &plan.triangles)?;
     graph.clear();
-    let ids = build(graph, description, limits, light.rectangle(), &inputs);
+    let ids = build(graph, description, limits, &inputs);
     let occluder_clips = inputs.occluder_clips();
     let (receiver_view, views, needs) =
         (inputs.receivers, inputs.views.count() + inputs.occluders.len(), inputs.needs.bits());
@@ -131,7 +133,7 @@ pub(crate) fn plan_into(
     if before.is_none() {
         camera.find(graph, ids.pixels());
     }
-    let revisions = Revisions { scene: frame.revision, view: frame.view_revision };
+    let revisions = Revisions { scene: frame.revision, view: frame.view_revision, fit: fit_number };
     plan.reuse = reuse::apply(graph, camera, lit, (&frame.visibility, tree), revisions, cached);
     let shape = Shape { needs, views, reuses: plan.reuse.uses() };
     plan.imports.clear();
@@ -193,7 +195,7 @@ fn fill_draws(
         (MeshList::Receivers, receivers, &fit.receivers, receiver_clips),
     ] {
         match is_drawn(plan, list) {
-            true => draws.fill(description, placed.meshes(meshes), &fit.light_from_world, clips)?,
+            true => draws.fill(description, placed.meshes(meshes), &fit.space_from_world, clips)?,
             false => draws.clear(),
         }
     }

@@ -17,6 +17,7 @@ mod passes;
 mod plan;
 mod plans;
 mod reuse;
+mod seen;
 #[cfg(test)]
 mod tests;
 mod triangles;

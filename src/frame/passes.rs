@@ -54,6 +54,8 @@ pub(super) const PLACEHOLDER: MapView =
 
 /// One frame's numbers for its passes.
 pub(super) struct FrameInputs<'a> {
+    /// The light, by its half-extents in the space of its maps.
+    pub light: &'a RectangleLight,
     /// The views of the occluder maps, one at least, which share the pixels; the finest first.
     pub occluders: &'a [Served],
     /// The technique's own views; there are none where nothing can be shadowed.
@@ -171,6 +173,7 @@ pub(crate) fn all_passes(description: &Description, limits: Limits) -> Graph {
     let view = MapView { side: room.maps().side, ..PLACEHOLDER };
     let served = vec![Served { map: view, region: Region::ALL }; room.most_served() as usize];
     let frame = FrameInputs {
+        light: &RectangleLight::unit(),
         occluders: &served,
         views: &room.most_views(view),
         host_maps: description.occluder_maps.map(|_| HostMapView {
@@ -192,7 +195,7 @@ pub(crate) fn all_passes(description: &Description, limits: Limits) -> Graph {
         tree: (Sizes { capacity: description.capacity.triangles, triangles: 0 }, Space::default()),
     };
     let mut graph = Graph::new();
-    build(&mut graph, description, limits, &RectangleLight::unit(), &frame);
+    build(&mut graph, description, limits, &frame);
     graph
 }
 
@@ -207,7 +210,6 @@ pub(super) fn build(
     graph: &mut Graph,
     description: &Description,
     limits: Limits,
-    light: &RectangleLight,
     frame: &FrameInputs,
 ) -> Ids {
     let room = description.technique.room();
@@ -244,7 +246,7 @@ pub(super) fn build(
     let of_technique = room.reads_triangles();
     let tree = of_technique.then(|| hierarchy::declare(graph, frame.tree.0, shadowed));
     let inputs = PassInputs {
-        light,
+        light: frame.light,
         occluders: &frame.occluders[0].map,
         view: 0,
         receivers: &frame.receivers,

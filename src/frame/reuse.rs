@@ -20,6 +20,8 @@ pub(crate) struct Revisions {
     pub scene: Option<u64>,
     /// The revision of camera and G-buffer.
     pub view: Option<u64>,
+    /// The number of the fit of the maps' views where these follow the camera, else 0.
+    pub fit: u64,
 }
 
 /// A set of the kinds of pass of one description's graphs, a bit each.
@@ -43,6 +45,8 @@ impl Kinds {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Maps {
     pub scene: u64,
+    /// The number of the fit of their views where these follow the camera, else 0.
+    pub fit: u64,
     pub kinds: Kinds,
 }
 
@@ -102,7 +106,7 @@ impl Reuse {
     pub fn cached_after(&self, cached: &Cached) -> Cached {
         Cached {
             maps: match (self.makes_maps, self.revisions.scene) {
-                (Some(kinds), Some(scene)) => Some(Maps { scene, kinds }),
+                (Some(kinds), Some(scene)) => Some(Maps { scene, fit: self.revisions.fit, kinds }),
                 (Some(_), None) => None,
                 (None, _) => cached.maps,
             },
@@ -157,7 +161,7 @@ pub(super) fn apply(
     for &id in &camera.maps {
         graph.keep(id);
     }
-    let maps = revisions.scene.map(|scene| Maps { scene, kinds });
+    let maps = revisions.scene.map(|scene| Maps { scene, fit: revisions.fit, kinds });
     match maps.filter(|maps| cached.maps == Some(*maps)) {
         Some(Maps { scene, .. }) => {
             let why = Why::from("the maps of scene revision ").and(scene).and(" are kept");

@@ -271,6 +271,12 @@ pub trait Room: Tune + std::fmt::Debug {
         1
     }
 
+    /// Whether the technique's passes take a sun's light as parallel, through views of its own; otherwise a sun is a
+    /// rectangle far away.
+    fn takes_parallel(&self) -> bool {
+        false
+    }
+
     /// The light with its axes turned as the technique needs them.
     fn turned(&self, light: &Light) -> Light {
         *light

@@ -34,7 +34,7 @@ fn kernels_and_weights() {
     }
     let glue = "vec4 kernel(vec2 per, vec2 first, float eye, vec3 p, float plane, vec2 light)
 {
-    return kernel_of(MapWindow(per, first, eye), p, plane, light);
+    return kernel_of(MapWindow(per, first, eye, false), p, plane, light);
 }";
     let map = ((50.0..300.0f32, 50.0..300.0f32), (0.0..256.0f32, 0.0..256.0f32), 0.0..2.0f32);
     let point = (-2.0..2.0f32, -2.0..2.0f32, 0.5..5.0f32);
@@ -68,7 +68,7 @@ fn kernels_of_tiles_hold_those_of_their_points() {
     const LIGHT: [f64; 2] = [0.3, 0.7];
     let glue = "vec4 tile(vec2 per, vec2 first, float eye, vec3 p, vec3 q, float plane, out vec4 t, out float w)
 {
-    MapWindow m = MapWindow(per, first, eye);
+    MapWindow m = MapWindow(per, first, eye, false);
     Tile tile = with_receiver(empty_tile(), centred(m, p, 1.0 / p.z), 1.0 / p.z);
     tile = rounded_tile(with_receiver(tile, centred(m, q, 1.0 / q.z), 1.0 / q.z));
     t = vec4(tile.t_min, tile.t_max);

@@ -55,6 +55,13 @@ impl LightBox {
         meshes.iter().map(|(bounds, m)| Self::new(bounds, &(light_from_world * *m))).collect()
     }
 
+    /// The box moved along light space's z, by metres.
+    pub fn moved(&self, z: f64) -> Self {
+        let up = DVec3::new(0.0, 0.0, z);
+        let corners = self.corners.map(|p| p + up);
+        Self { corners, min: self.min + up, max: self.max + up, ..*self }
+    }
+
     /// The box's edge along one of the mesh's axes.
     pub fn edge(&self, axis: usize) -> DVec3 {
         self.corners[1 << axis] - self.corners[0]

@@ -31,8 +31,8 @@ pub use eye::{Projection, view};
 pub(crate) use host_maps::HostMapView;
 pub use view::{Eye, MapView, fit_from, fit_occluders, fit_receivers, is_aside};
 pub(crate) use view::{
-    fit_boxes, fit_boxes_from, fit_boxes_within, fit_receiver_boxes, tangents_of, tangents_within,
-    window_of,
+    fit_boxes, fit_boxes_from, fit_boxes_within, fit_receiver_boxes, pad, tangents_of,
+    tangents_within, window_of,
 };
 
 use crate::graph::{

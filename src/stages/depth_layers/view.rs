@@ -182,7 +182,7 @@ fn extents(
 }
 
 /// Widens a window by one texel on each side, or by half where a map has under three; no width becomes some.
-fn pad(min: &mut [f64; 2], max: &mut [f64; 2], side: u32) {
+pub(crate) fn pad(min: &mut [f64; 2], max: &mut [f64; 2], side: u32) {
     let wider = if side > 2 { f64::from(side) / (f64::from(side) - 2.0) } else { 2.0 };
     for i in 0..2 {
         let middle = 0.5 * (min[i] + max[i]);

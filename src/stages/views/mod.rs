@@ -3,11 +3,13 @@
 mod line;
 mod point;
 mod served;
+mod sun;
 
 pub use line::Line;
 pub use point::LightPoint;
 pub use served::MOST_VIEWS;
 pub(crate) use served::{Region, Served, fit_served};
+pub(crate) use sun::{Extent, UnderSun, fit_sun};
 
 use glam::DMat4;
 use smallvec::SmallVec;

@@ -12,7 +12,9 @@
 //! same tangents cover less of the light's surroundings, and less light arrives. So the windows of nested views grow
 //! by a constant factor, and each map has texels as fine, over its distance from the axis, as the others.
 
-use crate::stages::depth_layers::{Eye, LightBox, MapView, Projection, fit_boxes_within, tangents_within, view_from};
+use crate::stages::depth_layers::{
+    Eye, LightBox, MapView, Projection, fit_boxes_within, tangents_within, view_from,
+};
 
 /// The most views of a light.
 pub const MOST_VIEWS: u32 = 8;

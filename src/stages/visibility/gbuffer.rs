@@ -44,7 +44,7 @@ pub struct Constants {
     /// The depth of a pixel that shows no surface.
     pub background: f32,
     /// Bit 0: there is a mask; bits 1 to 3: the [encoding](crate::NormalEncoding) of lent normals, 0 without them;
-    /// bits 8 to 11: the view, of those that share the pixels; bits 12 to 15: the last of these.
+    /// bit 4: light is parallel; bits 8 to 11: the view, of those that share the pixels; bits 12 to 15: the last of these.
     pub flags: i32,
 }
 

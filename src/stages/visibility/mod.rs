@@ -116,7 +116,7 @@ pub fn resolve(
         push: Push::new(&ResolvePush {
             texels_per_uv: what.view.texels_per_uv().map(|x| x as f32),
             first: what.view.first().map(|x| x as f32),
-            receiver_inv_near: (1.0 / what.view.near) as f32,
+            receiver_inv_near: what.view.top() as f32,
             receiver_map: what.view.side as i32,
             mean: i32::from(what.mean),
         }),

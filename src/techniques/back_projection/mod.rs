@@ -48,6 +48,10 @@ impl Room for Settings {
         Maps::front(self.map)
     }
 
+    fn takes_parallel(&self) -> bool {
+        true
+    }
+
     fn declare(&self, graph: &mut Graph, inputs: &PassInputs) -> Option<ResourceId> {
         let front = inputs.depth_layers(graph, self.maps().layers).front;
         declare(graph, front, inputs);
@@ -93,7 +97,7 @@ fn declare(graph: &mut Graph, front: ResourceId, inputs: &PassInputs) {
         "back_projection.finest_level",
         module!("back_projection/finest_level.comp"),
         grid(1),
-        Push::new(&FinestLevel { map: map as i32, inv_near: (1.0 / inputs.occluders.near) as f32 }),
+        Push::new(&FinestLevel { map: map as i32, inv_near: inputs.occluders.top() as f32 }),
         smallvec![
             Use::bound(0, front, Access::SampledCompute),
             Use::bound(1, levels, Access::BufferWriteCompute),

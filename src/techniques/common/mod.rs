@@ -56,7 +56,7 @@ pub(crate) fn pixel_push(count: u32, inputs: &PassInputs) -> Push {
         texels_per_uv: occluders.texels_per_uv().map(|x| x as f32),
         first: occluders.first().map(|x| x as f32),
         half_light: inputs.light.half_extents().map(|x| x as f32),
-        inv_near: (1.0 / occluders.near) as f32,
+        inv_near: occluders.top() as f32,
         snap: inputs.snap,
         depth_error: inputs.depth_error as f32,
         map: occluders.side as i32,

@@ -29,6 +29,10 @@ impl Room for Settings {
         Maps::front(self.map)
     }
 
+    fn takes_parallel(&self) -> bool {
+        true
+    }
+
     fn declare(&self, graph: &mut Graph, inputs: &PassInputs) -> Option<ResourceId> {
         let front = inputs.depth_layers(graph, self.maps().layers).front;
         declare(graph, front, Filter::Three, inputs.need, inputs);

@@ -147,6 +147,10 @@ impl Room for Settings {
         }
     }
 
+    fn takes_parallel(&self) -> bool {
+        true
+    }
+
     fn declare(&self, graph: &mut Graph, inputs: &PassInputs) -> Option<ResourceId> {
         let wanted = self.maps().layers;
         let layers = self.is_fitted().then(|| inputs.depth_layers(graph, wanted));

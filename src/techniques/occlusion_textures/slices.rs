@@ -5,7 +5,7 @@ use crate::graph::{
     Access, COLOR_ATTACHMENTS, Draw, Graph, Layer, Owner, Pass, Push, ResourceId, Target, Use, Work,
 };
 use crate::shaders::{self, module};
-use crate::stages::depth_layers::{self, DepthLayers, Wanted};
+use crate::stages::depth_layers::{self, DepthLayers, Eye, Wanted};
 use crate::stages::visibility::grid;
 use crate::techniques::room::PassInputs;
 use ash::vk;
@@ -55,11 +55,16 @@ pub(super) fn declare_placement(
     let format = vk::Format::R32G32B32A32_SFLOAT;
     let name = "occlusion_textures.placement";
     let placement = graph.image(name, format, PLACEMENT, Owner::Transient);
-    let behind = inputs.occluders.behind();
+    let view = inputs.occluders;
+    // Slices of an orthographic map are at heights, whose distances from the light begin below 0.
+    let [near, far, eye] = match view.eye {
+        Eye::Behind(behind) => [view.near - behind, view.far - behind, behind],
+        Eye::Infinity => [-view.top(), 0.0, view.top()],
+    };
     let pushed = Push::new(&Place {
-        near: (inputs.occluders.near - behind) as f32,
-        far: (inputs.occluders.far - behind) as f32,
-        eye: behind as f32,
+        near: near as f32,
+        far: far as f32,
+        eye: eye as f32,
         // The published place is the bottom; in the middle the error is smaller.
         plane: if settings.is_correlated() { 0.5 } else { 1.0 },
         slices: settings.slices as i32,
@@ -115,7 +120,10 @@ fn declare_histogram(
         grid([map; 2]),
         Push::new(&Histogram {
             map: map as i32,
-            near: inputs.occluders.near as f32,
+            near: match inputs.occluders.eye {
+                Eye::Behind(_) => inputs.occluders.near as f32,
+                Eye::Infinity => 0.0,
+            },
             span: (inputs.occluders.far - inputs.occluders.near) as f32,
         }),
         smallvec![

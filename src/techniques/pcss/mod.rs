@@ -72,6 +72,10 @@ impl Room for Settings {
         Maps::front(self.map)
     }
 
+    fn takes_parallel(&self) -> bool {
+        true
+    }
+
     fn declare(&self, graph: &mut Graph, inputs: &PassInputs) -> Option<ResourceId> {
         let front = inputs.depth_layers(graph, self.maps().layers).front;
         declare(graph, front, self, inputs);
@@ -90,7 +94,7 @@ fn declare(graph: &mut Graph, front: ResourceId, settings: &Settings, inputs: &P
         "pcss.nearest",
         module!("common/nearest.comp"),
         grid([row; 2]),
-        Push::new(&FinestLevel { map: map as i32, inv_near: (1.0 / occluders.near) as f32 }),
+        Push::new(&FinestLevel { map: map as i32, inv_near: occluders.top() as f32 }),
         smallvec![
             Use::bound(0, front, Access::SampledCompute),
             Use::bound(1, nearest, Access::BufferWriteCompute),

@@ -128,6 +128,10 @@ impl Room for Settings {
         }
     }
 
+    fn takes_parallel(&self) -> bool {
+        true
+    }
+
     fn declare(&self, graph: &mut Graph, inputs: &PassInputs) -> Option<ResourceId> {
         let layers = inputs.depth_layers(graph, self.maps().layers);
         declare(graph, &layers, self, inputs);

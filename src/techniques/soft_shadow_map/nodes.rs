@@ -106,7 +106,7 @@ pub(super) fn declare_nodes(
         Push::new(&Blocks {
             map: inputs.occluders.side as i32,
             row: block_row as i32,
-            inv_near: (1.0 / inputs.occluders.near) as f32,
+            inv_near: inputs.occluders.top() as f32,
             sums: nodes.sums as i32,
             faces: match combination(settings) {
                 Sides::Bottom => 1,

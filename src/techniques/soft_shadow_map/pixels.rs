@@ -89,7 +89,7 @@ fn pixel_push(nodes: &Nodes, settings: &Settings, inputs: &PassInputs) -> Gather
         scale: scale_of(inputs),
         texels_per_uv: occluders.texels_per_uv().map(|x| x as f32),
         first: occluders.first().map(|x| x as f32),
-        w_max: (1.0 / occluders.near) as f32,
+        w_max: occluders.top() as f32,
         spread: spread_of(settings.tolerance),
         snap: inputs.snap,
         depth_error: inputs.depth_error as f32,

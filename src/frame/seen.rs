@@ -1,0 +1,164 @@
+//! What a camera sees of the receivers: the parts of their boxes within slices of its frustum.
+
+use super::camera::Camera;
+use glam::{DMat4, DVec3, DVec4};
+use smallvec::SmallVec;
+
+/// The least and largest coordinates of points, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Bounds {
+    /// The least coordinates.
+    pub min: DVec3,
+    /// The largest.
+    pub max: DVec3,
+}
+
+impl Bounds {
+    /// The bounds of no point.
+    pub const NONE: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
+
+    /// Widens the bounds to a point.
+    pub fn add(&mut self, p: DVec3) {
+        self.min = self.min.min(p);
+        self.max = self.max.max(p);
+    }
+
+    /// Whether they hold any point.
+    pub fn is_some(&self) -> bool {
+        self.min.x <= self.max.x
+    }
+
+    fn holds(&self, p: DVec3) -> bool {
+        self.min.cmple(p).all() && p.cmple(self.max).all()
+    }
+}
+
+/// A convex polygon.
+type Polygon = SmallVec<[DVec3; 12]>;
+
+/// The corners of a face of a box or a slice, whose corners are numbered by a bit an axis.
+const FACES: [[usize; 4]; 6] =
+    [[0, 2, 6, 4], [1, 3, 7, 5], [0, 1, 5, 4], [2, 3, 7, 6], [0, 1, 3, 2], [4, 5, 7, 6]];
+
+/// The pyramid that a perspective camera sees, in world space.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frustum {
+    eye: DVec3,
+    forward: DVec3,
+    /// The rays through the image's corners: bit 0 of a corner's number selects its right side, bit 1 the lower one.
+    /// Each is one metre long along `forward`.
+    rays: [DVec3; 4],
+}
+
+impl Frustum {
+    /// The frustum of a frame's camera; `None` for an orthographic one, or a matrix that is no camera.
+    pub fn new(world_from_ndc: &DMat4) -> Option<Self> {
+        let camera = Camera::of(world_from_ndc);
+        let eye = camera.eye?;
+        let forward = camera.direction;
+        let ray = |i: usize| {
+            let [x, y] = [(i & 1) as f64, (i >> 1) as f64].map(|end| 2.0 * end - 1.0);
+            let p = *world_from_ndc * DVec4::new(x, y, 0.5, 1.0);
+            let along = p.truncate() / p.w - eye;
+            along / along.dot(forward)
+        };
+        let rays = [0, 1, 2, 3].map(ray);
+        let sound = eye.is_finite() && rays.iter().all(|r| r.is_finite());
+        sound.then_some(Self { eye, forward, rays })
+    }
+
+    /// The width of a pixel one metre before the eye, for an image of this width, metres.
+    pub fn pixel(&self, width: u32) -> f64 {
+        (self.rays[1] - self.rays[0]).length() / f64::from(width)
+    }
+
+    /// The distances before the eye between which the frustum meets a box along the world's axes; `None` where it does
+    /// not meet it, or where the eye is in it.
+    pub fn distances(&self, of: &Bounds) -> Option<[f64; 2]> {
+        if of.holds(self.eye) {
+            return None;
+        }
+        let furthest = self.furthest(of);
+        let mut range = [f64::INFINITY, 0.0];
+        self.each_corner(of, [0.0, furthest], |p| {
+            let distance = (p - self.eye).dot(self.forward);
+            range = [range[0].min(distance), range[1].max(distance)];
+        });
+        (range[0] <= range[1]).then_some(range)
+    }
+
+    /// The distance of a box's furthest corner before the eye, metres; 0 for a box behind it.
+    pub fn furthest(&self, of: &Bounds) -> f64 {
+        corners(of).iter().map(|p| (*p - self.eye).dot(self.forward)).fold(0.0, f64::max)
+    }
+
+    /// The bounds, under a transform, of the part of a box that lies between two distances before the eye.
+    pub fn slice(&self, of: &Bounds, between: [f64; 2], transform: &DMat4) -> Bounds {
+        let mut bounds = Bounds::NONE;
+        self.each_corner(of, between, |p| bounds.add(transform.transform_point3(p)));
+        bounds
+    }
+
+    /// Calls `add` with every corner of the part of a box that lies in a slice of the frustum. Each is one of a face of
+    /// the box that the slice cuts, or of a face of the slice that the box cuts.
+    fn each_corner(&self, of: &Bounds, [near, far]: [f64; 2], mut add: impl FnMut(DVec3)) {
+        let own: [DVec3; 8] =
+            std::array::from_fn(|i| self.eye + self.rays[i & 3] * if i < 4 { near } else { far });
+        let middle = 0.25 * (self.rays[0] + self.rays[1] + self.rays[2] + self.rays[3]);
+        let side = |a: usize, b: usize| {
+            let n = self.rays[a].cross(self.rays[b]);
+            let n = if n.dot(middle) < 0.0 { -n } else { n };
+            n.extend(-n.dot(self.eye))
+        };
+        let along = self.forward.dot(self.eye);
+        let of_slice = [
+            side(0, 2),
+            side(1, 3),
+            side(0, 1),
+            side(2, 3),
+            self.forward.extend(-along - near),
+            (-self.forward).extend(along + far),
+        ];
+        let of_box = [
+            DVec4::new(1.0, 0.0, 0.0, -of.min.x),
+            DVec4::new(0.0, 1.0, 0.0, -of.min.y),
+            DVec4::new(0.0, 0.0, 1.0, -of.min.z),
+            DVec4::new(-1.0, 0.0, 0.0, of.max.x),
+            DVec4::new(0.0, -1.0, 0.0, of.max.y),
+            DVec4::new(0.0, 0.0, -1.0, of.max.z),
+        ];
+        for (corners, planes) in [(corners(of), &of_slice), (own, &of_box)] {
+            for face in FACES {
+                let mut polygon: Polygon = face.iter().map(|&i| corners[i]).collect();
+                for plane in planes {
+                    polygon = cut(&polygon, plane);
+                }
+                polygon.iter().for_each(|p| add(*p));
+            }
+        }
+    }
+}
+
+fn corners(of: &Bounds) -> [DVec3; 8] {
+    std::array::from_fn(|i| {
+        let end = |axis: usize| if i >> axis & 1 == 1 { of.max[axis] } else { of.min[axis] };
+        DVec3::new(end(0), end(1), end(2))
+    })
+}
+
+/// The part of a convex polygon on the inner side of a plane: where `plane · (p, 1)` is 0 or more.
+fn cut(polygon: &Polygon, plane: &DVec4) -> Polygon {
+    let height = |p: DVec3| plane.dot(p.extend(1.0));
+    let mut kept = Polygon::new();
+    for (i, &a) in polygon.iter().enumerate() {
+        let b = polygon[(i + 1) % polygon.len()];
+        let (from, to) = (height(a), height(b));
+        if from >= 0.0 {
+            kept.push(a);
+        }
+        if (from >= 0.0) != (to >= 0.0) {
+            kept.push(a + (b - a) * (from / (from - to)));
+        }
+    }
+    kept
+}
