@@ -115,6 +115,9 @@ void main()
         return;
     }
     Receiver r = pixel_receiver(p);
+    if (!is_served(r.position)) {
+        return;
+    }
     float v = 1.0;
     if (r.receives) {
         MapPlane m = pixel_plane(r);

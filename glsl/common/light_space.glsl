@@ -135,6 +135,11 @@ layout(set = 0, binding = 19, std430) readonly buffer Constants {
 #endif
     GBuffer lent_gbuffer;
     vec4 regions[16]; // two numbers of a view: see is_within
+#ifndef FORWARD
+    // The w of the nearest occluder before the receivers of a view from the light's centre. It is 0 where it does not
+    // matter, as the view holds every ray between its receivers and the light.
+    float nearest_before[8];
+#endif
 };
 // Read once: some drivers check the bounds of the buffer at each reading.
 GBuffer gbuffer = lent_gbuffer;
@@ -273,16 +278,19 @@ vec3 receiver_normal(ivec2 p, vec3 position)
     return lent == vec3(0.0) ? facet_normal(p, depth_at(p)) : lent;
 }
 
-// Whether a point lies within a view's region, whose least x and y and largest x and y change evenly with z.
+// Whether a point lies within a view's region, whose least x and y and largest x and y change evenly with z. A region of
+// a view from the light's centre is narrower by what its rays spread, as seen from there, up to the nearest occluder.
 bool is_within(int view, vec3 position)
 {
-    vec4 rim = regions[2 * view] + regions[2 * view + 1] * position.z;
+    vec4 at = regions[2 * view];
+    vec4 rim = at + (regions[2 * view + 1] - at * nearest_before[view]) * position.z;
     return all(greaterThanEqual(position.xy, rim.xy)) && all(lessThanEqual(position.xy, rim.zw));
 }
 
-bool is_first_view()
+// The views' passes run one after the other, the widest view's first.
+bool is_widest_view()
 {
-    return (gbuffer.flags & 15 << 8) == 0;
+    return (gbuffer.flags >> 8 & 15) == (gbuffer.flags >> 12 & 15);
 }
 
 // Whether the passes' view serves a point: the first view whose region holds it does, and the last one all others.

@@ -25,8 +25,8 @@ void main()
     }
     Receiver r = receiver_without_normal(p);
     if (!is_served(r.position)) {
-        // The filter of the first view finds no neighbours there, that of a later one those of the views before.
-        if (filters() && is_first_view()) {
+        // The filter of the widest view finds no neighbours there, that of a finer one those of the wider ones.
+        if (filters() && is_widest_view()) {
             put_known(p, NO_RECEIVER);
             imageStore(halfway, p, vec4(NO_RECEIVER));
         }

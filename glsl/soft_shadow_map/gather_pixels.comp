@@ -84,10 +84,12 @@ void main()
     }
     vec2 half_light = 0.5 / (push.scale * push.texels_per_uv);
     Receivers r;
+    bvec4 served;
     vec4 below; // the part of the light under the pixel's own surface, where that blocks
     for (int i = 0; i < 4; ++i) {
         Receiver p = receiver_at(quad + ivec2(i & 1, i >> 1));
-        bool there = p.receives && is_before_light(p.position);
+        served[i] = is_served(p.position);
+        bool there = p.receives && served[i] && is_before_light(p.position);
         float w = there ? w_of(p.position) : 0.0;
         vec2 t = place_of(p.position, w);
         vec2 n = p.normal.xy / push.texels_per_uv;
@@ -117,7 +119,7 @@ void main()
     vec4 v = 1.0 - min(hidden, vec4(1.0));
     for (int i = 0; i < 4; ++i) {
         ivec2 p = quad + ivec2(i & 1, i >> 1);
-        if (p.x < gbuffer.extent.x && p.y < gbuffer.extent.y) {
+        if (served[i] && p.x < gbuffer.extent.x && p.y < gbuffer.extent.y) {
             imageStore(visibility, p, vec4(v[i]));
         }
     }

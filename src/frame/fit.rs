@@ -254,7 +254,11 @@ impl Fit {
         self.alone = Served { map: self.centre.unwrap_or(PLACEHOLDER), ..ALONE };
         self.served.clear();
         match eye {
-            Projection::Centre => self.served.extend(self.centre.map(|_| self.alone)),
+            Projection::Centre
+                if most == 1 || self.host_maps.is_some() || frame.window.is_some() =>
+            {
+                self.served.extend(self.centre.map(|_| self.alone));
+            }
             _ => fit_served(half, &self.occluders.boxes, eye, maps.side, most, &mut self.served),
         }
         self.receiver_view = self.shadowed.unwrap_or(PLACEHOLDER);

@@ -5,8 +5,9 @@ use crate::RectangleLight;
 use crate::audit::passes::{self as audit, Audited};
 use crate::effects::{Effect, Verdicts};
 use crate::graph::{Graph, Need, Owner, ResourceId, Why};
-use crate::stages::depth_layers::{self, Eye, HostMapView, LightLayers, MapView};
+use crate::stages::depth_layers::{self, Eye, HostMapView, LightLayers, MapView, Projection};
 use crate::stages::hierarchy::{self, Sizes};
+use crate::stages::views::inner::{self, Inner};
 use crate::stages::views::{MOST_VIEWS, Region, Served, Views};
 use crate::stages::visibility::{self, Constants, GBuffer, NormalConstants};
 use crate::techniques::hard::{self, Filter};
@@ -221,12 +222,12 @@ pub(super) fn build(
     let background = frame.constants.background;
     let gbuffer = GBuffer { depth, mask, normal, constants, extent, background };
     let needs = &frame.needs;
-    let [need, hard, front_need, back_need, inner, filter] = &needs.each().map(|n| graph.need(n));
+    let [need, hard, front_need, back_need, inner_need, filter] =
+        &needs.each().map(|n| graph.need(n));
     // A hard shadow may stand in for the technique.
     let shadowed = if hard.is_yes() { hard } else { need };
-    let first = frame.constants.for_view(0, frame.occluders.len());
-    first.write(frame.normals.as_ref(), graph, constants, shadowed);
-    if frame.occluders.len() > 1 {
+    let count = frame.occluders.len();
+    if count > 1 {
         Constants::write_regions(graph, constants, frame.occluders, shadowed);
     }
     let layers = LightLayers {
@@ -235,10 +236,11 @@ pub(super) fn build(
             _ => depth_layers::Occluders::Meshes,
         },
         view: 0,
+        inner: None,
         needs: depth_layers::Needs {
             front: if maps.front_is_whole { front_need } else { need },
             back: back_need,
-            inner,
+            inner: inner_need,
             receivers: need,
         },
     };
@@ -265,16 +267,36 @@ pub(super) fn build(
         tree: &frame.tree,
         hierarchy: tree,
     };
+    let nodes = (maps.eye == Projection::Centre && room.most_served() > 1)
+        .then(|| inner::declare(graph, maps.side));
     let declared = graph.declared();
-    let nearest = room.declare(graph, &inputs);
-    for (view, served) in (0..).zip(frame.occluders).skip(1) {
-        let own = frame.constants.for_view(view, frame.occluders.len());
-        own.write(None, graph, constants, shadowed);
-        graph.again(declared);
-        let layers = LightLayers { view, ..layers };
-        let inputs = PassInputs { occluders: &served.map, view, layers: &layers, ..inputs };
-        room.declare(graph, &inputs);
+    let mut nearest = None;
+    let is_centred = |map: &MapView| map.eye == Eye::Behind(0.0);
+    // The widest view's passes are first: its maps tell what lies before the receivers of the finer ones.
+    for (nth, view) in (0..count).rev().enumerate() {
+        let map = &frame.occluders[view].map;
+        let normals = frame.normals.as_ref().filter(|_| nth == 0);
+        frame.constants.for_view(view, count).write(normals, graph, constants, shadowed);
+        if nth > 0 {
+            graph.again(declared);
+        }
+        let finer = view.checked_sub(1).filter(|_| is_centred(map));
+        let layers = LightLayers {
+            view: view as u32,
+            inner: finer.zip(nodes).map(|(finer, nodes)| Inner {
+                view: finer as u32,
+                tangent: frame.occluders[finer].region.tangent(),
+                map,
+                half: frame.light.half_extents(),
+                nodes,
+                constants,
+            }),
+            ..layers
+        };
+        let inputs = PassInputs { occluders: map, view: view as u32, layers: &layers, ..inputs };
+        nearest = room.declare(graph, &inputs);
     }
+    graph.declares_anew();
     if hardens(description) {
         let front = nearest.unwrap_or_else(|| depth_layers::hard(graph, maps.side, hard));
         hard::declare(graph, front, Filter::One, hard, &inputs);

@@ -186,6 +186,11 @@ impl Graph {
         self.again = first..self.resources.len();
     }
 
+    /// Makes the next declarations those of new resources.
+    pub(crate) fn declares_anew(&mut self) {
+        self.again = 0..0;
+    }
+
     fn add(&mut self, resource: Resource) -> ResourceId {
         if let Some(index) = self.again.next() {
             let Resource { name, shape, .. } = self.resources[index];

@@ -39,6 +39,7 @@ use crate::graph::{
     Access, Draw, Graph, Layer, Need, Owner, Pass, Push, ResourceId, Target, Use, Work,
 };
 use crate::shaders::{self, module};
+use crate::stages::views::inner::Inner;
 use ash::vk;
 use smallvec::smallvec;
 
@@ -118,6 +119,8 @@ pub struct LightLayers<'a> {
     pub(crate) occluders: Occluders<'a>,
     /// The number of the view that the layers are drawn through.
     pub(crate) view: u32,
+    /// The next finer view, where the front layer tells what lies before its receivers.
+    pub(crate) inner: Option<Inner<'a>>,
     pub(crate) needs: Needs<'a>,
 }
 
@@ -133,7 +136,7 @@ pub(crate) struct Needs<'a> {
 /// Adds the layers and the passes that make them. A layer that this frame does not need is `None`, although its pass
 /// and image are declared.
 pub(crate) fn declare(graph: &mut Graph, wanted: Wanted, layers: &LightLayers) -> DepthLayers {
-    let LightLayers { occluders, view, needs } = *layers;
+    let LightLayers { occluders, view, inner: finer, needs } = *layers;
     let map = wanted.map;
     let need = needs.front;
     let (front, back) = match occluders {
@@ -149,6 +152,9 @@ pub(crate) fn declare(graph: &mut Graph, wanted: Wanted, layers: &LightLayers) -
             (front, back.map(|b| copied(graph, b, map, camera, Layer::Back, needs.back)))
         }
     };
+    if let Some(finer) = finer {
+        finer.find(graph, front, need);
+    }
     let inner = (wanted.inner && matches!(occluders, Occluders::Meshes)).then(|| {
         let names = ["depth_layers.near_back_depth", "depth_layers.near_back"];
         let near_back = drawn(graph, Layer::NearBack, names, map, view, needs.inner);

@@ -1,5 +1,6 @@
 //! The views of techniques that see the occluders from other places than the light's centre.
 
+pub mod inner;
 mod line;
 mod point;
 mod served;

@@ -43,7 +43,7 @@ pub(crate) struct Served {
 /// The points p of light space for which p.xy lies between `at.xy + slope.xy p.z` and `at.zw + slope.zw p.z`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-pub(crate) struct Region {
+pub struct Region {
     /// The least x and y in the light's plane, then the largest.
     pub at: [f32; 4],
     /// How these change with the distance from that plane.
@@ -56,6 +56,11 @@ impl Region {
         at: [f32::NEG_INFINITY, f32::NEG_INFINITY, f32::INFINITY, f32::INFINITY],
         slope: [0.0; 4],
     };
+
+    /// The largest tangent to which it opens.
+    pub(crate) fn tangent(&self) -> f64 {
+        f64::from(self.slope[2])
+    }
 
     /// The points under `tangent` or less beyond the rim of a light of these half-extents.
     fn opening(half: [f64; 2], tangent: f64) -> Self {
@@ -80,9 +85,10 @@ pub(crate) fn fit_served(
         Some((min, max)) => min.iter().chain(&max).fold(0.0f64, |most, t| most.max(t.abs())),
         None => return,
     };
-    if most > 1 && widest > NARROW && projection == Projection::Behind {
+    if most > 1 && widest > NARROW && projection != Projection::Orthographic {
         let more = (widest / FINEST).ln() / LEAST_RATIO.ln();
-        nested(half, occluders, side, widest, (1 + more.ceil() as u32).min(most), views);
+        let count = (1 + more.ceil() as u32).min(most);
+        nested(half, occluders, projection, side, widest, count, views);
     }
     if views.is_empty() {
         let one = view_from(half, occluders, projection, side);
@@ -94,6 +100,7 @@ pub(crate) fn fit_served(
 fn nested(
     half: [f64; 2],
     occluders: &[LightBox],
+    projection: Projection,
     side: u32,
     widest: f64,
     count: u32,
@@ -102,7 +109,10 @@ fn nested(
     let ratio = (widest / FINEST).powf(1.0 / f64::from(count - 1));
     for nth in 0..count {
         let tangent = FINEST * ratio.powi(nth as i32);
-        let behind = half.iter().fold(0.0f64, |most, h| most.max(h / tangent));
+        let behind = match projection {
+            Projection::Centre => 0.0,
+            _ => half.iter().fold(0.0f64, |most, h| most.max(h / tangent)),
+        };
         let Some(map) = fit_boxes_within(Eye::Behind(behind), occluders, tangent, side) else {
             views.clear();
             return;

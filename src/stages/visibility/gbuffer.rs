@@ -13,6 +13,14 @@ const CONSTANTS_AT: u8 = 19;
 /// Where the regions of the views begin in the buffer of constants, in bytes.
 const REGIONS_AT: u64 = (size_of::<Constants>() + size_of::<NormalConstants>()) as u64;
 
+/// Where the nearest occluders before the views' receivers begin in it, in bytes.
+const NEAREST_AT: u64 = REGIONS_AT + (size_of::<Region>() * MOST_VIEWS as usize) as u64;
+
+/// Where the nearest occluder before a view's receivers is in the buffer of constants, in floats.
+pub(crate) fn nearest_at(view: u32) -> u32 {
+    (NEAREST_AT / 4) as u32 + view
+}
+
 /// The host's G-buffer, as resources of the graph.
 #[derive(Clone, Copy, Debug)]
 pub struct GBuffer {
@@ -88,12 +96,11 @@ pub(crate) fn plane_to_normal(
 impl Constants {
     /// Adds the buffer that holds the constants.
     pub(crate) fn declare(graph: &mut Graph) -> ResourceId {
-        let regions = size_of::<Region>() * MOST_VIEWS as usize;
-        graph.buffer("gbuffer.constants", REGIONS_AT + regions as u64)
+        graph.buffer("gbuffer.constants", NEAREST_AT + 4 * u64::from(MOST_VIEWS))
     }
 
     /// The constants for one of the views that share the pixels.
-    pub(crate) fn for_view(&self, view: u32, count: usize) -> Self {
+    pub(crate) fn for_view(&self, view: usize, count: usize) -> Self {
         let last = count as i32 - 1;
         Self { flags: self.flags | (view as i32) << 8 | last << 12, ..*self }
     }
@@ -126,6 +133,8 @@ impl Constants {
             let at = REGIONS_AT + (nth * size_of::<RegionConstants>()) as u64;
             graph.push(Pass::constants("gbuffer.regions", buffer, at, &regions, need));
         }
+        let none = [0.0f32; MOST_VIEWS as usize];
+        graph.push(Pass::constants("gbuffer.nearest", buffer, NEAREST_AT, &none, need));
     }
 }
 

@@ -5,8 +5,8 @@
 
 mod gbuffer;
 
-pub(crate) use gbuffer::plane_to_normal;
 pub use gbuffer::{Constants, GBuffer, NormalConstants};
+pub(crate) use gbuffer::{nearest_at, plane_to_normal};
 
 use crate::graph::{Access, Graph, Need, Owner, Pass, Push, ResourceId, Use, Uses, Work};
 use crate::shaders::{self, module};

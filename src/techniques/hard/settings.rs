@@ -7,15 +7,20 @@ use crate::knob::{Field, Knobs};
 pub struct Settings {
     /// The map's side, texels, 1 to 4096; 256 by default.
     pub map: u32,
+    /// The most views of a light, 1 to 8; 4 by default.
+    pub views: u32,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { map: 256 }
+        Self { map: 256, views: 4 }
     }
 }
 
 impl Knobs for Settings {
     const NAME: &'static str = "hard";
-    const FIELDS: &'static [Field<Self>] = &[Field::map(|s| s.map, |s, map| s.map = map)];
+    const FIELDS: &'static [Field<Self>] = &[
+        Field::map(|s| s.map, |s, map| s.map = map),
+        Field::views(|s| s.views, |s, views| s.views = views),
+    ];
 }

@@ -72,6 +72,10 @@ impl Room for Settings {
         Maps::front(self.map)
     }
 
+    fn most_served(&self) -> u32 {
+        self.views
+    }
+
     fn takes_parallel(&self) -> bool {
         true
     }

@@ -7,6 +7,8 @@ use crate::knob::{Field, Knobs};
 pub struct Settings {
     /// The map's side, texels, 1 to 4096; 256 by default.
     pub map: u32,
+    /// The most views of a light, 1 to 8; 4 by default.
+    pub views: u32,
     /// The number of taps of the blocker search, and as many again of the filter, 1 to 64; 16 by default.
     pub taps: u32,
     /// Whether tiles of pixels that no occluder can shadow are skipped; on by default.
@@ -15,7 +17,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { map: 256, taps: 16, classify: true }
+        Self { map: 256, views: 4, taps: 16, classify: true }
     }
 }
 
@@ -23,6 +25,7 @@ impl Knobs for Settings {
     const NAME: &'static str = "pcss";
     const FIELDS: &'static [Field<Self>] = &[
         Field::map(|s| s.map, |s, map| s.map = map),
+        Field::views(|s| s.views, |s, views| s.views = views),
         Field::whole(
             "taps",
             "taps",

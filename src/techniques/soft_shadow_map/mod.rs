@@ -128,6 +128,11 @@ impl Room for Settings {
         }
     }
 
+    fn most_served(&self) -> u32 {
+        // A soft shadow map has a view of its own.
+        if self.receivers == Receivers::Map { 1 } else { self.views }
+    }
+
     fn takes_parallel(&self) -> bool {
         true
     }
