@@ -293,17 +293,27 @@ bool is_widest_view()
     return (gbuffer.flags >> 8 & 15) == (gbuffer.flags >> 12 & 15);
 }
 
-// Whether the passes' view serves a point: the first view whose region holds it does, and the last one all others.
+// Whether the passes' view serves a point. Under a sun the finest view does whose region holds it, and the last view all
+// others. Before a lamp regions lie within each other, and the finest view does of those which, with all wider ones, hold
+// it: what lies before a finer view's receivers is known only once the next wider view's map is drawn.
 bool is_served(vec3 position)
 {
     int view = gbuffer.flags >> 8 & 15;
     int last = gbuffer.flags >> 12 & 15;
-    for (int finer = 0; finer < view; ++finer) {
-        if (is_within(finer, position)) {
+    if (is_parallel()) {
+        for (int finer = 0; finer < view; ++finer) {
+            if (is_within(finer, position)) {
+                return false;
+            }
+        }
+        return view == last || is_within(view, position);
+    }
+    for (int wider = view; wider < last; ++wider) {
+        if (!is_within(wider, position)) {
             return false;
         }
     }
-    return view == last || is_within(view, position);
+    return view == 0 || !is_within(view - 1, position);
 }
 
 // The receiver that a pixel shows, without its normal.

@@ -129,6 +129,8 @@ pub(super) struct Fit {
     pub parallel: bool,
     /// The view of the receivers in that space.
     pub receiver_view: MapView,
+    /// The boxes of occluders and receivers in a sun's space; kept for their memory.
+    under_sun: [Vec<LightBox>; 2],
     /// The parts of the receivers that are seen, under a sun; kept for their memory.
     parts: Vec<Extent>,
     /// The meshes that may block the light; empty where the host lends occluder maps.
@@ -165,6 +167,7 @@ impl Default for Fit {
             light: RectangleLight::unit(),
             parallel: false,
             receiver_view: PLACEHOLDER,
+            under_sun: [Vec::new(), Vec::new()],
             parts: Vec::new(),
             occluders: Placed::default(),
             receivers: Placed::default(),
@@ -297,9 +300,11 @@ impl Fit {
         let rectangle = frame.light.rectangle();
         // The rectangle of a sun is as far away as its size says.
         let away = rectangle.half_extents()[0] / half;
-        let moved = |boxes: &mut Vec<LightBox>| boxes.iter_mut().for_each(|b| *b = b.moved(-away));
-        moved(&mut self.occluders.boxes);
-        moved(&mut self.receivers.boxes);
+        let [occluders, receivers] = &mut self.under_sun;
+        for (to, from) in [(&mut *occluders, &self.occluders), (&mut *receivers, &self.receivers)] {
+            to.clear();
+            to.extend(from.boxes.iter().map(|b| b.moved(-away)));
+        }
         let sun_from_world =
             DMat4::from_translation(DVec3::new(0.0, 0.0, -away)) * self.light_from_world;
         self.parts.clear();
@@ -316,8 +321,8 @@ impl Fit {
         let maps = &request.maps;
         let under = UnderSun {
             half,
-            occluders: &self.occluders.boxes,
-            receivers: &self.receivers.boxes,
+            occluders,
+            receivers,
             parts: &self.parts,
             side: maps.side,
             receiver_side: maps.layers.receiver_map.unwrap_or(maps.side),

@@ -227,8 +227,10 @@ pub(super) fn build(
     // A hard shadow may stand in for the technique.
     let shadowed = if hard.is_yes() { hard } else { need };
     let count = frame.occluders.len();
-    if count > 1 {
-        Constants::write_regions(graph, constants, frame.occluders, shadowed);
+    let one = graph.because("one view serves every receiver");
+    if room.most_served() > 1 {
+        let several = if count > 1 { *shadowed } else { Need::No(one) };
+        Constants::write_regions(graph, constants, frame.occluders, &several);
     }
     let layers = LightLayers {
         occluders: match (front, &frame.host_maps) {
@@ -281,15 +283,18 @@ pub(super) fn build(
             graph.again(declared);
         }
         let finer = view.checked_sub(1).filter(|_| is_centred(map));
+        let found = if finer.is_some() { *need } else { Need::No(one) };
         let layers = LightLayers {
             view: view as u32,
-            inner: finer.zip(nodes).map(|(finer, nodes)| Inner {
-                view: finer as u32,
-                tangent: frame.occluders[finer].region.tangent(),
+            // A frame without a finer view declares the passes once, for the plan to name them.
+            inner: nodes.filter(|_| finer.is_some() || nth == 0).map(|nodes| Inner {
+                view: finer.unwrap_or(0) as u32,
+                tangent: finer.map_or(0.0, |finer| frame.occluders[finer].region.tangent()),
                 map,
                 half: frame.light.half_extents(),
                 nodes,
                 constants,
+                need: found,
             }),
             ..layers
         };

@@ -153,7 +153,7 @@ pub(crate) fn declare(graph: &mut Graph, wanted: Wanted, layers: &LightLayers) -
         }
     };
     if let Some(finer) = finer {
-        finer.find(graph, front, need);
+        finer.find(graph, front);
     }
     let inner = (wanted.inner && matches!(occluders, Occluders::Meshes)).then(|| {
         let names = ["depth_layers.near_back_depth", "depth_layers.near_back"];

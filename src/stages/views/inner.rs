@@ -55,6 +55,8 @@ pub(crate) struct Inner<'a> {
     pub nodes: ResourceId,
     /// The buffer of the constants of the passes over the pixels.
     pub constants: ResourceId,
+    /// Whether there is such a view.
+    pub need: Need,
 }
 
 /// Declares the buffer of the nodes of a map of `side` texels.
@@ -65,7 +67,7 @@ pub(crate) fn declare(graph: &mut Graph, side: u32) -> ResourceId {
 
 impl Inner<'_> {
     /// Adds the passes that find the nearest occluder before the receivers of the finer view from the map `front`.
-    pub fn find(&self, graph: &mut Graph, front: ResourceId, need: &Need) {
+    pub fn find(&self, graph: &mut Graph, front: ResourceId) {
         let map = self.map.side;
         let row = nodes_a_row(map);
         let nodes = self.nodes;
@@ -85,7 +87,7 @@ impl Inner<'_> {
                 Use::bound(0, front, Access::SampledCompute),
                 Use::bound(1, nodes, Access::BufferWriteCompute),
             ],
-            need,
+            &self.need,
         ));
         graph.push(Pass::compute(
             "views.nearest",
@@ -96,7 +98,7 @@ impl Inner<'_> {
                 Use::bound(0, nodes, Access::BufferReadCompute),
                 Use::bound(1, self.constants, Access::BufferUpdate),
             ],
-            need,
+            &self.need,
         ));
     }
 }
