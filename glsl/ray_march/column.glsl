@@ -25,12 +25,15 @@ vec4 bounds_of(vec4 column)
 }
 
 // How far a surface goes down from a texel at height h towards a neighbour. It does not where the step is more than
-// twice the one on the other side (or the one behind the neighbour, where there is none): the neighbour then shows
-// another surface. Heights of 0 mean no surface.
+// twice the one by which it comes down from the other side, or the one by which it goes on down behind the neighbour:
+// the neighbour then shows another surface. A wire over a floor neither comes down nor goes on. Heights of 0 mean no
+// surface.
 float step_down(float h, float neighbour, float behind_it, float opposite)
 {
     float drop = h - neighbour;
-    float slope = opposite > 0.0 ? abs(h - opposite) : behind_it > 0.0 ? abs(neighbour - behind_it) : 0.0;
+    float before = opposite > h ? opposite - h : FAR_OFF;
+    float behind = behind_it > 0.0 && behind_it <= neighbour ? neighbour - behind_it : FAR_OFF;
+    float slope = min(before, behind) < FAR_OFF ? min(before, behind) : 0.0;
     return neighbour > 0.0 && drop <= 2.0 * slope ? max(drop, 0.0) : 0.0;
 }
 

@@ -253,12 +253,12 @@ fn descriptions() {
         ),
         d(
             "no map",
-            |d| d.technique = hard::Settings { map: 0 }.into(),
+            |d| d.technique = hard::Settings { map: 0, ..Default::default() }.into(),
             &["setting map", "1 to 4096"],
         ),
         d(
             "an absurd map",
-            |d| d.technique = hard::Settings { map: 1 << 20 }.into(),
+            |d| d.technique = hard::Settings { map: 1 << 20, ..Default::default() }.into(),
             &["setting map", "1 to 4096"],
         ),
         d(
@@ -271,7 +271,7 @@ fn descriptions() {
         ),
         d(
             "a bad knob of the others",
-            |d| d.other_techniques.push(hard::Settings { map: 4097 }.into()),
+            |d| d.other_techniques.push(hard::Settings { map: 4097, ..Default::default() }.into()),
             &["setting map", "4097"],
         ),
         d(

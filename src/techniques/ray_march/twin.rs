@@ -23,13 +23,11 @@ pub fn bounds_of<T: Float>(column: Column<T>) -> [T; 4] {
 /// How far a surface goes down from a texel at height `h` towards a neighbour.
 pub fn step_down<T: Float>(h: T, neighbour: T, behind_it: T, opposite: T) -> T {
     let drop = h - neighbour;
-    let slope = if opposite > T::zero() {
-        (h - opposite).abs()
-    } else if behind_it > T::zero() {
-        (neighbour - behind_it).abs()
-    } else {
-        T::zero()
-    };
+    let none = T::infinity();
+    let before = if opposite > h { opposite - h } else { none };
+    let goes_down = behind_it > T::zero() && behind_it <= neighbour;
+    let behind = if goes_down { neighbour - behind_it } else { none };
+    let slope = if before.min(behind) < none { before.min(behind) } else { T::zero() };
     let goes_on = neighbour > T::zero() && drop <= slope + slope;
     if goes_on { drop.max(T::zero()) } else { T::zero() }
 }
