@@ -5,8 +5,10 @@
 //! that. This file names no technique.
 
 use crate::Error;
-use crate::stages::views::MOST_VIEWS;
 use std::fmt;
+
+/// The most views of a light that share its receivers.
+pub(crate) const MOST_VIEWS: u32 = 8;
 
 /// The values that a knob may have.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -278,7 +278,9 @@ mod tests {
         assert!(refuse("psss").contains("hard, pcss, many-lights"));
         assert!(refuse("").contains("hard, pcss, many-lights"));
         assert!(refuse("pcss taps").contains("KEY=VALUE"));
-        assert!(refuse("pcss rays=4").contains("pcss has no such setting; it has map, taps"));
+        assert!(
+            refuse("pcss rays=4").contains("pcss has no such setting; it has map, views, taps")
+        );
         assert!(refuse("soft-shadow-map sides=three").contains("one, bottom, two, mean"));
         assert!(refuse("soft-shadow-map tolerance=NaN").contains("0 to 0.1 (visible fraction)"));
         assert!(refuse("many-lights seed=-1").contains("0 to 4294967295"));

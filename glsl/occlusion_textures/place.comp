@@ -15,6 +15,7 @@ layout(push_constant) uniform Push {
     float eye;  // how far behind the light the projection point is, m
     float plane; // where in a slice its texture lies: 0 at the top, 1 at the bottom
     int slices;
+    float span; // what the slices share: metres, or the share of an orthographic map's heights
 } push;
 
 float distance_of_bin(int bin)
@@ -31,7 +32,7 @@ void main()
             slice += int(equal_bin(k, push.slices) <= i);
         }
         imageStore(placement, ivec2(i, 0),
-                   vec4(float(slice), push.near + push.eye, push.far - push.near, 0.0));
+                   vec4(float(slice), push.near + push.eye, push.span, 0.0));
     } else if (i < BINS + push.slices) {
         int slice = i - BINS;
         float upper = distance_of_bin(equal_bin(slice, push.slices));

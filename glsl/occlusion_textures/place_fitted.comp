@@ -21,6 +21,7 @@ layout(push_constant) uniform Push {
     float eye;  // how far behind the light the projection point is, m
     float plane; // where in a slice without faces its texture lies: 0 at the top, 1 at the bottom
     int slices;
+    float span; // what the slices share: metres, or the share of an orthographic map's heights
 } push;
 
 float distance_of_bin(float bin)
@@ -64,7 +65,7 @@ void main()
             sum = 0.0;
         }
         imageStore(placement, ivec2(i, 0),
-                   vec4(float(slice), push.near + push.eye, push.far - push.near, 0.0));
+                   vec4(float(slice), push.near + push.eye, push.span, 0.0));
         before += here;
         mass += here;
         sum += here * float(i);

@@ -23,10 +23,11 @@ const int BINS = 960;
 // plane from the projection point and `span` that of the far plane from the near one, both in metres or both in units
 // of near.
 //
-// A projection from infinitely far stores depths that fall evenly from 1 to 0; `near` is 0 for it.
+// A projection from infinitely far stores depths that fall evenly from 1 to 0; `near` is 0 for it, and `span` the share
+// of its heights that the slices have.
 int bin_of(float stored, float near, float span)
 {
-    float t = near > 0.0 ? (near / stored - near) / span : 1.0 - stored;
+    float t = (near > 0.0 ? near / stored - near : 1.0 - stored) / span;
     return clamp(int(t * float(BINS)), 0, BINS - 1);
 }
 

@@ -36,7 +36,7 @@ void main()
     for (int y = begin.y; y < end.y; ++y) {
         for (int x = begin.x; x < end.x; ++x) {
             float w = texelFetch(front_depth, ivec2(x, y), 0).x * push.inv_near;
-            // What of the texel is nearest to the axis counts.
+            // The texel counts by its point that is nearest to the axis.
             vec2 off = max(abs(vec2(x, y) + 0.5 - push.first) - 0.5, vec2(0.0)) / push.texels_per_uv;
             bool within = all(lessThanEqual(off, push.half_light * w + push.tangent));
             most = max(most, within ? w : 0.0);

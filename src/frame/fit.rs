@@ -1,78 +1,24 @@
 //! Fits a light's maps to the meshes that matter to it. The result stays valid while light and meshes do.
 
-use super::boxes::{Boxes, MeshBoxes, around, has_triangles};
+use super::boxes::{Boxes, MeshBoxes, has_triangles};
 use super::hull::Hull;
 use super::odd::Odd;
+use super::parallel::follows_camera;
 use super::passes::PLACEHOLDER;
-use super::seen::{Bounds, Frustum};
+use super::placed::Placed;
 use super::{Description, Frame};
 use crate::Error;
 use crate::effects::{Seen, Situation};
 use crate::graph::{Need, Why};
-use crate::lent::{MeshBounds, MeshInstance};
 use crate::light::{Light, RectangleLight, Shape};
 use crate::stages::depth_layers::{self, HostMapView, LightBox, MapView, Projection};
-use crate::stages::views::{Extent, Region, Served, UnderSun, Views, fit_served, fit_sun};
+use crate::stages::views::{Extent, Region, Served, Views, fit_served};
 use crate::technique::Technique;
 use crate::techniques::room::{Maps, Room, Seen as ViewsSeen, Takes};
-use glam::{DMat4, DVec3};
-use std::f64::consts::PI;
-
-/// Meshes that matter to a light: their indices in the frame's list, and their boxes in light space.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Placed {
-    pub places: Vec<u32>,
-    pub boxes: Vec<LightBox>,
-    /// The meshes' own boxes and transforms, once views are made: kept for its memory.
-    bounds: Vec<(MeshBounds, DMat4)>,
-}
-
-impl Placed {
-    fn clear(&mut self) {
-        self.places.clear();
-        self.boxes.clear();
-    }
-
-    fn push(&mut self, place: u32, of: LightBox) {
-        self.places.push(place);
-        self.boxes.push(of);
-    }
-
-    /// Keeps the meshes whose box `keep` accepts; returns how many were removed.
-    fn retain(&mut self, keep: impl Fn(&LightBox) -> bool) -> usize {
-        let mut kept = 0;
-        for i in 0..self.boxes.len() {
-            if keep(&self.boxes[i]) {
-                if kept < i {
-                    self.places[kept] = self.places[i];
-                    self.boxes[kept] = self.boxes[i];
-                }
-                kept += 1;
-            }
-        }
-        let gone = self.boxes.len() - kept;
-        self.places.truncate(kept);
-        self.boxes.truncate(kept);
-        gone
-    }
-
-    /// The meshes themselves.
-    pub fn meshes<'a>(
-        &'a self,
-        all: &'a [MeshInstance],
-    ) -> impl ExactSizeIterator<Item = &'a MeshInstance> + Clone {
-        self.places.iter().map(|&place| &all[place as usize])
-    }
-
-    fn fill_bounds(&mut self, all: &[MeshInstance]) {
-        self.bounds.clear();
-        let meshes = self.places.iter().map(|&place| &all[place as usize]);
-        self.bounds.extend(meshes.map(|m| (m.bounds, m.world_from_mesh)));
-    }
-}
+use glam::DMat4;
 
 /// A view for passes that do not run, which serves all pixels.
-const ALONE: Served = Served { map: PLACEHOLDER, region: Region::ALL };
+const ALONE: Served = Served { map: PLACEHOLDER, region: Region::ALL, deepest: PLACEHOLDER.far };
 
 /// The inputs of a fit: frames with equal inputs have the same fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -130,9 +76,9 @@ pub(super) struct Fit {
     /// The view of the receivers in that space.
     pub receiver_view: MapView,
     /// The boxes of occluders and receivers in a sun's space; kept for their memory.
-    under_sun: [Vec<LightBox>; 2],
+    pub(super) under_sun: [Vec<LightBox>; 2],
     /// The parts of the receivers that are seen, under a sun; kept for their memory.
-    parts: Vec<Extent>,
+    pub(super) parts: Vec<Extent>,
     /// The meshes that may block the light; empty where the host lends occluder maps.
     pub occluders: Placed,
     pub receivers: Placed,
@@ -144,6 +90,8 @@ pub(super) struct Fit {
     /// The views of the occluders that share the pixels, the finest first: from behind the light where the technique's
     /// projection point lies there. Empty where nothing lies before the light.
     pub served: Vec<Served>,
+    /// Why there are so many of them.
+    pub why_served: Why,
     /// The view from the light's centre, which serves all pixels where a hard shadow stands in for the technique.
     pub alone: Served,
     /// Whether anything can be shadowed, and why or why not.
@@ -175,6 +123,7 @@ impl Default for Fit {
             centre: None,
             shadowed: None,
             served: Vec::new(),
+            why_served: Why::default(),
             alone: ALONE,
             need: Need::No(Why::default()),
             situation: None,
@@ -254,15 +203,25 @@ impl Fit {
         self.need = self.need_of(boxes.blockers, gone);
         // Lent maps look from the light's centre.
         let eye = if self.host_maps.is_some() { Projection::Centre } else { maps.eye };
-        self.alone = Served { map: self.centre.unwrap_or(PLACEHOLDER), ..ALONE };
+        let map = self.centre.unwrap_or(PLACEHOLDER);
+        self.alone = Served { map, deepest: map.far, ..ALONE };
         self.served.clear();
         match eye {
             Projection::Centre
                 if most == 1 || self.host_maps.is_some() || frame.window.is_some() =>
             {
                 self.served.extend(self.centre.map(|_| self.alone));
+                self.why_served = match most {
+                    1 => "no more are allowed",
+                    _ => "the host gives its window",
+                }
+                .into();
             }
-            _ => fit_served(half, &self.occluders.boxes, eye, maps.side, most, &mut self.served),
+            _ => {
+                let occluders = &self.occluders.boxes;
+                self.why_served =
+                    fit_served(half, occluders, eye, maps.side, most, &mut self.served);
+            }
         }
         self.receiver_view = self.shadowed.unwrap_or(PLACEHOLDER);
         self.situation = match (self.need, &self.centre, &self.shadowed) {
@@ -287,55 +246,6 @@ impl Fit {
             self.fit_parallel(description, request, frame, (0.5 * angular_size).tan());
         }
         Ok(())
-    }
-
-    /// Fits the views of parallel light.
-    fn fit_parallel(
-        &mut self,
-        description: &Description,
-        request: &FitRequest,
-        frame: &Frame,
-        half: f64,
-    ) {
-        let rectangle = frame.light.rectangle();
-        // The rectangle of a sun is as far away as its size says.
-        let away = rectangle.half_extents()[0] / half;
-        let [occluders, receivers] = &mut self.under_sun;
-        for (to, from) in [(&mut *occluders, &self.occluders), (&mut *receivers, &self.receivers)] {
-            to.clear();
-            to.extend(from.boxes.iter().map(|b| b.moved(-away)));
-        }
-        let sun_from_world =
-            DMat4::from_translation(DVec3::new(0.0, 0.0, -away)) * self.light_from_world;
-        self.parts.clear();
-        if request.most_served > 1 {
-            parts_seen(
-                description,
-                request,
-                frame,
-                self.receivers.meshes(frame.meshes),
-                &sun_from_world,
-                &mut self.parts,
-            );
-        }
-        let maps = &request.maps;
-        let under = UnderSun {
-            half,
-            occluders,
-            receivers,
-            parts: &self.parts,
-            side: maps.side,
-            receiver_side: maps.layers.receiver_map.unwrap_or(maps.side),
-        };
-        if let Some(views) = fit_sun(&under, &mut self.served) {
-            self.alone = views.alone;
-            self.receiver_view = views.receivers;
-            self.space_from_world = DMat4::from_translation(-views.origin) * sun_from_world;
-            // A square of the disc's area.
-            let square = half * (0.25 * PI).sqrt();
-            self.light = rectangle.with_half_extents([square; 2]);
-            self.parallel = true;
-        }
     }
 
     /// Sorts all meshes into receivers and occluders of a light that shines to all sides, which no map is fitted to.
@@ -462,76 +372,6 @@ impl Fit {
             centre: self.centre.as_ref().unwrap_or(&PLACEHOLDER),
             w_far: self.shadowed.as_ref().map_or(0.0, |receivers| 1.0 / receivers.far),
         })
-    }
-}
-
-/// Whether the views of a frame follow its camera.
-pub(super) fn follows_camera(request: &FitRequest, frame: &Frame) -> bool {
-    request.parallel && request.most_served > 1 && matches!(frame.light.shape(), Shape::Sun { .. })
-}
-
-/// How many times further the furthest part of a sun's view is than its nearest.
-const DEEPER: f64 = 3.5;
-
-/// How many receivers are looked at for the nearest that is seen.
-const LOOKED_AT: usize = 64;
-
-/// The texel, over the pixel that looks at the nearest receiver, that is small enough.
-const FINE_TEXEL: f64 = 1.5;
-
-/// Finds the parts of the receivers that a camera sees, from the nearest on, in the sun's space; none where one view of
-/// all is fine enough.
-fn parts_seen<'a>(
-    description: &Description,
-    request: &FitRequest,
-    frame: &Frame,
-    receivers: impl Iterator<Item = &'a MeshInstance> + Clone,
-    sun_from_world: &DMat4,
-    parts: &mut Vec<Extent>,
-) {
-    let Some(frustum) = Frustum::new(&frame.world_from_ndc) else { return };
-    let bounds_of = |mesh: &MeshInstance| {
-        let [center, half] = around(mesh);
-        Bounds { min: center - half, max: center + half }
-    };
-    let mut all = Bounds::NONE;
-    for mesh in receivers.clone() {
-        let of = bounds_of(mesh);
-        all.add(of.min);
-        all.add(of.max);
-    }
-    let [mut nearest, mut furthest] = [f64::INFINITY, 0.0f64];
-    for mesh in receivers.take(LOOKED_AT) {
-        if let Some([from, to]) = frustum.distances(&bounds_of(mesh)) {
-            nearest = nearest.min(from);
-            furthest = furthest.max(to);
-        }
-    }
-    let deepest = frustum.furthest(&all);
-    if !nearest.is_finite() {
-        (nearest, furthest) = (0.01 * deepest, deepest);
-    }
-    let nearest = nearest.max(1e-3 * furthest);
-    if nearest <= 0.0 {
-        return;
-    }
-    let whole = frustum.slice(&all, [0.0, deepest], sun_from_world);
-    let texel = (whole.max - whole.min).truncate().max_element() / f64::from(request.maps.side);
-    let pixel = nearest * frustum.pixel(description.extent[0]);
-    if texel <= FINE_TEXEL * pixel {
-        return;
-    }
-    let deeper = (furthest / nearest).ln() / DEEPER.ln();
-    let count = (deeper.ceil() as u32).clamp(1, request.most_served);
-    let ratio = (furthest / nearest).powf(1.0 / f64::from(count));
-    let mut from = 0.0;
-    for nth in 1..=count {
-        let to = if nth == count { deepest } else { nearest * ratio.powi(nth as i32) };
-        let seen = frustum.slice(&all, [from, to], sun_from_world);
-        if seen.is_some() {
-            parts.push([seen.min, seen.max]);
-        }
-        from = to;
     }
 }
 

@@ -3,15 +3,17 @@
 use super::accesses::{HostAccess, NodeUse};
 use super::boxes::MeshBoxes;
 use super::doubts::Sight;
-use super::fit::{Fit, FitRequest, follows_camera};
+use super::fit::{Fit, FitRequest};
 use super::inputs::frame_inputs;
+use super::parallel::follows_camera;
 use super::passes::{Clips, Ids, Limits, build};
 use super::plan::{FramePlan, Stamp};
 use super::reuse::{self, Cached, CameraDependence, Revisions};
 use super::triangles::TreeKey;
+use super::views::PlannedView;
 use super::{Description, Frame, FramePlans};
 use crate::Error;
-use crate::graph::{self, Border, Compiler, Draw, Graph, MeshList, ResourceId, Work};
+use crate::graph::{self, Border, Compiler, Draw, Graph, MeshList, ResourceId, Why, Work};
 use crate::lent::{BorderBarriers, HostImage, LightIndex, MeshInstance, Visibility};
 use ash::vk;
 use smallvec::smallvec;
@@ -166,6 +168,14 @@ pub(crate) fn plan_into(
     {
         plan.triangles.meshes.clear();
     }
+    plan.views.clear();
+    if needs & 1 == 1
+        && views == fit.served.len()
+        && (room.most_served() > 1 || room.takes_parallel())
+    {
+        plan.views.extend(fit.served.iter().map(|served| PlannedView::of(&served.map)));
+    }
+    plan.why_views = if plan.views.is_empty() { Why::default() } else { fit.why_served };
     let maps = room.maps();
     let receiver_clips = match maps.layers.receiver_map {
         Some(_) => smallvec![receiver_view.clip_from_light()],

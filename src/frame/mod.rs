@@ -13,7 +13,9 @@ mod images;
 mod inputs;
 mod make;
 mod odd;
+mod parallel;
 mod passes;
+mod placed;
 mod plan;
 mod plans;
 mod reuse;
@@ -21,6 +23,7 @@ mod seen;
 #[cfg(test)]
 mod tests;
 mod triangles;
+mod views;
 
 pub use accesses::{BufferAccess, HostAccess, ImageBarrier, NodeUse};
 pub(crate) use boxes::MeshBoxes;
@@ -39,6 +42,7 @@ pub(crate) use plan::Stamp;
 pub use plans::FramePlans;
 pub use triangles::{Capacity, Space};
 pub(crate) use triangles::{TriangleList, kept_out};
+pub use views::PlannedView;
 
 use crate::Error;
 use crate::effects::Omit;

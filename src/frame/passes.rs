@@ -5,10 +5,11 @@ use crate::RectangleLight;
 use crate::audit::passes::{self as audit, Audited};
 use crate::effects::{Effect, Verdicts};
 use crate::graph::{Graph, Need, Owner, ResourceId, Why};
+use crate::knob::MOST_VIEWS;
 use crate::stages::depth_layers::{self, Eye, HostMapView, LightLayers, MapView, Projection};
 use crate::stages::hierarchy::{self, Sizes};
 use crate::stages::views::inner::{self, Inner};
-use crate::stages::views::{MOST_VIEWS, Region, Served, Views};
+use crate::stages::views::{Region, Served, Views};
 use crate::stages::visibility::{self, Constants, GBuffer, NormalConstants};
 use crate::techniques::hard::{self, Filter};
 use crate::techniques::room::PassInputs;
@@ -172,7 +173,10 @@ impl FrameInputs<'_> {
 pub(crate) fn all_passes(description: &Description, limits: Limits) -> Graph {
     let room = description.technique.room();
     let view = MapView { side: room.maps().side, ..PLACEHOLDER };
-    let served = vec![Served { map: view, region: Region::ALL }; room.most_served() as usize];
+    let served = vec![
+        Served { map: view, region: Region::ALL, deepest: view.far };
+        room.most_served() as usize
+    ];
     let frame = FrameInputs {
         light: &RectangleLight::unit(),
         occluders: &served,
@@ -252,6 +256,7 @@ pub(super) fn build(
     let inputs = PassInputs {
         light: frame.light,
         occluders: &frame.occluders[0].map,
+        deepest: frame.occluders[0].deepest,
         view: 0,
         receivers: &frame.receivers,
         views: frame.views,
@@ -298,7 +303,13 @@ pub(super) fn build(
             }),
             ..layers
         };
-        let inputs = PassInputs { occluders: map, view: view as u32, layers: &layers, ..inputs };
+        let inputs = PassInputs {
+            occluders: map,
+            deepest: frame.occluders[view].deepest,
+            view: view as u32,
+            layers: &layers,
+            ..inputs
+        };
         nearest = room.declare(graph, &inputs);
     }
     graph.declares_anew();

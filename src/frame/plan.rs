@@ -6,8 +6,9 @@ use super::doubts::{Doubt, Sight};
 use super::draws::{DrawList, MeshDraw};
 use super::reuse::Reuse;
 use super::triangles::TriangleList;
+use super::views::PlannedView;
 use crate::effects::Verdicts;
-use crate::graph::{self, MeshList, ResourceId};
+use crate::graph::{self, MeshList, ResourceId, Why};
 use crate::lent::{Geometry, HostImage, LightIndex, Slot, TechniqueIndex};
 use crate::technique::Technique;
 use ash::vk;
@@ -30,6 +31,9 @@ pub struct FramePlan {
     pub(crate) stamp: Stamp,
     pub(crate) reuse: Reuse,
     pub(super) sight: Sight,
+    /// The views that share the pixels, and why there are so many; empty where the technique has none.
+    pub(super) views: Vec<PlannedView>,
+    pub(super) why_views: Why,
     pub(super) accesses: Vec<HostAccess>,
     pub(super) occluders: DrawList,
     pub(super) receivers: DrawList,
@@ -51,6 +55,8 @@ impl Default for FramePlan {
             stamp: Stamp::default(),
             reuse: Reuse::default(),
             sight: Sight::default(),
+            views: Vec::new(),
+            why_views: Why::default(),
             accesses: Vec::new(),
             occluders: DrawList::default(),
             receivers: DrawList::default(),
@@ -114,12 +120,28 @@ impl FramePlan {
         self.sight.doubts()
     }
 
+    /// The views through which the frame sees the light's occluders, and that share its pixels; the finest first. There
+    /// are none where nothing can be shadowed, or the technique draws no maps from the light's centre or behind it.
+    pub fn views(&self) -> &[PlannedView] {
+        &self.views
+    }
+
+    /// Why there are as many views as there are; empty where there are none.
+    pub fn why_views(&self) -> String {
+        self.why_views.to_string()
+    }
+
     /// A report for people: the doubts, which passes run and why, which do not and why not, how the camera is
-    /// understood, and which effects are simulated or left out, with a bound on the error of each that is left out.
+    /// understood, the views of the light and why there are so many, and which effects are simulated or left out, with a bound on the error of each that is left out.
     pub fn explain(&self) -> String {
         let doubts: String =
             self.doubts().iter().map(|doubt| format!("doubt: {doubt}\n")).collect();
-        format!("{doubts}{}\n{}\n{}", self.plan.table(), self.sight, self.verdicts)
+        let views: String = self.views.iter().map(|view| format!("  {view}\n")).collect();
+        let views = match self.views.len() {
+            0 => views,
+            count => format!("views: {count}, since {}\n{views}", self.why_views),
+        };
+        format!("{doubts}{}\n{}\n{views}{}", self.plan.table(), self.sight, self.verdicts)
     }
 
     /// The barriers to record before the node, for a host that chose

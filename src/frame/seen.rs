@@ -1,8 +1,8 @@
 //! What a camera sees of the receivers: the parts of their boxes within slices of its frustum.
 
 use super::camera::Camera;
+use crate::stages::depth_layers::{FACES, Polygon, cut};
 use glam::{DMat4, DVec3, DVec4};
-use smallvec::SmallVec;
 
 /// The least and largest coordinates of points, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,13 +32,6 @@ impl Bounds {
         self.min.cmple(p).all() && p.cmple(self.max).all()
     }
 }
-
-/// A convex polygon.
-type Polygon = SmallVec<[DVec3; 12]>;
-
-/// The corners of a face of a box or a slice, whose corners are numbered by a bit an axis.
-const FACES: [[usize; 4]; 6] =
-    [[0, 2, 6, 4], [1, 3, 7, 5], [0, 1, 5, 4], [2, 3, 7, 6], [0, 1, 3, 2], [4, 5, 7, 6]];
 
 /// The pyramid that a perspective camera sees, in world space.
 #[derive(Clone, Copy, Debug)]
@@ -72,19 +65,23 @@ impl Frustum {
         (self.rays[1] - self.rays[0]).length() / f64::from(width)
     }
 
-    /// The distances before the eye between which the frustum meets a box along the world's axes; `None` where it does
-    /// not meet it, or where the eye is in it.
-    pub fn distances(&self, of: &Bounds) -> Option<[f64; 2]> {
+    /// The least distance before the eye at which the frustum meets a box along the world's axes; `None` where it does not
+    /// meet it, or where the eye is in it.
+    pub fn distance(&self, of: &Bounds) -> Option<f64> {
         if of.holds(self.eye) {
             return None;
         }
-        let furthest = self.furthest(of);
-        let mut range = [f64::INFINITY, 0.0];
-        self.each_corner(of, [0.0, furthest], |p| {
-            let distance = (p - self.eye).dot(self.forward);
-            range = [range[0].min(distance), range[1].max(distance)];
+        let mut least = f64::INFINITY;
+        self.each_corner(of, [0.0, self.furthest(of)], |p| {
+            least = least.min((p - self.eye).dot(self.forward));
         });
-        (range[0] <= range[1]).then_some(range)
+        least.is_finite().then_some(least)
+    }
+
+    /// The distance of a box's nearest corner before the eye, metres; below 0 behind it.
+    pub fn nearest(&self, of: &Bounds) -> f64 {
+        let distances = corners(of).map(|p| (p - self.eye).dot(self.forward));
+        distances.into_iter().fold(f64::INFINITY, f64::min)
     }
 
     /// The distance of a box's furthest corner before the eye, metres; 0 for a box behind it.
@@ -144,21 +141,4 @@ fn corners(of: &Bounds) -> [DVec3; 8] {
         let end = |axis: usize| if i >> axis & 1 == 1 { of.max[axis] } else { of.min[axis] };
         DVec3::new(end(0), end(1), end(2))
     })
-}
-
-/// The part of a convex polygon on the inner side of a plane: where `plane · (p, 1)` is 0 or more.
-fn cut(polygon: &Polygon, plane: &DVec4) -> Polygon {
-    let height = |p: DVec3| plane.dot(p.extend(1.0));
-    let mut kept = Polygon::new();
-    for (i, &a) in polygon.iter().enumerate() {
-        let b = polygon[(i + 1) % polygon.len()];
-        let (from, to) = (height(a), height(b));
-        if from >= 0.0 {
-            kept.push(a);
-        }
-        if (from >= 0.0) != (to >= 0.0) {
-            kept.push(a + (b - a) * (from / (from - to)));
-        }
-    }
-    kept
 }

@@ -196,6 +196,9 @@ pub struct PassInputs<'a> {
     pub light: &'a RectangleLight,
     /// The occluder map's view.
     pub occluders: &'a MapView,
+    /// The furthest distance at which an occluder may shadow a receiver that the view serves, metres, counted as `near`
+    /// and `far` of the view.
+    pub deepest: f64,
     /// The number of that view, of those that share the pixels.
     pub view: u32,
     /// The receiver map's view.

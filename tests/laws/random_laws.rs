@@ -22,8 +22,8 @@ use proptest::prelude::*;
 use std::cell::RefCell;
 use tally::Tally;
 
-/// A law's own random settings: this many times one of each technique.
-const SETS: u8 = 2;
+/// A law's own random settings: one of each technique with so many views at most, and one with so many.
+const VIEWS: [u32; 2] = [1, 4];
 
 /// The most objects in a scene.
 const OBJECTS: usize = 12;
@@ -33,6 +33,19 @@ type Verdict = Result<(), TestCaseError>;
 /// Evaluates every case with each of some random settings, holds each image between 0 and 1, and lets the law
 /// judge them; what it measured.
 fn judge<S: Strategy>(
+    law: (&'static str, u8, u32),
+    omit: Omit,
+    strategy: &S,
+    pixels: impl Fn(&S::Value) -> &Case,
+    shots: impl Fn(&Rig, usize, &S::Value) -> Vec<Shot>,
+    verdict: impl Fn(&Technique, &[Vec<f32>], &mut Tally) -> Verdict,
+) -> Tally {
+    judge_through(VIEWS, law, omit, strategy, pixels, shots, verdict)
+}
+
+/// The same with so many views at most in either set of settings.
+fn judge_through<S: Strategy>(
+    views: [u32; 2],
     (law, seed, cases): (&'static str, u8, u32),
     omit: Omit,
     strategy: &S,
@@ -46,17 +59,17 @@ fn judge<S: Strategy>(
     let cases = if slow { cases / 2 } else { cases };
     let tally = RefCell::new(Tally::new(law));
     let mut random = Random(u64::from(seed) << 32);
-    for set in 0..SETS {
+    for (set, views) in (0..).zip(views) {
         // A technique that came later draws from numbers of its own, so that the others' settings stay those whose
         // bounds were measured.
         let mut later = Random(u64::from(seed) << 32 | u64::from(set) << 1 | 1);
         let all = Technique::all().into_iter().map(|t| match t {
-            Technique::Traced(_) => random_settings(t, &mut later),
-            _ => random_settings(t, &mut random),
+            Technique::Traced(_) => random_settings(t, views, &mut later),
+            _ => random_settings(t, views, &mut random),
         });
         let settings: Vec<_> = all.collect();
         let rig = RefCell::new(Rig::new(&device, &settings, omit));
-        hold(cases, seed.wrapping_mul(SETS).wrapping_add(set), strategy, |value| {
+        hold(cases, seed.wrapping_mul(2).wrapping_add(set), strategy, |value| {
             let (mut rig, mut tally) = (rig.borrow_mut(), tally.borrow_mut());
             let case = pixels(&value);
             rig.look(case);

@@ -191,15 +191,19 @@ impl Random {
 const MOST: [(&str, f64); 4] =
     [("receiver_map", 40.0), ("samples", 12.0), ("lines", 2.0), ("rays", 40.0)];
 
-/// A technique with every knob anywhere in its range, but for what costs much ([`MOST`]).
+/// A technique with every knob anywhere in its range, but for what costs much ([`MOST`]), and up to so many views.
 ///
 /// # Panics
 /// Where a range is none.
-pub fn random_settings(plain: Technique, random: &mut Random) -> Technique {
+pub fn random_settings(plain: Technique, views: u32, random: &mut Random) -> Technique {
     loop {
         let mut technique = plain.with_map(16 + random.below(18) as u32).unwrap();
         for knob in plain.knobs().iter().filter(|k| k.key != "map") {
-            technique.set(knob.key, &random_value(knob, random)).unwrap_or_else(|e| panic!("{e}"));
+            let value = match knob.key {
+                "views" => views.to_string(),
+                _ => random_value(knob, random),
+            };
+            technique.set(knob.key, &value).unwrap_or_else(|e| panic!("{e}"));
         }
         // A rectangle has four edges.
         if let Technique::LinearLight(lines) = &mut technique

@@ -2,10 +2,35 @@
 
 use crate::RectangleLight;
 use crate::lent::MeshBounds;
-use glam::{DMat4, DVec3};
+use glam::{DMat4, DVec2, DVec3, DVec4};
+use smallvec::SmallVec;
 
 /// A box is flat where its smallest extent is no more than this share of its largest.
 const FLAT: f64 = 1e-6;
+
+/// A convex polygon.
+pub(crate) type Polygon = SmallVec<[DVec3; 12]>;
+
+/// The corners of a box's faces, which are numbered by a bit an axis.
+pub(crate) const FACES: [[usize; 4]; 6] =
+    [[0, 2, 6, 4], [1, 3, 7, 5], [0, 1, 5, 4], [2, 3, 7, 6], [0, 1, 3, 2], [4, 5, 7, 6]];
+
+/// The part of a convex polygon on the inner side of a plane: where `plane · (p, 1)` is 0 or more.
+pub(crate) fn cut(polygon: &Polygon, plane: &DVec4) -> Polygon {
+    let height = |p: DVec3| plane.dot(p.extend(1.0));
+    let mut kept = Polygon::new();
+    for (i, &a) in polygon.iter().enumerate() {
+        let b = polygon[(i + 1) % polygon.len()];
+        let (from, to) = (height(a), height(b));
+        if from >= 0.0 {
+            kept.push(a);
+        }
+        if (from >= 0.0) != (to >= 0.0) {
+            kept.push(a + (b - a) * (from / (from - to)));
+        }
+    }
+    kept
+}
 
 /// A mesh's box in light space, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,6 +85,26 @@ impl LightBox {
         let up = DVec3::new(0.0, 0.0, z);
         let corners = self.corners.map(|p| p + up);
         Self { corners, min: self.min + up, max: self.max + up, ..*self }
+    }
+
+    /// The least z of the part of the box whose x and y lie between `min` and `max`; infinite where there is none.
+    pub fn least_z_within(&self, min: DVec2, max: DVec2) -> f64 {
+        let inside = self.min.truncate().cmpge(min).all() && self.max.truncate().cmple(max).all();
+        if inside {
+            return self.min.z;
+        }
+        let planes = [
+            DVec4::new(1.0, 0.0, 0.0, -min.x),
+            DVec4::new(0.0, 1.0, 0.0, -min.y),
+            DVec4::new(-1.0, 0.0, 0.0, max.x),
+            DVec4::new(0.0, -1.0, 0.0, max.y),
+        ];
+        let of_face = |face: &[usize; 4]| {
+            let whole: Polygon = face.iter().map(|&i| self.corners[i]).collect();
+            let part = planes.iter().fold(whole, |part, plane| cut(&part, plane));
+            part.iter().map(|p| p.z).fold(f64::INFINITY, f64::min)
+        };
+        FACES.iter().map(of_face).fold(f64::INFINITY, f64::min)
     }
 
     /// The box's edge along one of the mesh's axes.

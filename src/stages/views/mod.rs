@@ -8,10 +8,10 @@ mod sun;
 
 pub use line::Line;
 pub use point::LightPoint;
-pub use served::MOST_VIEWS;
 pub(crate) use served::{Region, Served, fit_served};
 pub(crate) use sun::{Extent, UnderSun, fit_sun};
 
+use crate::knob::MOST_VIEWS;
 use glam::DMat4;
 use smallvec::SmallVec;
 

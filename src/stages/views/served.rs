@@ -12,12 +12,10 @@
 //! same tangents cover less of the light's surroundings, and less light arrives. So the windows of nested views grow
 //! by a constant factor, and each map has texels as fine, over its distance from the axis, as the others.
 
+use crate::graph::Why;
 use crate::stages::depth_layers::{
     Eye, LightBox, MapView, Projection, fit_boxes_within, tangents_within, view_from,
 };
-
-/// The most views of a light.
-pub const MOST_VIEWS: u32 = 8;
 
 /// The widest window of several views (89°).
 const WIDEST: f64 = 64.0;
@@ -38,6 +36,8 @@ pub(crate) struct Served {
     pub map: MapView,
     /// Where receivers lie whose rays the map holds.
     pub region: Region,
+    /// The furthest distance at which an occluder may shadow one of them, metres, counted as `near` and `far` of the map.
+    pub deepest: f64,
 }
 
 /// The points p of light space for which p.xy lies between `at.xy + slope.xy p.z` and `at.zw + slope.zw p.z`.
@@ -71,7 +71,7 @@ impl Region {
 }
 
 /// Finds the views through which a light of these half-extents sees boxes of occluders, the finest first: one where
-/// that is enough, or up to `most` nested ones; none where nothing lies before the light.
+/// that is enough, or up to `most` nested ones; none where nothing lies before the light. Returns why.
 pub(crate) fn fit_served(
     half: [f64; 2],
     occluders: &[LightBox],
@@ -79,11 +79,11 @@ pub(crate) fn fit_served(
     side: u32,
     most: u32,
     views: &mut Vec<Served>,
-) {
+) -> Why {
     views.clear();
     let widest = match tangents_within(occluders, WIDEST) {
         Some((min, max)) => min.iter().chain(&max).fold(0.0f64, |most, t| most.max(t.abs())),
-        None => return,
+        None => return Why::default(),
     };
     if most > 1 && widest > NARROW && projection != Projection::Orthographic {
         let more = (widest / FINEST).ln() / LEAST_RATIO.ln();
@@ -92,7 +92,17 @@ pub(crate) fn fit_served(
     }
     if views.is_empty() {
         let one = view_from(half, occluders, projection, side);
-        views.extend(one.map(|map| Served { map, region: Region::ALL }));
+        views.extend(one.map(|map| Served { map, region: Region::ALL, deepest: map.far }));
+    }
+    let why = Why::from("occluders lie up to tangents of ").number(widest, 2);
+    let why = why.and(" from the light's axis");
+    match (views.len(), most) {
+        (1, 1) => why.and(", and no more are allowed"),
+        (1, _) if widest <= NARROW => {
+            why.and(", and one shows ").number(NARROW, 0).and(" finely enough")
+        }
+        (1, _) => why.and(", seen from infinitely far"),
+        _ => why.and(", and each shows a part of that as finely as it is far aside"),
     }
 }
 
@@ -118,6 +128,6 @@ fn nested(
             return;
         };
         let region = if nth + 1 < count { Region::opening(half, tangent) } else { Region::ALL };
-        views.push(Served { map, region });
+        views.push(Served { map, region, deepest: map.far });
     }
 }

@@ -122,7 +122,9 @@ impl Fit<'_> {
             };
             sun.occluders.iter().filter(meets)
         };
-        let top = within(window(all[0].z)).map(|b| b.min.z).fold(part[1].z, f64::min);
+        let widest = window(all[0].z);
+        let least = |b: &LightBox| b.least_z_within(widest[0], widest[1]);
+        let top = within(widest).map(least).fold(part[1].z, f64::min);
         let [mut min, mut max] = window(top);
         let region = {
             let (a, b) = (min - origin.truncate(), max - origin.truncate());
@@ -148,6 +150,7 @@ impl Fit<'_> {
         let near = near + MARGIN * near.min(-1e-9 * origin.z.abs());
         let near = near.min(-f64::MIN_POSITIVE);
         Served {
+            deepest: (part[1].z - origin.z).max(near),
             map: MapView { eye: Eye::Infinity, min, max, near, far: 0.0, side: sun.side },
             region,
         }

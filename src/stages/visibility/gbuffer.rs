@@ -1,7 +1,8 @@
 //! The host's G-buffer as passes over its pixels read it.
 
 use crate::graph::{Access, Graph, Need, Pass, ResourceId, Use};
-use crate::stages::views::{MOST_VIEWS, Region, Served};
+use crate::knob::MOST_VIEWS;
+use crate::stages::views::{Region, Served};
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat4, DVec3};
 

@@ -44,6 +44,8 @@ pub struct Place {
     pub plane: f32,
     /// The number of slices.
     pub slices: i32,
+    /// The range of distances that the slices share: metres, or the share of an orthographic map's heights.
+    pub span: f32,
 }
 
 pub(super) fn declare_placement(
@@ -58,9 +60,10 @@ pub(super) fn declare_placement(
     let view = inputs.occluders;
     // Slices of an orthographic map are at heights, whose distances from the light begin below 0.
     let [near, far, eye] = match view.eye {
-        Eye::Behind(behind) => [view.near - behind, view.far - behind, behind],
-        Eye::Infinity => [-view.top(), 0.0, view.top()],
+        Eye::Behind(behind) => [view.near - behind, inputs.deepest - behind, behind],
+        Eye::Infinity => [-view.top(), inputs.deepest - view.far, view.top()],
     };
+    let span = spanned(inputs);
     let pushed = Push::new(&Place {
         near: near as f32,
         far: far as f32,
@@ -68,6 +71,7 @@ pub(super) fn declare_placement(
         // The published place is the bottom; in the middle the error is smaller.
         plane: if settings.is_correlated() { 0.5 } else { 1.0 },
         slices: settings.slices as i32,
+        span: span as f32,
     });
     let mut uses = smallvec![Use::bound(0, placement, Access::ImageWrite)];
     let (name, shader, groups) = match layers {
@@ -84,6 +88,15 @@ pub(super) fn declare_placement(
     };
     graph.push(Pass::compute(name, shader, [groups, 1, 1], pushed, uses, inputs.need));
     placement
+}
+
+/// The range of distances that the slices share, metres; for an orthographic map the share of its heights.
+fn spanned(inputs: &PassInputs) -> f64 {
+    let view = inputs.occluders;
+    match view.eye {
+        Eye::Behind(_) => inputs.deepest - view.near,
+        Eye::Infinity => (inputs.deepest - view.near) / view.top(),
+    }
 }
 
 /// The push constants of `histogram.comp`.
@@ -124,7 +137,7 @@ fn declare_histogram(
                 Eye::Behind(_) => inputs.occluders.near as f32,
                 Eye::Infinity => 0.0,
             },
-            span: (inputs.occluders.far - inputs.occluders.near) as f32,
+            span: spanned(inputs) as f32,
         }),
         smallvec![
             Use::bound(0, layers.front, Access::SampledCompute),

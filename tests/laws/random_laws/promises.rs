@@ -1,6 +1,7 @@
 //! What each technique promises of a law, and why.
 
 use antumbra::Technique;
+use antumbra::stages::depth_layers::Projection;
 use antumbra::techniques::occlusion_textures::{Combine, Placement};
 use antumbra::techniques::soft_shadow_map::Accumulate;
 
@@ -84,7 +85,9 @@ pub enum Rise {
 /// Another occluder anywhere.
 pub fn with_another(settings: &Technique) -> Rise {
     match settings {
-        // Nearer surfaces hide what is behind them for one point of the light, and so they should.
+        // Nearer surfaces hide what is behind them for one point of the light, and so they should. Of several views from
+        // the light's centre, what is nearest decides which one serves a receiver.
+        Technique::Hard(s) if s.views > 1 => Rise::Hides,
         Technique::Hard(_) | Technique::ManyLights(_) => Rise::By(SUMMED),
         // Every face is counted, in slices that stay. What lies behind slices that hide all but 1/1024 is not asked
         // for. Fitted ones move, and what slices have in common is a guess.
@@ -149,6 +152,10 @@ pub fn with_another_elsewhere(settings: &Technique) -> Option<f64> {
         return Some(bound);
     }
     match settings {
+        // What is nearest decides which view serves a receiver.
+        Technique::SoftShadowMap(s) if s.views > 1 => None,
+        Technique::BackProjection(s) if s.views > 1 => None,
+        Technique::RayMarch(s) if s.views > 1 && s.projection == Projection::Centre => None,
         // Texels are added up. A node's closed form is off by the tolerance at most on either side.
         Technique::SoftShadowMap(s) => match s.accumulate {
             Accumulate::Gather => Some(2.0 * f64::from(s.tolerance) + 1e-5),
