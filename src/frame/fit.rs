@@ -3,7 +3,6 @@
 use super::boxes::{Boxes, MeshBoxes, has_triangles};
 use super::hull::Hull;
 use super::odd::Odd;
-use super::parallel::follows_camera;
 use super::passes::PLACEHOLDER;
 use super::placed::Placed;
 use super::{Description, Frame};
@@ -373,6 +372,11 @@ impl Fit {
             w_far: self.shadowed.as_ref().map_or(0.0, |receivers| 1.0 / receivers.far),
         })
     }
+}
+
+/// Whether the views of a frame follow its camera.
+pub(super) fn follows_camera(request: &FitRequest, frame: &Frame) -> bool {
+    request.parallel && request.most_served > 1 && matches!(frame.light.shape(), Shape::Sun { .. })
 }
 
 impl Inputs {

@@ -3,9 +3,8 @@
 use super::accesses::{HostAccess, NodeUse};
 use super::boxes::MeshBoxes;
 use super::doubts::Sight;
-use super::fit::{Fit, FitRequest};
+use super::fit::{Fit, FitRequest, follows_camera};
 use super::inputs::frame_inputs;
-use super::parallel::follows_camera;
 use super::passes::{Clips, Ids, Limits, build};
 use super::plan::{FramePlan, Stamp};
 use super::reuse::{self, Cached, CameraDependence, Revisions};

@@ -6,7 +6,6 @@ use super::seen::{Bounds, Frustum};
 use super::{Description, Frame};
 use crate::graph::Why;
 use crate::lent::MeshInstance;
-use crate::light::Shape;
 use crate::stages::views::{Extent, UnderSun, fit_sun};
 use glam::{DMat4, DVec3};
 use std::f64::consts::PI;
@@ -71,13 +70,8 @@ impl Fit {
     }
 }
 
-/// Whether the views of a frame follow its camera.
-pub(super) fn follows_camera(request: &FitRequest, frame: &Frame) -> bool {
-    request.parallel && request.most_served > 1 && matches!(frame.light.shape(), Shape::Sun { .. })
-}
-
 /// How many times further the furthest part of a sun's view is than its nearest.
-const DEEPER: f64 = 3.5;
+const DEEPER: f64 = 2.0;
 
 /// How many receivers are looked at for the nearest that is seen.
 const LOOKED_AT: usize = 64;

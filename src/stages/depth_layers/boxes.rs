@@ -87,11 +87,12 @@ impl LightBox {
         Self { corners, min: self.min + up, max: self.max + up, ..*self }
     }
 
-    /// The least z of the part of the box whose x and y lie between `min` and `max`; infinite where there is none.
-    pub fn least_z_within(&self, min: DVec2, max: DVec2) -> f64 {
+    /// The least and largest z of the part of the box whose x and y lie between `min` and `max`; the first is the larger
+    /// one where there is none.
+    pub fn z_within(&self, min: DVec2, max: DVec2) -> [f64; 2] {
         let inside = self.min.truncate().cmpge(min).all() && self.max.truncate().cmple(max).all();
         if inside {
-            return self.min.z;
+            return [self.min.z, self.max.z];
         }
         let planes = [
             DVec4::new(1.0, 0.0, 0.0, -min.x),
@@ -99,12 +100,15 @@ impl LightBox {
             DVec4::new(-1.0, 0.0, 0.0, max.x),
             DVec4::new(0.0, -1.0, 0.0, max.y),
         ];
-        let of_face = |face: &[usize; 4]| {
+        let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+        for face in &FACES {
             let whole: Polygon = face.iter().map(|&i| self.corners[i]).collect();
             let part = planes.iter().fold(whole, |part, plane| cut(&part, plane));
-            part.iter().map(|p| p.z).fold(f64::INFINITY, f64::min)
-        };
-        FACES.iter().map(of_face).fold(f64::INFINITY, f64::min)
+            for p in &part {
+                range = [range[0].min(p.z), range[1].max(p.z)];
+            }
+        }
+        range
     }
 
     /// The box's edge along one of the mesh's axes.

@@ -27,7 +27,7 @@ const NARROW: f64 = 2.0;
 const FINEST: f64 = 1.0;
 
 /// The least factor by which the windows of views grow.
-const LEAST_RATIO: f64 = 2.5;
+const LEAST_RATIO: f64 = 2.0;
 
 /// A view of the occluders, and the receivers that it may serve.
 #[derive(Clone, Copy, Debug, PartialEq)]

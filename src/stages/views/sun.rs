@@ -123,9 +123,12 @@ impl Fit<'_> {
             sun.occluders.iter().filter(meets)
         };
         let widest = window(all[0].z);
-        let least = |b: &LightBox| b.least_z_within(widest[0], widest[1]);
+        let least = |b: &LightBox| b.z_within(widest[0], widest[1])[0];
         let top = within(widest).map(least).fold(part[1].z, f64::min);
         let [mut min, mut max] = window(top);
+        // Receivers of other parts lie in the window, too.
+        let lowest = |b: &LightBox| b.z_within(min, max)[1];
+        let lowest = sun.receivers.iter().map(lowest).fold(part[1].z, f64::max);
         let region = {
             let (a, b) = (min - origin.truncate(), max - origin.truncate());
             let rise = sun.half * (origin.z - top);
@@ -150,7 +153,7 @@ impl Fit<'_> {
         let near = near + MARGIN * near.min(-1e-9 * origin.z.abs());
         let near = near.min(-f64::MIN_POSITIVE);
         Served {
-            deepest: (part[1].z - origin.z).max(near),
+            deepest: (lowest - origin.z).max(near),
             map: MapView { eye: Eye::Infinity, min, max, near, far: 0.0, side: sun.side },
             region,
         }
