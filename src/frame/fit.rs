@@ -217,9 +217,8 @@ impl Fit {
                 .into();
             }
             _ => {
-                let occluders = &self.occluders.boxes;
-                self.why_served =
-                    fit_served(half, occluders, eye, maps.side, most, &mut self.served);
+                let boxes = [&self.occluders.boxes[..], &self.receivers.boxes];
+                self.why_served = fit_served(half, boxes, eye, maps.side, most, &mut self.served);
             }
         }
         self.receiver_view = self.shadowed.unwrap_or(PLACEHOLDER);

@@ -25,3 +25,4 @@ mod ray_march_limits;
 mod sun;
 mod tiles;
 mod traced;
+mod views;

@@ -2,7 +2,7 @@
 
 use crate::RectangleLight;
 use crate::lent::MeshBounds;
-use glam::{DMat4, DVec2, DVec3, DVec4};
+use glam::{DMat4, DVec3, DVec4};
 use smallvec::SmallVec;
 
 /// A box is flat where its smallest extent is no more than this share of its largest.
@@ -87,19 +87,13 @@ impl LightBox {
         Self { corners, min: self.min + up, max: self.max + up, ..*self }
     }
 
-    /// The least and largest z of the part of the box whose x and y lie between `min` and `max`; the first is the larger
-    /// one where there is none.
-    pub fn z_within(&self, min: DVec2, max: DVec2) -> [f64; 2] {
-        let inside = self.min.truncate().cmpge(min).all() && self.max.truncate().cmple(max).all();
-        if inside {
+    /// The least and largest z of the part of the box within four planes, where each `plane · (p, 1)` is 0 or more; the
+    /// first is the larger one where there is none.
+    pub fn z_within(&self, planes: &[DVec4; 4]) -> [f64; 2] {
+        let is_inside = |p: DVec3| planes.iter().all(|plane| plane.dot(p.extend(1.0)) >= 0.0);
+        if self.corners.iter().all(|&p| is_inside(p)) {
             return [self.min.z, self.max.z];
         }
-        let planes = [
-            DVec4::new(1.0, 0.0, 0.0, -min.x),
-            DVec4::new(0.0, 1.0, 0.0, -min.y),
-            DVec4::new(-1.0, 0.0, 0.0, max.x),
-            DVec4::new(0.0, -1.0, 0.0, max.y),
-        ];
         let mut range = [f64::INFINITY, f64::NEG_INFINITY];
         for face in &FACES {
             let whole: Polygon = face.iter().map(|&i| self.corners[i]).collect();

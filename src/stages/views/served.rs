@@ -16,6 +16,7 @@ use crate::graph::Why;
 use crate::stages::depth_layers::{
     Eye, LightBox, MapView, Projection, fit_boxes_within, tangents_within, view_from,
 };
+use glam::DVec4;
 
 /// The widest window of several views (89°).
 const WIDEST: f64 = 64.0;
@@ -74,7 +75,7 @@ impl Region {
 /// that is enough, or up to `most` nested ones; none where nothing lies before the light. Returns why.
 pub(crate) fn fit_served(
     half: [f64; 2],
-    occluders: &[LightBox],
+    [occluders, receivers]: [&[LightBox]; 2],
     projection: Projection,
     side: u32,
     most: u32,
@@ -88,7 +89,7 @@ pub(crate) fn fit_served(
     if most > 1 && widest > NARROW && projection != Projection::Orthographic {
         let more = (widest / FINEST).ln() / LEAST_RATIO.ln();
         let count = (1 + more.ceil() as u32).min(most);
-        nested(half, occluders, projection, side, widest, count, views);
+        nested(half, [occluders, receivers], projection, side, widest, count, views);
     }
     if views.is_empty() {
         let one = view_from(half, occluders, projection, side);
@@ -109,7 +110,7 @@ pub(crate) fn fit_served(
 /// Finds several views whose windows reach up to `widest`.
 fn nested(
     half: [f64; 2],
-    occluders: &[LightBox],
+    [occluders, receivers]: [&[LightBox]; 2],
     projection: Projection,
     side: u32,
     widest: f64,
@@ -127,7 +128,23 @@ fn nested(
             views.clear();
             return;
         };
-        let region = if nth + 1 < count { Region::opening(half, tangent) } else { Region::ALL };
-        views.push(Served { map, region, deepest: map.far });
+        let is_last = nth + 1 == count;
+        // The part of a box that lies outside the region has no receiver for the view.
+        let planes = opening(half, tangent);
+        let furthest = |b: &LightBox| if is_last { b.max.z } else { b.z_within(&planes)[1] };
+        let furthest = receivers.iter().map(furthest).fold(map.near - behind, f64::max);
+        let deepest = furthest.min(map.far - behind);
+        let region = if is_last { Region::ALL } else { Region::opening(half, tangent) };
+        views.push(Served { map, region, deepest: deepest + behind });
     }
+}
+
+/// The planes around the points under `tangent` or less beyond the rim of a light of these half-extents.
+fn opening([x, y]: [f64; 2], tangent: f64) -> [DVec4; 4] {
+    [
+        DVec4::new(1.0, 0.0, tangent, x),
+        DVec4::new(0.0, 1.0, tangent, y),
+        DVec4::new(-1.0, 0.0, tangent, x),
+        DVec4::new(0.0, -1.0, tangent, y),
+    ]
 }

@@ -13,7 +13,7 @@
 
 use super::{Region, Served};
 use crate::stages::depth_layers::{Eye, LightBox, MapView};
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, DVec4};
 
 /// The margin above the highest point and below the lowest, as a share of the range of heights.
 const MARGIN: f64 = 1e-3;
@@ -123,11 +123,13 @@ impl Fit<'_> {
             sun.occluders.iter().filter(meets)
         };
         let widest = window(all[0].z);
-        let least = |b: &LightBox| b.z_within(widest[0], widest[1])[0];
+        let around = column(widest);
+        let least = |b: &LightBox| b.z_within(&around)[0];
         let top = within(widest).map(least).fold(part[1].z, f64::min);
         let [mut min, mut max] = window(top);
         // Receivers of other parts lie in the window, too.
-        let lowest = |b: &LightBox| b.z_within(min, max)[1];
+        let around = column([min, max]);
+        let lowest = |b: &LightBox| b.z_within(&around)[1];
         let lowest = sun.receivers.iter().map(lowest).fold(part[1].z, f64::max);
         let region = {
             let (a, b) = (min - origin.truncate(), max - origin.truncate());
@@ -158,6 +160,16 @@ impl Fit<'_> {
             region,
         }
     }
+}
+
+/// The planes around the points whose x and y lie in a window.
+fn column([min, max]: [DVec2; 2]) -> [DVec4; 4] {
+    [
+        DVec4::new(1.0, 0.0, 0.0, -min.x),
+        DVec4::new(0.0, 1.0, 0.0, -min.y),
+        DVec4::new(-1.0, 0.0, 0.0, max.x),
+        DVec4::new(0.0, -1.0, 0.0, max.y),
+    ]
 }
 
 /// A window with a texel more on each side.
