@@ -9,7 +9,7 @@ use super::{Description, Frame};
 use crate::Error;
 use crate::effects::{Seen, Situation};
 use crate::graph::{Need, Why};
-use crate::light::{Light, RectangleLight, Shape};
+use crate::light::{Light, RectangleLight};
 use crate::stages::depth_layers::{self, HostMapView, LightBox, MapView, Projection};
 use crate::stages::views::{Extent, Region, Served, Views, fit_served};
 use crate::technique::Technique;
@@ -205,7 +205,11 @@ impl Fit {
         let map = self.centre.unwrap_or(PLACEHOLDER);
         self.alone = Served { map, deepest: map.far, ..ALONE };
         self.served.clear();
+        let tangent =
+            frame.light.tangent().filter(|_| request.parallel && self.host_maps.is_none());
         match eye {
+            // A sun's views follow from the camera, below.
+            _ if tangent.is_some() => {}
             Projection::Centre
                 if most == 1 || self.host_maps.is_some() || frame.window.is_some() =>
             {
@@ -237,11 +241,8 @@ impl Fit {
             }
             _ => None,
         };
-        if let (true, Shape::Sun { angular_size }) = (request.parallel, frame.light.shape())
-            && self.need.is_yes()
-            && self.host_maps.is_none()
-        {
-            self.fit_parallel(description, request, frame, (0.5 * angular_size).tan());
+        if let Some(tangent) = tangent.filter(|_| self.need.is_yes()) {
+            self.fit_parallel(description, request, frame, tangent);
         }
         Ok(())
     }
@@ -375,7 +376,7 @@ impl Fit {
 
 /// Whether the views of a frame follow its camera.
 pub(super) fn follows_camera(request: &FitRequest, frame: &Frame) -> bool {
-    request.parallel && request.most_served > 1 && matches!(frame.light.shape(), Shape::Sun { .. })
+    request.parallel && request.most_served > 1 && frame.light.tangent().is_some()
 }
 
 impl Inputs {

@@ -124,14 +124,19 @@ fn parts_seen<'a>(
     if nearest <= 0.0 {
         return "the camera sees no receiver".into();
     }
-    let whole = frustum.slice(&all, [0.0, furthest], sun_from_world);
-    let shown = whole.max.min(occluders.max) - whole.min.max(occluders.min);
-    let texel = shown.truncate().max_element().max(0.0) / f64::from(*side);
     let pixel = nearest * frustum.pixel(*width);
     let why = Why::from("the nearest receiver that is seen is ").number(nearest, 2);
     let why = why.and(" m away, where a pixel is ").number(pixel, 4).and(" m wide");
+    let texel_of = |shown: DVec3| shown.truncate().max_element().max(0.0) / f64::from(*side);
+    let fine = |texel: f64| why.and(", and a texel of one view ").number(texel, 4).and(" m");
+    let texel = texel_of(occluders.max - occluders.min);
     if texel <= FINE_TEXEL * pixel {
-        return why.and(", and a texel of one view ").number(texel, 4).and(" m");
+        return fine(texel);
+    }
+    let whole = frustum.slice(&all, [0.0, furthest], sun_from_world);
+    let texel = texel_of(whole.max.min(occluders.max) - whole.min.max(occluders.min));
+    if texel <= FINE_TEXEL * pixel {
+        return fine(texel);
     }
     let deeper = (furthest / nearest).ln() / DEEPER.ln();
     let count = (deeper.ceil() as u32).clamp(1, *most);

@@ -1,7 +1,7 @@
 //! What a camera sees of the receivers: the parts of their boxes within slices of its frustum.
 
 use super::camera::Camera;
-use crate::stages::depth_layers::{FACES, Polygon, cut};
+use crate::stages::depth_layers::cut_faces;
 use glam::{DMat4, DVec3, DVec4};
 
 /// The least and largest coordinates of points, metres.
@@ -124,15 +124,8 @@ impl Frustum {
             DVec4::new(0.0, -1.0, 0.0, of.max.y),
             DVec4::new(0.0, 0.0, -1.0, of.max.z),
         ];
-        for (corners, planes) in [(corners(of), &of_slice), (own, &of_box)] {
-            for face in FACES {
-                let mut polygon: Polygon = face.iter().map(|&i| corners[i]).collect();
-                for plane in planes {
-                    polygon = cut(&polygon, plane);
-                }
-                polygon.iter().for_each(|p| add(*p));
-            }
-        }
+        cut_faces(&corners(of), &of_slice, &mut add);
+        cut_faces(&own, &of_box, &mut add);
     }
 }
 

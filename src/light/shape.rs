@@ -286,6 +286,14 @@ impl Light {
         }
     }
 
+    /// The tangent of half a sun's angular size; `None` for a lamp.
+    pub(crate) fn tangent(&self) -> Option<f64> {
+        match self.shape() {
+            Shape::Sun { angular_size } => Some((0.5 * angular_size).tan()),
+            _ => None,
+        }
+    }
+
     /// Whether the light has a plane and shines to one side of it: what lies at or behind that plane is not lit by it.
     ///
     /// True of a rectangle, line, polygon and disc. A sphere, capsule and point shine to all sides, and a sun has no

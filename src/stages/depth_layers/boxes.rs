@@ -9,14 +9,14 @@ use smallvec::SmallVec;
 const FLAT: f64 = 1e-6;
 
 /// A convex polygon.
-pub(crate) type Polygon = SmallVec<[DVec3; 12]>;
+type Polygon = SmallVec<[DVec3; 12]>;
 
 /// The corners of a box's faces, which are numbered by a bit an axis.
-pub(crate) const FACES: [[usize; 4]; 6] =
+const FACES: [[usize; 4]; 6] =
     [[0, 2, 6, 4], [1, 3, 7, 5], [0, 1, 5, 4], [2, 3, 7, 6], [0, 1, 3, 2], [4, 5, 7, 6]];
 
 /// The part of a convex polygon on the inner side of a plane: where `plane · (p, 1)` is 0 or more.
-pub(crate) fn cut(polygon: &Polygon, plane: &DVec4) -> Polygon {
+fn cut(polygon: &Polygon, plane: &DVec4) -> Polygon {
     let height = |p: DVec3| plane.dot(p.extend(1.0));
     let mut kept = Polygon::new();
     for (i, &a) in polygon.iter().enumerate() {
@@ -30,6 +30,30 @@ pub(crate) fn cut(polygon: &Polygon, plane: &DVec4) -> Polygon {
         }
     }
     kept
+}
+
+/// Calls `add` with every corner of the parts of a box's faces that lie within some planes, on the side where
+/// `plane · (p, 1)` is 0 or more.
+pub(crate) fn cut_faces(corners: &[DVec3; 8], planes: &[DVec4], mut add: impl FnMut(DVec3)) {
+    // The planes that a corner lies outside of, a bit each.
+    let outside = corners.map(|p| {
+        let beyond = |(i, plane): (usize, &DVec4)| u32::from(plane.dot(p.extend(1.0)) < 0.0) << i;
+        planes.iter().enumerate().map(beyond).sum::<u32>()
+    });
+    for face in &FACES {
+        let [all, any] =
+            face.iter().fold([u32::MAX, 0], |[all, any], &i| [all & outside[i], any | outside[i]]);
+        if all != 0 {
+            continue;
+        }
+        let mut polygon: Polygon = face.iter().map(|&i| corners[i]).collect();
+        for (i, plane) in planes.iter().enumerate() {
+            if any >> i & 1 == 1 {
+                polygon = cut(&polygon, plane);
+            }
+        }
+        polygon.iter().for_each(|p| add(*p));
+    }
 }
 
 /// A mesh's box in light space, metres.
@@ -90,18 +114,8 @@ impl LightBox {
     /// The least and largest z of the part of the box within four planes, where each `plane · (p, 1)` is 0 or more; the
     /// first is the larger one where there is none.
     pub fn z_within(&self, planes: &[DVec4; 4]) -> [f64; 2] {
-        let is_inside = |p: DVec3| planes.iter().all(|plane| plane.dot(p.extend(1.0)) >= 0.0);
-        if self.corners.iter().all(|&p| is_inside(p)) {
-            return [self.min.z, self.max.z];
-        }
         let mut range = [f64::INFINITY, f64::NEG_INFINITY];
-        for face in &FACES {
-            let whole: Polygon = face.iter().map(|&i| self.corners[i]).collect();
-            let part = planes.iter().fold(whole, |part, plane| cut(&part, plane));
-            for p in &part {
-                range = [range[0].min(p.z), range[1].max(p.z)];
-            }
-        }
+        cut_faces(&self.corners, planes, |p| range = [range[0].min(p.z), range[1].max(p.z)]);
         range
     }
 

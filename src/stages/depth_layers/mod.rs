@@ -25,7 +25,7 @@ mod eye;
 mod host_maps;
 mod view;
 
-pub(crate) use boxes::{FACES, LightBox, Polygon, cut};
+pub(crate) use boxes::{LightBox, cut_faces};
 pub(crate) use eye::view_from;
 pub use eye::{Projection, view};
 pub(crate) use host_maps::HostMapView;

@@ -78,7 +78,10 @@ pub(crate) fn fit_sun(sun: &UnderSun, views: &mut Vec<Served>) -> Option<SunView
         }
         views.push(served);
     }
-    let alone = Fit { stepped: false, ..fit }.view(&receivers, false);
+    let alone = match sun.parts {
+        [] => views[0],
+        _ => Fit { stepped: false, ..fit }.view(&receivers, false),
+    };
     let [min, max] = receivers.map(|p| (p - origin).truncate().to_array());
     let top = (receivers[0].z - origin.z).min(-MARGIN * (far - near));
     let [min, max] = padded(min, max, sun.receiver_side);
@@ -123,14 +126,13 @@ impl Fit<'_> {
             sun.occluders.iter().filter(meets)
         };
         let widest = window(all[0].z);
-        let around = column(widest);
-        let least = |b: &LightBox| b.z_within(&around)[0];
+        let least = |b: &LightBox| z_within(b, widest)[0];
         let top = within(widest).map(least).fold(part[1].z, f64::min);
         let [mut min, mut max] = window(top);
         // Receivers of other parts lie in the window, too.
-        let around = column([min, max]);
-        let lowest = |b: &LightBox| b.z_within(&around)[1];
-        let lowest = sun.receivers.iter().map(lowest).fold(part[1].z, f64::max);
+        let lowest = |b: &LightBox| z_within(b, [min, max])[1];
+        let lowest = sun.receivers.iter().filter(|b| b.max.z > part[1].z).map(lowest);
+        let lowest = lowest.fold(part[1].z, f64::max);
         let region = {
             let (a, b) = (min - origin.truncate(), max - origin.truncate());
             let rise = sun.half * (origin.z - top);
@@ -162,14 +164,17 @@ impl Fit<'_> {
     }
 }
 
-/// The planes around the points whose x and y lie in a window.
-fn column([min, max]: [DVec2; 2]) -> [DVec4; 4] {
-    [
+/// The least and largest z of the part of a box whose x and y lie in a window.
+fn z_within(b: &LightBox, [min, max]: [DVec2; 2]) -> [f64; 2] {
+    if b.min.truncate().cmpge(min).all() && b.max.truncate().cmple(max).all() {
+        return [b.min.z, b.max.z];
+    }
+    b.z_within(&[
         DVec4::new(1.0, 0.0, 0.0, -min.x),
         DVec4::new(0.0, 1.0, 0.0, -min.y),
         DVec4::new(-1.0, 0.0, 0.0, max.x),
         DVec4::new(0.0, -1.0, 0.0, max.y),
-    ]
+    ])
 }
 
 /// A window with a texel more on each side.
