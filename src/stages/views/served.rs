@@ -148,3 +148,7 @@ fn opening([x, y]: [f64; 2], tangent: f64) -> [DVec4; 4] {
         DVec4::new(0.0, -1.0, tangent, y),
     ]
 }
+
+#[cfg(test)]
+#[path = "served_tests.rs"]
+mod tests;

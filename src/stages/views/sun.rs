@@ -25,6 +25,7 @@ const STEPS: f64 = 8.0;
 pub(crate) type Extent = [DVec3; 2];
 
 /// What a sun's views are fitted to; boxes are in the sun's space, metres.
+#[derive(Clone, Copy)]
 pub(crate) struct UnderSun<'a> {
     /// The tangent of half its angular size.
     pub half: f64,
