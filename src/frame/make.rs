@@ -23,6 +23,8 @@ pub(crate) struct Workspace {
     graph: Graph,
     compiler: Compiler,
     borders: Vec<Border>,
+    /// The sizes of the largest graph of any light so far.
+    largest: [usize; 4],
     pub mesh_boxes: MeshBoxes,
 }
 
@@ -110,7 +112,7 @@ pub(crate) fn plan_into(
     frame.check(description, room)?;
     let light = room.turned(&frame.light);
     let frame = &Frame { light, ..*frame };
-    let Workspace { graph, compiler, borders, mesh_boxes } = workspace;
+    let Workspace { graph, compiler, borders, largest, mesh_boxes } = workspace;
     let Memory { fit, camera, built, drawn } = memory;
     let request = FitRequest::of(&description.technique);
     fit.update(description, &request, frame, mesh_boxes)?;
@@ -143,9 +145,12 @@ pub(crate) fn plan_into(
     let place = frame.border_barriers == BorderBarriers::Node;
     let same = before.as_ref().is_some_and(|(_, before)| *before == shape);
     compiler.compile(graph, borders, place, same, &mut plan.plan)?;
-    // The compiler has exchanged graphs with the plan: make room for the next frame's passes now.
+    // The compiler has exchanged graphs with the plan: make room for the next light's passes now.
+    for (most, size) in largest.iter_mut().zip(plan.plan.graph.sizes()) {
+        *most = size.max(*most);
+    }
     graph.clear();
-    graph.reserve_for(&plan.plan.graph);
+    graph.reserve(*largest);
     let of = before.map_or_else(|| description.clone(), |(of, _)| of);
     *built = Some((of, shape));
     plan.accesses.clear();

@@ -156,13 +156,18 @@ impl Graph {
         self.again = 0..0;
     }
 
-    /// Reserves memory for a graph as large as `other`.
-    pub(crate) fn reserve_for(&mut self, other: &Self) {
-        self.resources.reserve(other.resources.len());
-        self.reasons.reserve(other.reasons.len());
-        self.passes.reserve(other.passes.len());
-        self.kinds.reserve(other.kinds.len());
-        self.firsts.reserve(other.firsts.len());
+    /// How many resources, reasons, passes and kinds of them there are.
+    pub(crate) fn sizes(&self) -> [usize; 4] {
+        [self.resources.len(), self.reasons.len(), self.passes.len(), self.firsts.len()]
+    }
+
+    /// Reserves memory for a graph of these sizes.
+    pub(crate) fn reserve(&mut self, [resources, reasons, passes, kinds]: [usize; 4]) {
+        self.resources.reserve(resources);
+        self.reasons.reserve(reasons);
+        self.passes.reserve(passes);
+        self.kinds.reserve(passes);
+        self.firsts.reserve(kinds);
     }
 
     /// Whether two graphs differ in push constants, grids and reasons alone: then they run the same passes behind the

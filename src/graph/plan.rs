@@ -43,7 +43,7 @@ pub struct ResourceBarrier {
 }
 
 /// The barriers before a pass, stored in the step itself for as many as passes usually have.
-pub type Barriers = SmallVec<[ResourceBarrier; 6]>;
+pub type Barriers = SmallVec<[ResourceBarrier; 10]>;
 
 /// A pass that runs, and the barriers before it.
 #[derive(Clone, Debug, PartialEq, Eq)]

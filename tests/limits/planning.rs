@@ -7,8 +7,8 @@ use antumbra::graph::{MeshList, Scope};
 use antumbra::scene::{Role, Scene, generate};
 use antumbra::truth::{Exact, PolygonLight, Receiver};
 use antumbra::{
-    Description, Frame, FramePlans, Geometry, HostImage, MeshBuffers, MeshInstance, RectangleLight,
-    Slot,
+    Description, Frame, FramePlans, Geometry, HostImage, Light, MeshBuffers, MeshInstance,
+    RectangleLight, Slot,
 };
 use antumbra_tests::measure::settings;
 use ash::vk::{self, Handle};
@@ -23,7 +23,9 @@ fn meshes(shift: f64) -> Vec<MeshInstance> {
     let ground = mesh([[-9.0, 0.0, -9.0], [9.0, 0.0, 9.0]], DVec3::ZERO, Role::Receiver);
     let at = |i: u32| DVec3::new(shift + 0.5 * f64::from(i) - 5.0, 1.0, 0.1 * f64::from(i % 5));
     let cube = |i| mesh([[-0.2; 3], [0.2; 3]], at(i), Role::Both);
-    std::iter::once(ground).chain((0..20).map(cube)).collect()
+    // Several views show a wall that reaches up to a lamp.
+    let wall = mesh([[-0.1, 0.0, -3.0], [0.1, 9.0, 3.0]], DVec3::new(7.0, 0.0, 0.0), Role::Both);
+    std::iter::once(ground).chain((0..20).map(cube)).chain([wall]).collect()
 }
 
 /// A G-buffer's depth that nobody looks at.
@@ -40,10 +42,18 @@ fn image() -> HostImage {
 }
 
 /// Frames of four lights, at a moment.
-fn frames(meshes: &[MeshInstance], moment: u32, stays: bool) -> [Frame<'_>; 4] {
+fn frames(meshes: &[MeshInstance], moment: u32, stays: bool, with_sun: bool) -> [Frame<'_>; 4] {
     [0, 1, 2, 3].map(|light_index| {
-        let light = generate::square_light(0.3).unwrap();
-        let camera = DMat4::from_scale(DVec3::splat(4.0 + 0.1 * f64::from(moment)));
+        let lamp = Light::from(generate::square_light(0.3).unwrap());
+        let sun = Light::sun(DVec3::new(0.3, -1.0, 0.2), 0.01, DVec3::ZERO, 13.0).unwrap();
+        let light = if light_index == 2 && with_sun { sun } else { lamp };
+        // Reversed depth without a far plane, from 4 m above.
+        let clip_from_view = DMat4::from_cols_array(&[
+            1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.1, 0.0,
+        ]);
+        let above = DVec3::new(0.1 * f64::from(moment), 4.0, 0.5);
+        let world_from_view = DMat4::from_translation(above) * DMat4::from_rotation_x(-0.8);
+        let camera = world_from_view * clip_from_view.inverse();
         Frame {
             light_index: LightIndex(light_index),
             background: Some(0.0),
@@ -74,7 +84,9 @@ fn planning_takes_no_memory_after_the_first_frame() {
             // To and fro: where more meshes matter than ever before, their list grows.
             for (nth, moment) in [2, 1, 0, 1, 2, 1, 0].into_iter().enumerate() {
                 let meshes = meshes(if stays { 0.0 } else { 0.05 * f64::from(moment) });
-                let frames = frames(&meshes, moment, stays);
+                // The weights of round lights are made anew for each plan of traced.
+                let with_sun = !words.contains("traced");
+                let frames = frames(&meshes, moment, stays, with_sun);
                 let taken = measure(|| {
                     plan_all(&description, Limits::default(), &frames, &mut plans).unwrap();
                 });

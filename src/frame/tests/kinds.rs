@@ -20,23 +20,84 @@ pub(super) const WAYS: [&str; 14] = [
     "linear-light",
 ];
 
+const WALL: MeshBounds = [[-0.1, 0.0, -3.0], [0.1, 9.0, 3.0]];
+
+/// A perspective camera 3 m above the ground, with reversed depth.
+fn looking_down() -> DMat4 {
+    let clip_from_view = DMat4::from_cols_array(&[
+        1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.1, 0.0,
+    ]);
+    let world_from_view =
+        DMat4::from_translation(DVec3::new(0.0, 3.0, 0.5)) * DMat4::from_rotation_x(-0.3);
+    world_from_view * clip_from_view.inverse()
+}
+
+/// Each technique with views is seen through several where walls reach up to a lamp, or a sun shines on wide ground.
+#[test]
+fn several_views_are_planned_where_they_are_called_for() {
+    let wide = [[-150.0, 0.0, -150.0], [150.0, 0.0, 150.0]];
+    let yard = [
+        mesh(wide, DVec3::ZERO, Role::Both),
+        mesh(WALL, DVec3::new(1.0, 0.0, -2.0), Role::Both),
+        mesh(WALL, DVec3::new(60.0, 0.0, -90.0), Role::Both),
+    ];
+    let room = [meshes()[0], meshes()[1], mesh(WALL, DVec3::new(3.0, 0.0, 0.0), Role::Both)];
+    let sun = Light::sun(DVec3::new(0.2, -1.0, 0.1), 0.01, DVec3::ZERO, 220.0).unwrap();
+    for words in
+        ["hard", "pcss", "back-projection", "soft-shadow-map", "ray-march", "occlusion-textures"]
+    {
+        let description = Description { technique: words.parse().unwrap(), ..description(&[]) };
+        let world_from_ndc = looking_down();
+        let lamp = Frame { world_from_ndc, ..frame(&room) };
+        let under_sun = Frame { light: sun, world_from_ndc, ..frame(&yard) };
+        for (frame, is_parallel) in [(lamp, false), (under_sun, true)] {
+            let plan = make(&description, &frame);
+            let views = plan.views();
+            assert!(views.len() > 1 && views.len() <= 4, "{words}: {}", plan.explain());
+            assert!(views.iter().all(|view| view.is_parallel == is_parallel));
+            let texels: Vec<f64> = views.iter().map(|view| view.texel[0]).collect();
+            assert!(is_parallel || texels.is_sorted(), "{words}: the finest first: {texels:?}");
+            let most = plan.plan.steps.iter().map(|s| s.barriers.len()).max();
+            println!("{words}: {most:?} barriers in a step");
+            let said = format!("views: {}, since ", views.len());
+            assert!(plan.explain().contains(&said) && !plan.why_views().is_empty());
+            let mut one = description.clone();
+            one.technique.set("views", "1").unwrap();
+            assert_eq!(make(&one, &frame).views().len(), 1, "{words}");
+        }
+        let few = meshes();
+        assert_eq!(make(&description, &frame(&few)).views().len(), 1, "{words}");
+        assert!(make(&description, &frame(&[])).views().is_empty(), "{words}: nothing is shadowed");
+    }
+}
+
 #[test]
 fn frames_have_the_kinds_that_the_node_was_made_for() {
     let cube = meshes();
     let sheet = vec![cube[0], mesh(GROUND, DVec3::new(0.0, 1.5, 0.0), Role::Occluder)];
+    // Several views show what reaches up to the light's plane.
+    let walls = vec![cube[0], cube[1], mesh(WALL, DVec3::new(3.0, 0.0, 0.0), Role::Both)];
     let low = vec![cube[0], mesh(CUBE, DVec3::new(0.0, 0.01, 0.0), Role::Occluder)];
     for words in WAYS {
         let description =
             Description { technique: words.parse().unwrap(), ..Description::new([64, 48]) };
         let full = full_graph(&description);
         let names = |graph: &graph::Graph| graph.kinds().map(|p| p.name).collect::<Vec<_>>();
-        for (meshes, side) in
-            [(&cube, 0.5), (&sheet, 0.5), (&low, 1e-6), (&sheet, 1e-6), (&Vec::new(), 0.5)]
-        {
-            let light = generate::square_light(side).unwrap();
+        let lamp = |side| Light::from(generate::square_light(side).unwrap());
+        let sun = Light::sun(DVec3::new(0.2, -1.0, 0.1), 0.01, DVec3::ZERO, 6.0).unwrap();
+        for (meshes, light) in [
+            (&cube, lamp(0.5)),
+            (&sheet, lamp(0.5)),
+            (&low, lamp(1e-6)),
+            (&sheet, lamp(1e-6)),
+            (&Vec::new(), lamp(0.5)),
+            (&walls, lamp(0.5)),
+            (&cube, sun),
+            (&walls, sun),
+        ] {
             for omit in [Omit::Nothing, Omit::Invisible, Omit::Below(1.0)] {
                 let description = Description { omit, ..description.clone() };
-                let frame = Frame { light: light.into(), ..frame(meshes) };
+                let frame = Frame { light, world_from_ndc: looking_down(), ..frame(meshes) };
                 let plan = make(&description, &frame);
                 assert_eq!(names(&plan.plan.graph), names(&full), "{words}");
                 assert!(plan.plan.graph.passes().len() <= full.passes().len(), "{words}");
