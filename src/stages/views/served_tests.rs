@@ -85,7 +85,7 @@ fn windows_grow_by_one_factor_up_to_what_lies_furthest_aside() {
     }
 }
 
-/// The same of a sun's views, whose parts need not lie in each other.
+/// Rays to a sun do as well, whose parts need not lie in each other.
 #[test]
 fn rays_to_a_sun_stay_in_the_view_that_serves_their_receiver() {
     let ground = cuboid([-100.0, -80.0, 0.0], [100.0, 80.0, 1.0]);

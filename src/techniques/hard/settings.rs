@@ -7,13 +7,13 @@ use crate::knob::{Field, Knobs};
 pub struct Settings {
     /// The map's side, texels, 1 to 4096; 256 by default.
     pub map: u32,
-    /// The most views of a light, 1 to 8; 4 by default.
+    /// The most views of a light, 1 to 8; 6 by default.
     pub views: u32,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { map: 256, views: 4 }
+        Self { map: 256, views: 6 }
     }
 }
 

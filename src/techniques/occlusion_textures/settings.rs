@@ -51,7 +51,7 @@ choices! { Combine: "product" => Product, "sum" => Sum, "max" => Max, "correlate
 pub struct Settings {
     /// The side of the slices, texels, 1 to 4096; 256 by default.
     pub map: u32,
-    /// The most views of a light, 1 to 8; 4 by default.
+    /// The most views of a light, 1 to 8; 6 by default.
     pub views: u32,
     /// The number of slices, 4 to 32; 16 by default.
     pub slices: u32,
@@ -71,7 +71,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             map: 256,
-            views: 4,
+            views: 6,
             slices: 16,
             placement: Placement::default(),
             prefilter: Prefilter::default(),

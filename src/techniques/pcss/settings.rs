@@ -7,7 +7,7 @@ use crate::knob::{Field, Knobs};
 pub struct Settings {
     /// The map's side, texels, 1 to 4096; 256 by default.
     pub map: u32,
-    /// The most views of a light, 1 to 8; 4 by default.
+    /// The most views of a light, 1 to 8; 6 by default.
     pub views: u32,
     /// The number of taps of the blocker search, and as many again of the filter, 1 to 64; 16 by default.
     pub taps: u32,
@@ -17,7 +17,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { map: 256, views: 4, taps: 16, classify: true }
+        Self { map: 256, views: 6, taps: 16, classify: true }
     }
 }
 

@@ -63,7 +63,7 @@ choices! { Hash: "pcg" => Pcg, "md5" => Md5 }
 pub struct Settings {
     /// The side of the depth layers and the N-buffer, texels, 1 to 4096; 256 by default.
     pub map: u32,
-    /// The most views of a light, 1 to 8; 4 by default.
+    /// The most views of a light, 1 to 8; 6 by default.
     pub views: u32,
     /// Rays a pixel, 1 to 256; 16 by default.
     pub rays: u32,
@@ -91,7 +91,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             map: 256,
-            views: 4,
+            views: 6,
             rays: 16,
             sampling: Sampling::default(),
             hash: Hash::default(),

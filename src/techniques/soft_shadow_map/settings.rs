@@ -55,7 +55,7 @@ pub struct Settings {
     /// The occluder map's side, texels, 1 to 4096; 128 by default. With 256 the median error of twelve scenes is 1.1 %
     /// instead of 1.3, in twice the time (`docs/accuracy.md`).
     pub map: u32,
-    /// The most views of a light, 1 to 8; 4 by default.
+    /// The most views of a light, 1 to 8; 6 by default.
     pub views: u32,
     /// The soft shadow map's side, texels, 1 to 4096; 256 by default. Unused at the pixels.
     pub receiver_map: u32,
@@ -77,7 +77,7 @@ impl Default for Settings {
         Self {
             map: 128,
             receiver_map: 256,
-            views: 4,
+            views: 6,
             receivers: Receivers::default(),
             sides: Sides::default(),
             accumulate: Accumulate::default(),
