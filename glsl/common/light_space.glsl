@@ -391,6 +391,31 @@ float fraction_above(vec2 slope, float c)
     return c > 0.0 ? corner : 1.0 - corner;
 }
 
+// The same of the unit disc, whose half-extents are its radius: a segment of it.
+float fraction_of_disc_above(vec2 slope, float c)
+{
+    float steep = length(slope);
+    if (c >= steep) {
+        return 0.0;
+    }
+    if (c <= -steep) {
+        return 1.0;
+    }
+    float d = c / steep;
+    return (acos(d) - d * sqrt(max(1.0 - d * d, 0.0))) / 3.14159265;
+}
+
+// The point of the unit disc for one of [-1, 1]^2: equal areas go to equal areas (Shirley and Chiu 1997).
+vec2 on_disc(vec2 q)
+{
+    vec2 a = abs(q);
+    float far = a.x > a.y ? q.x : q.y;
+    float near = a.x > a.y ? q.y : q.x;
+    float angle = far == 0.0 ? 0.0 : 0.785398163 * near / far;
+    vec2 p = far * vec2(cos(angle), sin(angle));
+    return a.x > a.y ? p : p.yx;
+}
+
 // ---------------------------------------------------------------------------------------------
 // The test whether a point lies above or below a receiver's own plane, and its largest error.
 //

@@ -45,7 +45,7 @@ layout(push_constant) uniform Push {
 #endif
     vec2 texels_per_unit; // map texels a unit of u and v, or a metre where the projection is orthographic
     vec2 first;           // texel coordinates of u = v = 0
-    vec2 half_light;      // half the light's width and height, m
+    vec2 half_light;      // half the light's width and height, m; tangents for a sun
     float eye;            // how far behind the light the projection point is, m; or the far plane's distance
     float top;            // the height of the near plane; no occluder is higher
     float snap;           // how far a raster moves a vertex, in texels
@@ -63,6 +63,7 @@ bool is_orthographic() { return (push.flags & 1 << 17) != 0; }
 bool is_modern() { return (push.flags & 1 << 19) != 0; }
 bool classifies() { return (push.flags & 1 << 21) != 0; }
 bool filters() { return (push.flags & 1 << 22) != 0; }
+bool is_disc() { return (push.flags & 1 << 28) != 0; }
 int sampling() { return push.flags >> 23 & 3; }
 
 // `#define USUAL` leaves out what only unusual settings need: the rays then take 0.4 of the time.
@@ -98,7 +99,9 @@ vec3 pixel_normal(ivec2 p, Receiver r)
 // The part of the light above the pixel's own plane; all of it where the pixel's surface does not block.
 float part_above(Receiver r)
 {
-    return r.blocks ? fraction_above(r.normal.xy * push.half_light, c_of(r.normal, r.position)) : 1.0;
+    vec2 slope = r.normal.xy * push.half_light;
+    float c = c_of(r.normal, r.position);
+    return !r.blocks ? 1.0 : is_disc() ? fraction_of_disc_above(slope, c) : fraction_above(slope, c);
 }
 
 // The pixel's place in the map. For a receiver without a normal the plane is the map's own and must not be used.
@@ -260,7 +263,8 @@ Found found_by_rays(ivec2 p, Receiver r, float start, float end)
 #endif
     for (int i = 0; i < rays(); ++i) {
         vec2 s = light_sample(sampling(), is_modern(), i, rays(), cell_rows(), uvec2(p), push.seed);
-        vec2 point = (2.0 * s - 1.0) * push.half_light;
+        vec2 q = 2.0 * s - 1.0;
+        vec2 point = (is_disc() ? on_disc(q) : q) * push.half_light;
 #ifdef TEXTURED
         FRACTION weight = emitted_at(s);
         emitted += weight;

@@ -1,8 +1,8 @@
 //! GLSL functions alone, beside their twins; and the harness that does it, with wrong twins.
 
 use antumbra::techniques::common::twin::{
-    dehomogenize, fraction_above, normal_of_plane, plane_normal, towards_viewer, unfolded,
-    unproject,
+    dehomogenize, fraction_above, fraction_of_disc_above, normal_of_plane, on_disc, plane_normal,
+    towards_viewer, unfolded, unproject,
 };
 use antumbra::techniques::common::twin::{magnification, overlap, patch_occlusion};
 use antumbra::techniques::soft_shadow_map::twin::{
@@ -83,6 +83,24 @@ fn both_sides_merged() {
     assert!((merged_sides(0.2_f64, 0.4) - 0.3).abs() < 1e-12);
     assert!((merged_sides(1.0_f64, 0.5) - 1.0).abs() < 1e-12);
     assert!((merged_sides(0.95_f64, 0.55) - 0.85).abs() < 1e-12);
+}
+
+#[test]
+fn parts_and_points_of_discs() {
+    let slope = ((-2.0..2.0f32, -2.0..2.0f32), -2.5..2.5f32);
+    Function::new("common/light_space.glsl", "float fraction_of_disc_above(vec2 slope, float c)")
+        .case(([0.0, 0.0], 0.0))
+        .case(([1.0, 0.0], 0.0))
+        .random(2_000, slope.prop_map(|((x, y), c)| ([x, y], c)))
+        // Drivers' arc cosines are off by 2^-11 of a radian, at most.
+        .f32(Tolerance::absolute(4e-4), |x| vec![fraction_of_disc_above([x[0], x[1]], x[2])])
+        .check(&device());
+    Function::new("common/light_space.glsl", "vec2 on_disc(vec2 q)")
+        .case(([0.0, 0.0],))
+        .case(([1.0, 1.0],))
+        .random(2_000, (-1.0..1.0f32, -1.0..1.0f32).prop_map(|(x, y)| ([x, y],)))
+        .f32(Tolerance::absolute(2e-6), |x| on_disc([x[0], x[1]]).to_vec())
+        .check(&device());
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Discs, which many-lights alone of these techniques takes, and how far from the truth it is.
+//! Discs, which many-lights and ray-march take among the techniques with maps, and how far from the truth they are.
 
 use antumbra::scene::{Scene, generate};
 use antumbra::{Light, RectangleLight};
@@ -30,6 +30,26 @@ fn many_lights_are_a_disc() {
         let error = percent(&truth, &image);
         println!("{samples} points: {error:.2} %");
         assert!(as_measured(error, measured), "{samples} points: {error} %, not {measured}");
+    }
+}
+
+/// Rays go to points of the disc, and what of it lies below a pixel's own plane is a segment.
+#[test]
+fn rays_go_to_a_disc() {
+    let device = device();
+    let scene = card(disc(0.5));
+    let setup = Setup::ground(&scene, 2.2, 128);
+    let square = RectangleLight::facing(DVec3::Y * 4.0, DVec3::NEG_Y, DVec3::X, [1.0; 2]).unwrap();
+    for (sampling, most) in [("low-discrepancy", 0.5), ("jittered", 0.6), ("random", 1.0)] {
+        let words = format!("technique=ray-march map=512 rays=64 sampling={sampling}");
+        let mut stage = setup.stage(&device, &words);
+        let image = setup.visibility(&mut stage);
+        let [right, wrong] = [disc(0.5), square.into()].map(|light| {
+            let (truth, _) = Setup { scene: &card(light), ..setup }.traced(&stage, 2048);
+            percent(&truth, &image)
+        });
+        println!("{sampling}: {right:.2} %, of the square around it {wrong:.2} %");
+        assert!(right < most && wrong > 2.0 * right, "{sampling}: {right} {wrong}");
     }
 }
 

@@ -85,6 +85,29 @@ pub fn nodes_around(map: u32, lo: [f32; 2], hi: [f32; 2]) -> [[i32; 2]; 2] {
     ]
 }
 
+/// The fraction of the unit disc where slope · p is above c: a segment of it.
+pub fn fraction_of_disc_above<T: Float>(slope: [T; 2], c: T) -> T {
+    let steep = (slope[0] * slope[0] + slope[1] * slope[1]).sqrt();
+    if c >= steep {
+        return T::zero();
+    }
+    if c <= -steep {
+        return T::one();
+    }
+    let d = c / steep;
+    let pi = T::from(std::f64::consts::PI).unwrap_or_else(T::nan);
+    (d.acos() - d * (T::one() - d * d).max(T::zero()).sqrt()) / pi
+}
+
+/// The point of the unit disc for one of [−1, 1]²: equal areas go to equal areas (Shirley and Chiu 1997).
+pub fn on_disc<T: Float>([x, y]: [T; 2]) -> [T; 2] {
+    let (far, near) = if x.abs() > y.abs() { (x, y) } else { (y, x) };
+    let quarter = T::from(std::f64::consts::FRAC_PI_4).unwrap_or_else(T::nan);
+    let angle = if far == T::zero() { T::zero() } else { quarter * near / far };
+    let p = [far * angle.cos(), far * angle.sin()];
+    if x.abs() > y.abs() { p } else { [p[1], p[0]] }
+}
+
 /// The fraction of the square [−1, 1]² where slope·(p, q) > c: the part of a light above a plane,
 /// with `slope` the plane's normal times the light's half-extents.
 pub fn fraction_above<T: Float>(slope: [T; 2], c: T) -> T {

@@ -68,14 +68,14 @@ pub use passes::{Columns, Level, Pixels, Start};
 pub use settings::{Hash, Layers, Sampling, Search, Settings};
 
 use self::passes::{declare, list_bytes};
-use super::room::{Maps, Noise, PassInputs, Room, Shows, Takes};
+use super::room::{Maps, Noise, PassInputs, Room, Shapes, Shows, Takes};
 use crate::Error;
 use crate::graph::{Graph, ResourceId};
 use crate::stages::depth_layers::Wanted;
 
 impl Room for Settings {
     fn takes(&self) -> Takes {
-        Takes { texture: true, ..Takes::RECTANGLES }
+        Takes { shapes: Shapes::DISCS, texture: true, ..Takes::RECTANGLES }
     }
 
     fn shows(&self) -> Shows {

@@ -1,6 +1,7 @@
 //! The passes: layers → columns → levels; pixels → list → rays.
 
 use super::settings::{Hash, Layers, Sampling, Search, Settings};
+use crate::Shape;
 use crate::graph::{Access, Graph, Need, Owner, Pass, Push, ResourceId, Use, Uses, Work};
 use crate::shaders::{self, Module, module};
 use crate::stages::depth_layers::{DepthLayers, Eye};
@@ -9,6 +10,7 @@ use crate::stages::visibility::{self, COLOR_FORMAT, grid};
 use crate::techniques::room::PassInputs;
 use bytemuck::{Pod, Zeroable};
 use smallvec::smallvec;
+use std::f64::consts::PI;
 
 /// The bytes of the list of pixels: its head, and for each pixel its place and the heights that its rays must search.
 pub(super) fn list_bytes([width, height]: [u32; 2]) -> u64 {
@@ -256,8 +258,22 @@ pub struct Pixels {
     pub seed: u32,
 }
 
+/// Half the width and height of the light, or the radius of one that is a disc, and whether it is.
+fn disc_or_rectangle(inputs: &PassInputs) -> ([f64; 2], bool) {
+    let half = inputs.light.half_extents();
+    match inputs.tree.1.light.shape() {
+        Shape::Disc { .. } => (half, true),
+        // The square of its area stands for a sun.
+        Shape::Sun { .. } if inputs.occluders.eye == Eye::Infinity => {
+            (half.map(|h| h * (4.0 / PI).sqrt()), true)
+        }
+        _ => (half, false),
+    }
+}
+
 fn pixel_push(settings: &Settings, inputs: &PassInputs) -> Pixels {
     let PassInputs { occluders: view, light, .. } = inputs;
+    let (half, is_disc) = disc_or_rectangle(inputs);
     let [half_x, half_y] = light.half_extents();
     let rays = f64::from(settings.rays);
     let rows = (rays * half_y / half_x).sqrt().round().clamp(1.0, rays) as i32;
@@ -277,11 +293,12 @@ fn pixel_push(settings: &Settings, inputs: &PassInputs) -> Pixels {
             Sampling::LowDiscrepancy => 2,
         } << 23
         | settings.levels.code() << 25
-        | bit(inputs.light_texture.is_some(), 27);
+        | bit(inputs.light_texture.is_some(), 27)
+        | bit(is_disc, 28);
     Pixels {
         texels_per_unit: view.texels_per_uv().map(|x| x as f32),
         first: view.first().map(|x| x as f32),
-        half_light: light.half_extents().map(|x| x as f32),
+        half_light: half.map(|x| x as f32),
         eye: match view.eye {
             Eye::Behind(behind) => behind as f32,
             Eye::Infinity => view.far as f32,
