@@ -136,8 +136,8 @@ layout(set = 0, binding = 19, std430) readonly buffer Constants {
     GBuffer lent_gbuffer;
     vec4 regions[16]; // two numbers of a view: see is_within
 #ifndef FORWARD
-    // The w of the nearest occluder before the receivers of a view from the light's centre. It is 0 where it does not
-    // matter, as the view holds every ray between its receivers and the light.
+    // The w of the nearest occluder before the receivers of a view from the light's centre. It is below 0 where it does
+    // not matter, as the view holds every ray between its receivers and the light.
     float nearest_before[8];
 #endif
 };
@@ -278,12 +278,24 @@ vec3 receiver_normal(ivec2 p, vec3 position)
     return lent == vec3(0.0) ? facet_normal(p, depth_at(p)) : lent;
 }
 
-// Whether a point lies within a view's region, whose least x and y and largest x and y change evenly with z. A region of
-// a view from the light's centre is narrower by what its rays spread, as seen from there, up to the nearest occluder.
+// Tangents from which on a view from the light's centre keeps half of its window at least.
+const float WIDE = 5.0;
+
+// Whether a point lies within a view's region, whose least x and y and largest x and y change evenly with z. The region of
+// a view from the light's centre is its window, less what rays spread up to the nearest occluder. A wide view keeps half
+// of its window for what is so near to the light that more would be lost: the next wider view would have texels too large
+// for all else, and the centre sees what is so near otherwise than the light's rim anyway.
 bool is_within(int view, vec3 position)
 {
     vec4 at = regions[2 * view];
-    vec4 rim = at + (regions[2 * view + 1] - at * nearest_before[view]) * position.z;
+    vec4 slope = regions[2 * view + 1];
+    vec4 rim = at + slope * position.z;
+    float nearest = nearest_before[view];
+    if (nearest >= 0.0) {
+        vec4 half_window = 0.5 * abs(slope) / max(abs(at), 1.0e-30);
+        vec4 most = mix(vec4(3.0e38), half_window, greaterThanEqual(abs(slope), vec4(WIDE)));
+        rim = slope * position.z - at * max(min(vec4(nearest), most) * position.z - 1.0, 0.0);
+    }
     return all(greaterThanEqual(position.xy, rim.xy)) && all(lessThanEqual(position.xy, rim.zw));
 }
 

@@ -73,7 +73,7 @@ fn an_outline_is_refused_by_what_knows_rectangles_alone() {
     }
 }
 
-/// No technique takes every shape but the one that the sentence names; many-lights takes discs. A sun is refused by none.
+/// No technique takes every shape but the one that the sentence names; many-lights and ray-march take discs. A sun is refused by none.
 #[test]
 fn shapes_are_refused_by_what_does_not_take_them() {
     let meshes = meshes();
@@ -94,9 +94,9 @@ fn shapes_are_refused_by_what_does_not_take_them() {
             planned.map(|plan| assert!(ran(&plan).len() > 1, "{name}")).map_err(|e| e.to_string())
         };
         for name in Technique::NAMES {
-            let taken =
-                shape == "sun" || *name == "traced" || (shape == "disc" && *name == "many-lights");
-            let others = if shape == "disc" { "many-lights, or " } else { "" };
+            let takes_discs = ["many-lights", "ray-march"].contains(name);
+            let taken = shape == "sun" || *name == "traced" || (shape == "disc" && takes_discs);
+            let others = if shape == "disc" { "many-lights, ray-march, or " } else { "" };
             let sentence = format!(
                 "the light is a {shape}, and {name} takes no {shape}s; choose {others}traced, which takes every shape"
             );

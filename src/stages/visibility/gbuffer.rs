@@ -134,7 +134,8 @@ impl Constants {
             let at = REGIONS_AT + (nth * size_of::<RegionConstants>()) as u64;
             graph.push(Pass::constants("gbuffer.regions", buffer, at, &regions, need));
         }
-        let none = [0.0f32; MOST_VIEWS as usize];
+        // The nearest occluders are found on the device, where views from the light's centre want them.
+        let none = [-1.0f32; MOST_VIEWS as usize];
         graph.push(Pass::constants("gbuffer.nearest", buffer, NEAREST_AT, &none, need));
     }
 }

@@ -133,7 +133,7 @@ const TWO_LINES: Noise = Noise {
 };
 
 /// Why maps from the light's centre lose what is near the light.
-const ASIDE: &str = "one map looks no further aside than 84°, several no further than 89°, and what is this near to the light ends beyond";
+const ASIDE: &str = "a map from the light's centre is too coarse, or looks not far enough aside, for what is this near to the light";
 
 /// Why shadows of what crosses the light's plane are coarse.
 const FLATTENED: &str =

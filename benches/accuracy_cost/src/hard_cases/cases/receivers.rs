@@ -69,8 +69,8 @@ fn distances() -> Vec<HardCase> {
         world_from_view: moved(0.6, 0.0101, 0.1) * DMat4::from_rotation_x(-FRAC_PI_2),
         ..camera
     };
-    // These have one view of the light.
-    let aside = ["soft-shadow-map, blended", "linear-light", "many-lights"];
+    let maps = ["soft-shadow-map", "soft-shadow-map, blended"];
+    let aside = [&maps[..], &["linear-light", "many-lights", "back-projection"]].concat();
     vec![
         of("nearer than every occluder", Set { floors: vec![near], ..base() }),
         HardCase {
