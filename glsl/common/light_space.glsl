@@ -403,7 +403,7 @@ float fraction_above(vec2 slope, float c)
     return c > 0.0 ? corner : 1.0 - corner;
 }
 
-// The same of the unit disc, whose half-extents are its radius: a segment of it.
+// The fraction of the unit disc above a plane, which is a segment of it; a disc's half-extents are its radius.
 float fraction_of_disc_above(vec2 slope, float c)
 {
     float steep = length(slope);
