@@ -30,7 +30,11 @@ impl Fit {
         let sun_from_world =
             DMat4::from_translation(DVec3::new(0.0, 0.0, -away)) * self.light_from_world;
         self.parts.clear();
-        self.why_served = "no more are allowed".into();
+        self.why_served = match request.most_served {
+            1 => "no more are allowed",
+            _ => "the camera is orthographic, and sees as much of what is near as of what is far",
+        }
+        .into();
         if let Some(frustum) =
             Frustum::new(&frame.world_from_ndc).filter(|_| request.most_served > 1)
         {
