@@ -99,7 +99,8 @@ fn parts_and_points_of_discs() {
         .case(([0.0, 0.0],))
         .case(([1.0, 1.0],))
         .random(2_000, (-1.0..1.0f32, -1.0..1.0f32).prop_map(|(x, y)| ([x, y],)))
-        .f32(Tolerance::absolute(2e-6), |x| on_disc([x[0], x[1]]).to_vec())
+        // Sines and cosines may be off by 2^-11, as Vulkan allows.
+        .f32(Tolerance::absolute(5e-4), |x| on_disc([x[0], x[1]]).to_vec())
         .check(&device());
 }
 
