@@ -263,8 +263,8 @@ vec3 facet_normal(ivec2 p, float depth)
 
 // The normal of the plane that a pixel shows, on the viewer's side: the lent one, or without it that of the depths.
 //
-// Mean error in percent over shadow at 480x360, of soft-shadow-map, ray-march and occlusion-textures, without normals /
-// with the triangles':
+// Mean error in percent over shadow at 480x360, of soft-shadow-map, ray-march and occlusion-textures with one view,
+// without normals / with the triangles':
 //     bunny     2.6/2.2    1.8/1.4    2.0/1.6
 //     kitchen  18.2/18.1  13.0/12.8  19.4/19.2
 //     hall     22.3/22.1  18.3/18.1  33.1/33.0
@@ -401,31 +401,6 @@ float fraction_above(vec2 slope, float c)
     float leg = m + l - abs(c);
     float corner = leg * leg / (8.0 * m * l);
     return c > 0.0 ? corner : 1.0 - corner;
-}
-
-// The fraction of the unit disc above a plane, which is a segment of it; a disc's half-extents are its radius.
-float fraction_of_disc_above(vec2 slope, float c)
-{
-    float steep = length(slope);
-    if (c >= steep) {
-        return 0.0;
-    }
-    if (c <= -steep) {
-        return 1.0;
-    }
-    float d = c / steep;
-    return (acos(d) - d * sqrt(max(1.0 - d * d, 0.0))) / 3.14159265;
-}
-
-// The point of the unit disc for one of [-1, 1]^2: equal areas go to equal areas (Shirley and Chiu 1997).
-vec2 on_disc(vec2 q)
-{
-    vec2 a = abs(q);
-    float far = a.x > a.y ? q.x : q.y;
-    float near = a.x > a.y ? q.y : q.x;
-    float angle = far == 0.0 ? 0.0 : 0.785398163 * near / far;
-    vec2 p = far * vec2(cos(angle), sin(angle));
-    return a.x > a.y ? p : p.yx;
 }
 
 // ---------------------------------------------------------------------------------------------

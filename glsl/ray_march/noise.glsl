@@ -230,4 +230,32 @@ void put_known(ivec2 p, float v)
 }
 #endif
 
+// ---------------------------------------------------------------------------------------------
+// Lights that are discs: the part of them above a plane, and their points.
+
+// The fraction of the unit disc above a plane, which is a segment of it; a disc's half-extents are its radius.
+float fraction_of_disc_above(vec2 slope, float c)
+{
+    float steep = length(slope);
+    if (c >= steep) {
+        return 0.0;
+    }
+    if (c <= -steep) {
+        return 1.0;
+    }
+    float d = c / steep;
+    return (acos(d) - d * sqrt(max(1.0 - d * d, 0.0))) / 3.14159265;
+}
+
+// The point of the unit disc for one of [-1, 1]^2: equal areas go to equal areas (Shirley and Chiu 1997).
+vec2 on_disc(vec2 q)
+{
+    vec2 a = abs(q);
+    float far = a.x > a.y ? q.x : q.y;
+    float near = a.x > a.y ? q.y : q.x;
+    float angle = far == 0.0 ? 0.0 : 0.785398163 * near / far;
+    vec2 p = far * vec2(cos(angle), sin(angle));
+    return a.x > a.y ? p : p.yx;
+}
+
 #endif

@@ -11,7 +11,7 @@ layout(set = 0, binding = 0, std430) readonly buffer Nodes { float nodes[]; };
 layout(set = 0, binding = 1, std430) buffer Constants { float constants[]; };
 
 layout(push_constant) uniform Push {
-    int map;  // the map's side in texels
+    int map; // the map's side in texels
     int at;  // where the number is among the constants of the passes over the pixels
 } push;
 

@@ -88,14 +88,14 @@ fn both_sides_merged() {
 #[test]
 fn parts_and_points_of_discs() {
     let slope = ((-2.0..2.0f32, -2.0..2.0f32), -2.5..2.5f32);
-    Function::new("common/light_space.glsl", "float fraction_of_disc_above(vec2 slope, float c)")
+    Function::new("ray_march/noise.glsl", "float fraction_of_disc_above(vec2 slope, float c)")
         .case(([0.0, 0.0], 0.0))
         .case(([1.0, 0.0], 0.0))
         .random(2_000, slope.prop_map(|((x, y), c)| ([x, y], c)))
         // Drivers' arc cosines are off by 2^-11 of a radian, at most.
         .f32(Tolerance::absolute(4e-4), |x| vec![fraction_of_disc_above([x[0], x[1]], x[2])])
         .check(&device());
-    Function::new("common/light_space.glsl", "vec2 on_disc(vec2 q)")
+    Function::new("ray_march/noise.glsl", "vec2 on_disc(vec2 q)")
         .case(([0.0, 0.0],))
         .case(([1.0, 1.0],))
         .random(2_000, (-1.0..1.0f32, -1.0..1.0f32).prop_map(|(x, y)| ([x, y],)))

@@ -43,9 +43,9 @@ pub struct Nearest {
 /// The next finer view than the one that a map is drawn for.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inner<'a> {
-    /// Its number.
+    /// The finer view's number.
     pub view: u32,
-    /// The largest u and v of its window.
+    /// The largest u and v of the finer view's window.
     pub tangent: f64,
     /// The view of the map.
     pub map: &'a MapView,

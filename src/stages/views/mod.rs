@@ -1,4 +1,5 @@
-//! The views of techniques that see the occluders from other places than the light's centre.
+//! Views of the occluders: those that share a light's receivers, and those of techniques that see the occluders from
+//! points or lines all over the light.
 
 pub mod inner;
 mod line;

@@ -7,6 +7,9 @@
 //!  ╱  1 ╱  0  ╲ 1  ╲                  has all that the ray meets. The finest view whose region
 //!      ╱       ╲                      holds a receiver serves it, and the last one all others.
 //! ```
+//! That holds from behind the light, where each view has an eye of its own. From the light's centre a view lacks what is
+//! near to the light and far aside, and its region is narrower by that (`inner`).
+//!
 //! A map's texels are equally large in u and v, tangents at the light. Where walls reach up to the light's plane, a
 //! map that shows them all has few texels for what lies below the light, where most of the light falls. Far aside, the
 //! same tangents cover less of the light's surroundings, and less light arrives. So the windows of nested views grow
