@@ -7,6 +7,14 @@
 use crate::Error;
 use std::fmt;
 
+/// What the knob for the side of maps says, where a map has 256 texels a side by itself.
+pub(crate) const MAP_OF_256: &str = "side of the occluder maps; any whole number, and 0 for 256 where one view serves a \
+                                     light, 512 where several do";
+
+/// The same where it has 128.
+pub(crate) const MAP_OF_128: &str = "side of the occluder maps; any whole number, and 0 for 128 where one view serves a \
+                                     light, 512 where several do";
+
 /// The most views of a light that share its receivers.
 pub(crate) const MOST_VIEWS: u32 = 8;
 
@@ -118,6 +126,15 @@ impl<S> Field<S> {
     pub const fn map(get: fn(&S) -> u32, set: fn(&mut S, u32)) -> Self {
         const ABOUT: &str = "side of the occluder map, or of each of several; any whole number";
         Self::whole("map", "texels", [1, 4096], ABOUT, get, set)
+    }
+
+    /// The knob for the side of the light-space maps of techniques with several views; `about` says what 0 means.
+    pub const fn map_of_views(
+        about: &'static str,
+        get: fn(&S) -> u32,
+        set: fn(&mut S, u32),
+    ) -> Self {
+        Self::whole("map", "texels", [0, 4096], about, get, set)
     }
 
     /// The knob for the most views that a light is seen through.

@@ -222,7 +222,8 @@ impl Fit {
             }
             _ => {
                 let boxes = [&self.occluders.boxes[..], &self.receivers.boxes];
-                self.why_served = fit_served(half, boxes, eye, maps.side, most, &mut self.served);
+                self.why_served =
+                    fit_served(half, boxes, eye, maps.sides(), most, &mut self.served);
             }
         }
         self.receiver_view = self.shadowed.unwrap_or(PLACEHOLDER);

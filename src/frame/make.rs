@@ -46,8 +46,17 @@ struct Shape {
     needs: u8,
     /// How many views the technique has.
     views: usize,
+    /// The side of their maps, texels.
+    side: u32,
     /// What the plan reuses, as [`reuse::Reuse::uses`] lists it.
     reuses: [bool; 5],
+}
+
+impl Shape {
+    /// What decides which passes there are, and on which resources.
+    fn passes(&self) -> (u8, usize, u32) {
+        (self.needs, self.views, self.side)
+    }
 }
 
 /// Plans one frame: fits the maps, decides what runs, derives the barriers. Pure: no Vulkan calls.
@@ -128,17 +137,18 @@ pub(crate) fn plan_into(
     let occluder_clips = inputs.occluder_clips();
     let (receiver_view, views, needs) =
         (inputs.receivers, inputs.views.count() + inputs.occluders.len(), inputs.needs.bits());
+    let side = inputs.occluders[0].map.side;
     let lit = inputs.needs.unshadowed().is_some();
     // Description, needs and views decide which passes there are; only then can the cache leave some of them out.
     let before = built
         .take()
-        .filter(|(of, shape)| of == description && (shape.needs, shape.views) == (needs, views));
+        .filter(|(of, shape)| of == description && shape.passes() == (needs, views, side));
     if before.is_none() {
         camera.find(graph, ids.pixels());
     }
     let revisions = Revisions { scene: frame.revision, view: frame.view_revision, fit: fit_number };
     plan.reuse = reuse::apply(graph, camera, lit, (&frame.visibility, tree), revisions, cached);
-    let shape = Shape { needs, views, reuses: plan.reuse.uses() };
+    let shape = Shape { needs, views, side, reuses: plan.reuse.uses() };
     plan.imports.clear();
     plan.imports.extend(imports(&ids, frame));
     fill_borders(borders, &plan.imports, ids.visibility, frame);

@@ -59,7 +59,7 @@ impl Fit {
             occluders,
             receivers,
             parts: &self.parts,
-            side: maps.side,
+            side: if self.parts.len() > 1 { maps.several } else { maps.side },
             receiver_side: maps.layers.receiver_map.unwrap_or(maps.side),
         };
         if let Some(views) = fit_sun(&under, &mut self.served) {

@@ -172,7 +172,10 @@ impl FrameInputs<'_> {
 /// The graph of every pass that any frame of this description may run; a node makes its objects for them.
 pub(crate) fn all_passes(description: &Description, limits: Limits) -> Graph {
     let room = description.technique.room();
-    let view = MapView { side: room.maps().side, ..PLACEHOLDER };
+    let maps = room.maps();
+    // Lent maps are those of one view.
+    let side = if description.occluder_maps.is_some() { maps.side } else { maps.largest() };
+    let view = MapView { side, ..PLACEHOLDER };
     let served = vec![
         Served { map: view, region: Region::ALL, deepest: view.far };
         room.most_served() as usize
@@ -231,6 +234,7 @@ pub(super) fn build(
     // A hard shadow may stand in for the technique.
     let shadowed = if hard.is_yes() { hard } else { need };
     let count = frame.occluders.len();
+    let side = frame.occluders[0].map.side;
     let one = graph.because("one view serves every receiver");
     if room.most_served() > 1 {
         let several = if count > 1 { *shadowed } else { Need::No(one) };
@@ -275,7 +279,7 @@ pub(super) fn build(
         hierarchy: tree,
     };
     let nodes = (maps.eye == Projection::Centre && room.most_served() > 1)
-        .then(|| inner::declare(graph, maps.side));
+        .then(|| inner::declare(graph, side));
     let declared = graph.declared();
     let mut nearest = None;
     let is_centred = |map: &MapView| map.eye == Eye::Behind(0.0);
@@ -314,7 +318,7 @@ pub(super) fn build(
     }
     graph.declares_anew();
     if hardens(description) {
-        let front = nearest.unwrap_or_else(|| depth_layers::hard(graph, maps.side, hard));
+        let front = nearest.unwrap_or_else(|| depth_layers::hard(graph, side, hard));
         hard::declare(graph, front, Filter::One, hard, &inputs);
     }
     let lit = match needs.unshadowed() {

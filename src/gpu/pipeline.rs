@@ -226,16 +226,11 @@ impl PassObjects {
             .vertex_attribute_descriptions(attributes.as_slice());
         let assembly = vk::PipelineInputAssemblyStateCreateInfo::default()
             .topology(vk::PrimitiveTopology::TRIANGLE_LIST);
-        let viewports = [vk::Viewport {
-            width: self.extent.width as f32,
-            height: self.extent.height as f32,
-            max_depth: 1.0,
-            ..Default::default()
-        }];
-        let scissors = [vk::Rect2D { extent: self.extent, ..Default::default() }];
-        let viewport = vk::PipelineViewportStateCreateInfo::default()
-            .viewports(&viewports)
-            .scissors(&scissors);
+        // A frame may use a part of the attachments: its own size decides.
+        let states = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
+        let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&states);
+        let viewport =
+            vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
         let raster = vk::PipelineRasterizationStateCreateInfo::default()
             .polygon_mode(vk::PolygonMode::FILL)
             .cull_mode(cull)
@@ -261,6 +256,7 @@ impl PassObjects {
             .vertex_input_state(&input)
             .input_assembly_state(&assembly)
             .viewport_state(&viewport)
+            .dynamic_state(&dynamic)
             .rasterization_state(&raster)
             .multisample_state(&samples)
             .layout(self.layouts.pipeline)

@@ -12,8 +12,8 @@ use super::result::ResultImage;
 use super::timing::Timing;
 use crate::frame::{Faces, FramePlan, MeshDraw};
 use crate::graph::{
-    self, COLOR_ATTACHMENTS, Draw, Layer, Owner, Pass, ResourceBarrier, ResourceId, Step, Target,
-    Use, Work,
+    self, COLOR_ATTACHMENTS, Draw, Layer, Owner, Pass, ResourceBarrier, ResourceId, Shape, Step,
+    Target, Use, Work,
 };
 use crate::lent::{Geometry, MeshBuffers};
 use ash::vk;
@@ -159,6 +159,7 @@ impl Recorder<'_> {
             }
             Work::Raster { target, draw, .. } => {
                 self.begin_render_pass(made, target);
+                let drawn = self.set_viewport(frame, made, pass);
                 match draw {
                     Draw::Layer { layer, view } => {
                         for (draw, matrix) in frame.draws(layer.meshes(), view) {
@@ -170,7 +171,7 @@ impl Recorder<'_> {
                                     cmd,
                                     mesh,
                                     layer,
-                                    clip_from_mesh: *matrix,
+                                    clip_from_mesh: in_corner(matrix, drawn),
                                     faces: draw.faces,
                                 }),
                             }
@@ -224,6 +225,26 @@ impl Recorder<'_> {
         unsafe {
             self.host.device.cmd_begin_render_pass(self.cmd, &begin, vk::SubpassContents::INLINE);
         }
+    }
+
+    /// Sets viewport and scissor to the part of the attachments that the frame uses, and returns its share of their
+    /// width and height.
+    fn set_viewport(&self, frame: &FramePlan, made: &PassObjects, pass: &Pass) -> [f32; 2] {
+        let shapes = pass.writes().map(|id| frame.plan.graph.resource(id).shape);
+        let size = shapes.into_iter().find_map(|shape| match shape {
+            Shape::Image { width, height, .. } => Some(vk::Extent2D { width, height }),
+            Shape::Buffer { .. } => None,
+        });
+        let extent = size.unwrap_or(made.extent);
+        let [width, height] = [extent.width as f32, extent.height as f32];
+        let viewport = vk::Viewport { width, height, max_depth: 1.0, ..Default::default() };
+        let scissor = vk::Rect2D { extent, ..Default::default() };
+        let (device, cmd) = (&self.host.device, self.cmd);
+        // SAFETY: Host::borrow's promise: cmd is recording; the pass's pipelines have this state dynamic.
+        unsafe { device.cmd_set_viewport(cmd, 0, &[viewport]) };
+        // SAFETY: as above.
+        unsafe { device.cmd_set_scissor(cmd, 0, &[scissor]) };
+        [width / made.extent.width as f32, height / made.extent.height as f32]
     }
 
     fn mesh(&self, made: &PassObjects, draw: &MeshDraw, matrix: &[f32; 16], mesh: &MeshBuffers) {
@@ -361,4 +382,17 @@ impl Recorder<'_> {
         let layout = border.map_or(u.access.scope().layout, |b| b.entry.layout);
         (self.object_of(frame, u.resource), layout)
     }
+}
+
+/// A matrix to clip space with the window moved to the first corner of a viewport and made smaller by these shares.
+///
+/// A host's own pipeline draws through a viewport as large as the attachment, of which a frame may use a part.
+fn in_corner(matrix: &[f32; 16], shares: [f32; 2]) -> [f32; 16] {
+    let mut moved = *matrix;
+    for column in moved.chunks_exact_mut(4) {
+        for (i, share) in shares.into_iter().enumerate() {
+            column[i] = share * column[i] + (share - 1.0) * column[3];
+        }
+    }
+    moved
 }

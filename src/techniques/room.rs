@@ -136,11 +136,16 @@ impl Shows {
     };
 }
 
+/// The usual side of the maps of several views, texels.
+const VIEWED: u32 = 512;
+
 /// The maps that a technique needs with these settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Maps {
     /// The side of the technique's maps, texels.
     pub side: u32,
+    /// Their side where several views share the receivers, texels.
+    pub several: u32,
     /// The depth layers to draw, and their sides.
     pub layers: Wanted,
     /// Where the occluders are seen from, unless the host lends maps.
@@ -158,12 +163,33 @@ impl Maps {
     pub fn front(side: u32) -> Self {
         Self {
             side,
-            layers: Wanted { map: side, back: false, inner: false, receiver_map: None },
+            several: side,
+            layers: Wanted { back: false, inner: false, receiver_map: None },
             eye: Projection::Centre,
             front_is_whole: true,
             back_can_be_dropped: false,
             receivers_in_views: false,
         }
+    }
+
+    /// The nearest faces from the light's centre, in maps of `map` texels. Where that is 0 they have `usual` texels, and
+    /// `VIEWED` where several of up to `views` views share the receivers: what one view does not show finely enough.
+    pub fn by_views(map: u32, usual: u32, views: u32) -> Self {
+        match map {
+            0 if views > 1 => Self { several: usual.max(VIEWED), ..Self::front(usual) },
+            0 => Self::front(usual),
+            _ => Self::front(map),
+        }
+    }
+
+    /// The sides of the maps of one view and of several, texels.
+    pub fn sides(&self) -> [u32; 2] {
+        [self.side, self.several]
+    }
+
+    /// The side of the images that hold the maps of any frame, texels.
+    pub fn largest(&self) -> u32 {
+        self.side.max(self.several)
     }
 
     /// The maps of a technique that has views of its own, of `side` texels, instead of a map from the light's centre.
@@ -234,9 +260,9 @@ pub struct PassInputs<'a> {
 }
 
 impl PassInputs<'_> {
-    /// Adds the passes that make depth layers.
-    pub(crate) fn depth_layers(&self, graph: &mut Graph, wanted: Wanted) -> DepthLayers {
-        depth_layers::declare(graph, wanted, self.layers)
+    /// Adds the passes that make depth layers, of `side` texels a side.
+    pub(crate) fn depth_layers(&self, graph: &mut Graph, wanted: Wanted, side: u32) -> DepthLayers {
+        depth_layers::declare(graph, wanted, side, self.layers)
     }
 }
 

@@ -77,11 +77,9 @@ pub struct CopyPush {
     pub most: f32,
 }
 
-/// The layers that a technique reads, and their sizes.
+/// The layers that a technique reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wanted {
-    /// The occluder maps' side in texels.
-    pub map: u32,
     /// Whether the back layer is read.
     pub back: bool,
     /// Whether the nearest back faces and the furthest front faces are read too.
@@ -133,11 +131,15 @@ pub(crate) struct Needs<'a> {
     pub receivers: &'a Need,
 }
 
-/// Adds the layers and the passes that make them. A layer that this frame does not need is `None`, although its pass
-/// and image are declared.
-pub(crate) fn declare(graph: &mut Graph, wanted: Wanted, layers: &LightLayers) -> DepthLayers {
+/// Adds the layers, of `map` texels a side, and the passes that make them. A layer that this frame does not need is
+/// `None`, although its pass and image are declared.
+pub(crate) fn declare(
+    graph: &mut Graph,
+    wanted: Wanted,
+    map: u32,
+    layers: &LightLayers,
+) -> DepthLayers {
     let LightLayers { occluders, view, inner: finer, needs } = *layers;
-    let map = wanted.map;
     let need = needs.front;
     let (front, back) = match occluders {
         Occluders::Meshes => {

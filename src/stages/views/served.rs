@@ -75,12 +75,13 @@ impl Region {
 }
 
 /// Finds the views through which a light of these half-extents sees boxes of occluders, the finest first: one where
-/// that is enough, or up to `most` nested ones; none where nothing lies before the light. Returns why.
+/// that is enough, or up to `most` nested ones; none where nothing lies before the light. Maps have as many texels a side
+/// as the first of `sides` says for one view, and the second for several. Returns why.
 pub(crate) fn fit_served(
     half: [f64; 2],
     [occluders, receivers]: [&[LightBox]; 2],
     projection: Projection,
-    side: u32,
+    [side, several]: [u32; 2],
     most: u32,
     views: &mut Vec<Served>,
 ) -> Why {
@@ -92,7 +93,7 @@ pub(crate) fn fit_served(
     if most > 1 && widest > NARROW && projection != Projection::Orthographic {
         let more = (widest / FINEST).ln() / LEAST_RATIO.ln();
         let count = (1 + more.ceil() as u32).min(most);
-        nested(half, [occluders, receivers], projection, side, widest, count, views);
+        nested(half, [occluders, receivers], projection, several, widest, count, views);
     }
     if views.is_empty() {
         let one = view_from(half, occluders, projection, side);

@@ -45,7 +45,7 @@ impl Room for Settings {
     }
 
     fn maps(&self) -> Maps {
-        Maps::front(self.map)
+        Maps::by_views(self.map, 256, self.views)
     }
 
     fn most_served(&self) -> u32 {
@@ -57,7 +57,8 @@ impl Room for Settings {
     }
 
     fn declare(&self, graph: &mut Graph, inputs: &PassInputs) -> Option<ResourceId> {
-        let front = inputs.depth_layers(graph, self.maps().layers).front;
+        let side = inputs.occluders.side;
+        let front = inputs.depth_layers(graph, self.maps().layers, side).front;
         declare(graph, front, inputs);
         Some(front)
     }

@@ -1,11 +1,11 @@
 //! The knobs of a hard shadow map.
 
-use crate::knob::{Field, Knobs};
+use crate::knob::{Field, Knobs, MAP_OF_256};
 
 /// The knobs of hard shadow maps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
-    /// The map's side, texels, 1 to 4096; 256 by default.
+    /// The maps' side, texels, 1 to 4096; 0, the default, for 256 where one view serves a light and 512 where several do.
     pub map: u32,
     /// The most views of a light, 1 to 8; 6 by default.
     pub views: u32,
@@ -13,14 +13,14 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { map: 256, views: 6 }
+        Self { map: 0, views: 6 }
     }
 }
 
 impl Knobs for Settings {
     const NAME: &'static str = "hard";
     const FIELDS: &'static [Field<Self>] = &[
-        Field::map(|s| s.map, |s, map| s.map = map),
+        Field::map_of_views(MAP_OF_256, |s| s.map, |s, map| s.map = map),
         Field::views(|s| s.views, |s, views| s.views = views),
     ];
 }

@@ -111,7 +111,7 @@ pub use slices::{Histogram, Mask, Place};
 
 use self::pixels::{PrefilteredSlices, declare_pixels};
 use self::prefilter::{declare_levels, declare_sums};
-use self::slices::{declare_mask, declare_placement, histogram_layers};
+use self::slices::{declare_mask, declare_placement, histogram_layers, histogram_side};
 use super::room::{HostDraws, Maps, PassInputs, Room, Shows, Takes};
 use crate::Error;
 use crate::graph::{Graph, ResourceId};
@@ -141,9 +141,10 @@ impl Room for Settings {
 
     fn maps(&self) -> Maps {
         Maps {
-            layers: histogram_layers(self, self.map),
+            layers: histogram_layers(self),
             eye: Projection::Behind,
-            ..Maps::own_views(self.map)
+            front_is_whole: false,
+            ..Maps::by_views(self.map, 256, self.views)
         }
     }
 
@@ -153,7 +154,8 @@ impl Room for Settings {
 
     fn declare(&self, graph: &mut Graph, inputs: &PassInputs) -> Option<ResourceId> {
         let wanted = self.maps().layers;
-        let layers = self.is_fitted().then(|| inputs.depth_layers(graph, wanted));
+        let side = histogram_side(inputs);
+        let layers = self.is_fitted().then(|| inputs.depth_layers(graph, wanted, side));
         declare(graph, layers.as_ref(), self, inputs);
         None
     }

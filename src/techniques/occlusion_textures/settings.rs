@@ -1,8 +1,9 @@
 //! The knobs of occlusion textures.
 
 use crate::Error;
-use crate::knob::{Field, Knobs, choice, choices};
+use crate::knob::{Field, Knobs, MAP_OF_256, choice, choices};
 use crate::stages::nbuffer::{self, Levels};
+use crate::techniques::room::Room as _;
 
 /// The prefilter that gives means of rectangles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -49,7 +50,7 @@ choices! { Combine: "product" => Product, "sum" => Sum, "max" => Max, "correlate
 /// The knobs of occlusion textures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
-    /// The side of the slices, texels, 1 to 4096; 256 by default.
+    /// The maps' side, texels, 1 to 4096; 0, the default, for 256 where one view serves a light and 512 where several do.
     pub map: u32,
     /// The most views of a light, 1 to 8; 6 by default.
     pub views: u32,
@@ -70,7 +71,7 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            map: 256,
+            map: 0,
             views: 6,
             slices: 16,
             placement: Placement::default(),
@@ -94,7 +95,7 @@ const MOST_BYTES: u64 = 1 << 28;
 impl Knobs for Settings {
     const NAME: &'static str = "occlusion-textures";
     const FIELDS: &'static [Field<Self>] = &[
-        Field::map(|s| s.map, |s, map| s.map = map),
+        Field::map_of_views(MAP_OF_256, |s| s.map, |s, map| s.map = map),
         Field::views(|s| s.views, |s, views| s.views = views),
         Field::classify(|s| s.classify, |s, on| s.classify = on),
         Field::whole(
@@ -138,16 +139,17 @@ impl Knobs for Settings {
 impl Settings {
     /// Checks the knobs that must agree with each other.
     pub(super) fn check_together(&self) -> Result<(), Error> {
-        if self.fits(self.map) {
+        let map = self.maps().largest();
+        if self.fits(map) {
             return Ok(());
         }
-        let most = (1..self.map).rev().find(|&m| self.fits(m)).unwrap_or(1);
+        let most = (1..map).rev().find(|&m| self.fits(m)).unwrap_or(1);
         Err(Error::Setting {
             key: "map".into(),
             problem: format!(
                 "{} slices of {} texels a side, filtered, take more than the 256 MiB that they may have; \
                  set map={most}, prefilter=mip or fewer slices",
-                self.slices, self.map
+                self.slices, map
             ),
         })
     }

@@ -24,10 +24,14 @@ const HISTOGRAM_MAP: u32 = 128;
 /// The number of slices that one draw counts.
 const SLICES_A_DRAW: u32 = 4 * COLOR_ATTACHMENTS as u32;
 
-/// The layers from which the histogram is made; few texels are enough.
-pub(super) fn histogram_layers(settings: &Settings, map: u32) -> Wanted {
-    let back = settings.is_fitted();
-    Wanted { map: map.min(HISTOGRAM_MAP), back, inner: false, receiver_map: None }
+/// The side of the layers from which the histogram is made; few texels are enough.
+pub(super) fn histogram_side(inputs: &PassInputs) -> u32 {
+    inputs.occluders.side.min(HISTOGRAM_MAP)
+}
+
+/// Those layers.
+pub(super) fn histogram_layers(settings: &Settings) -> Wanted {
+    Wanted { back: settings.is_fitted(), inner: false, receiver_map: None }
 }
 
 /// The push constants of `place.comp` and `place_fitted.comp`.
@@ -76,7 +80,7 @@ pub(super) fn declare_placement(
     let mut uses = smallvec![Use::bound(0, placement, Access::ImageWrite)];
     let (name, shader, groups) = match layers {
         Some(layers) => {
-            let histogram = declare_histogram(graph, layers, settings, inputs);
+            let histogram = declare_histogram(graph, layers, inputs);
             uses.push(Use::bound(1, histogram, Access::BufferReadCompute));
             ("occlusion_textures.place_fitted", module!("occlusion_textures/place_fitted.comp"), 1)
         }
@@ -111,12 +115,7 @@ pub struct Histogram {
     pub span: f32,
 }
 
-fn declare_histogram(
-    graph: &mut Graph,
-    layers: &DepthLayers,
-    settings: &Settings,
-    inputs: &PassInputs,
-) -> ResourceId {
+fn declare_histogram(graph: &mut Graph, layers: &DepthLayers, inputs: &PassInputs) -> ResourceId {
     let histogram = graph.buffer("occlusion_textures.histogram", 4 * u64::from(BINS));
     graph.push(Pass::compute(
         "occlusion_textures.histogram_start",
@@ -126,7 +125,7 @@ fn declare_histogram(
         smallvec![Use::bound(0, histogram, Access::BufferWriteCompute)],
         inputs.need,
     ));
-    let map = histogram_layers(settings, inputs.occluders.side).map;
+    let map = histogram_side(inputs);
     graph.push(Pass::compute(
         "occlusion_textures.histogram",
         module!("occlusion_textures/histogram.comp"),

@@ -69,7 +69,7 @@ impl Room for Settings {
     }
 
     fn maps(&self) -> Maps {
-        Maps::front(self.map)
+        Maps::by_views(self.map, 256, self.views)
     }
 
     fn most_served(&self) -> u32 {
@@ -81,7 +81,8 @@ impl Room for Settings {
     }
 
     fn declare(&self, graph: &mut Graph, inputs: &PassInputs) -> Option<ResourceId> {
-        let front = inputs.depth_layers(graph, self.maps().layers).front;
+        let side = inputs.occluders.side;
+        let front = inputs.depth_layers(graph, self.maps().layers, side).front;
         declare(graph, front, self, inputs);
         Some(front)
     }

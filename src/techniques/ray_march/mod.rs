@@ -98,10 +98,10 @@ impl Room for Settings {
     fn maps(&self) -> Maps {
         let inner = self.layers == Layers::Four;
         Maps {
-            layers: Wanted { map: self.map, back: true, inner, receiver_map: None },
+            layers: Wanted { back: true, inner, receiver_map: None },
             eye: self.projection,
             back_can_be_dropped: true,
-            ..Maps::front(self.map)
+            ..Maps::by_views(self.map, 256, self.views)
         }
     }
 
@@ -110,7 +110,7 @@ impl Room for Settings {
     }
 
     fn declare(&self, graph: &mut Graph, inputs: &PassInputs) -> Option<ResourceId> {
-        let layers = inputs.depth_layers(graph, self.maps().layers);
+        let layers = inputs.depth_layers(graph, self.maps().layers, inputs.occluders.side);
         declare(graph, &layers, self, inputs);
         Some(layers.front)
     }

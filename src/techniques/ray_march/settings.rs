@@ -1,9 +1,10 @@
 //! The knobs of ray marching.
 
 use crate::Error;
-use crate::knob::{Field, Knobs, choice, choices};
+use crate::knob::{Field, Knobs, MAP_OF_256, choice, choices};
 use crate::stages::depth_layers::Projection;
 use crate::stages::nbuffer::{self, Levels};
+use crate::techniques::room::Room as _;
 
 /// The depth layers, which decide what is solid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -61,7 +62,7 @@ choices! { Hash: "pcg" => Pcg, "md5" => Md5 }
 /// The knobs of ray marching.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
-    /// The side of the depth layers and the N-buffer, texels, 1 to 4096; 256 by default.
+    /// The maps' side, texels, 1 to 4096; 0, the default, for 256 where one view serves a light and 512 where several do.
     pub map: u32,
     /// The most views of a light, 1 to 8; 6 by default.
     pub views: u32,
@@ -90,7 +91,7 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            map: 256,
+            map: 0,
             views: 6,
             rays: 16,
             sampling: Sampling::default(),
@@ -109,7 +110,7 @@ impl Default for Settings {
 impl Knobs for Settings {
     const NAME: &'static str = "ray-march";
     const FIELDS: &'static [Field<Self>] = &[
-        Field::map(|s| s.map, |s, map| s.map = map),
+        Field::map_of_views(MAP_OF_256, |s| s.map, |s, map| s.map = map),
         Field::views(|s| s.views, |s, views| s.views = views),
         Field::whole(
             "seed",
@@ -186,7 +187,8 @@ impl Knobs for Settings {
 impl Settings {
     /// Checks the knobs that must agree with each other.
     pub(super) fn check_together(&self) -> Result<(), Error> {
-        let levels = Levels { map: self.map, kind: self.levels };
+        let map = self.maps().largest();
+        let levels = Levels { map, kind: self.levels };
         // Mip levels lie side by side, so that they take two layers for any map.
         if levels.kind == nbuffer::Kind::Mip || levels.texels() * TEXEL_BYTES <= MOST_BYTES {
             return Ok(());
@@ -196,7 +198,7 @@ impl Settings {
             problem: format!(
                 "the windows of a map of {} texels a side need {} MiB, more than the {} that they may \
                  have; set levels=mip or map=1024",
-                self.map,
+                map,
                 (levels.texels() * TEXEL_BYTES) >> 20,
                 MOST_BYTES >> 20
             ),

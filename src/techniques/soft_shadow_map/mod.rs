@@ -117,14 +117,13 @@ impl Room for Settings {
         let at_pixels = self.receivers == Receivers::Pixels;
         Maps {
             layers: Wanted {
-                map: self.map,
                 back: self.sides != Sides::One,
                 inner: false,
                 receiver_map: (!at_pixels).then_some(self.receiver_map),
             },
             // A soft shadow map has passes for each side.
             back_can_be_dropped: at_pixels,
-            ..Maps::front(self.map)
+            ..Maps::by_views(self.map, 128, self.most_served())
         }
     }
 
@@ -138,7 +137,7 @@ impl Room for Settings {
     }
 
     fn declare(&self, graph: &mut Graph, inputs: &PassInputs) -> Option<ResourceId> {
-        let layers = inputs.depth_layers(graph, self.maps().layers);
+        let layers = inputs.depth_layers(graph, self.maps().layers, inputs.occluders.side);
         declare(graph, &layers, self, inputs);
         Some(layers.front)
     }

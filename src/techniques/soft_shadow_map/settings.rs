@@ -1,7 +1,7 @@
 //! The knobs of soft shadow maps, and the gather's tolerance.
 
 use crate::Error;
-use crate::knob::{Field, Knobs, choice, choices};
+use crate::knob::{Field, Knobs, MAP_OF_128, choice, choices};
 
 /// Where visibility is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -52,8 +52,9 @@ choices! { Accumulate: "gather" => Gather, "blend" => Blend, "blend-fp16" => Ble
 /// The knobs of soft shadow maps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// The occluder map's side, texels, 1 to 4096; 128 by default. With 256 the median error of twelve scenes is 1.1 %
-    /// instead of 1.3, in twice the time (`docs/accuracy.md`).
+    /// The maps' side, texels, 1 to 4096; 0, the default, for 128 where one view serves a light and 512 where several do.
+    /// With 256 instead of 128 the median error of twelve scenes is 1.1 % instead of 1.3, in twice the time
+    /// (`docs/accuracy.md`).
     pub map: u32,
     /// The most views of a light, 1 to 8; 6 by default.
     pub views: u32,
@@ -75,7 +76,7 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            map: 128,
+            map: 0,
             receiver_map: 256,
             views: 6,
             receivers: Receivers::default(),
@@ -90,7 +91,7 @@ impl Default for Settings {
 impl Knobs for Settings {
     const NAME: &'static str = "soft-shadow-map";
     const FIELDS: &'static [Field<Self>] = &[
-        Field::map(|s| s.map, |s, map| s.map = map),
+        Field::map_of_views(MAP_OF_128, |s| s.map, |s, map| s.map = map),
         Field::views(|s| s.views, |s, views| s.views = views),
         Field::whole(
             "receiver_map",
