@@ -4,14 +4,14 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "soft_shadow_map/node.glsl"
 
-// Writes the occluder map as w, in blocks of 8x8 texels that lie together, with each block's moments.
+// Writes the occluder map as w and how it slopes, in blocks of 8x8 texels that lie together, with each block's moments.
 // One invocation handles one block; z is the side: 0 the front layer, 1 the back layer.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 0) uniform texture2D front_depth;
 layout(set = 0, binding = 1) uniform texture2D back_depth;
-layout(set = 0, binding = 2, std430) buffer Texels { float texels[]; };
+layout(set = 0, binding = 2, std430) buffer Texels { uint texels[]; };
 layout(set = 0, binding = 3, std430) buffer Blocks { uvec4 blocks[]; };
 layout(set = 0, binding = 4, std430) buffer Nodes { uvec4 nodes[]; };
 
@@ -20,6 +20,7 @@ layout(push_constant) uniform Push {
     int row;        // blocks a row, a multiple of a superblock's
     float inv_near; // 1 over the near plane's distance, 1/m
     int sums;       // where the prefix sums begin in nodes
+    int slopes;     // where the slopes begin in texels
     int faces;      // 0: both layers as they are; 1, 2: see below
 } push;
 
@@ -52,23 +53,31 @@ const float FLATTER = 30.0;
 // The largest step that a raster's rounding gives the depth of a flat face.
 const float ROUNDING = 1.0e-4;
 
-// How steeply w changes at a texel: along each axis by the lesser step to its two neighbours, so that an
-// edge beyond which something else lies does not count; of both axes the larger.
-float steepness(ivec2 p, uint side)
+// How w changes at a texel: along each axis by the lesser step to its two neighbours, so that an edge beyond which
+// something else lies does not count.
+vec2 slope_at(ivec2 p, uint side)
 {
     float w = w_at(p, side);
-    float steep = 0.0;
+    vec2 slope = vec2(0.0);
     for (int axis = 0; axis < 2; ++axis) {
         ivec2 step = ivec2(1 - axis, axis);
         float least = 3.0e38;
         for (int i = -1; i <= 1; i += 2) {
             ivec2 q = p + i * step;
             float other = q.x < 0 || q.y < 0 ? 0.0 : w_at(q, side);
-            least = other > 0.0 ? min(least, abs(other - w)) : least;
+            float change = float(i) * (other - w);
+            least = other > 0.0 && abs(change) < abs(least) ? change : least;
         }
-        steep = least < 3.0e38 ? max(steep, least) : steep;
+        slope[axis] = least < 3.0e38 ? least : 0.0;
     }
-    return steep;
+    return slope;
+}
+
+// The larger step of both axes.
+float steepness(ivec2 p, uint side)
+{
+    vec2 slope = abs(slope_at(p, side));
+    return max(slope.x, slope.y);
 }
 
 void main()
@@ -93,7 +102,7 @@ void main()
             steepness(p, 1u) > FLATTER * steepness(p, 0u) + ROUNDING * w[i]) {
             w[i] = 0.0;
         }
-        texels[index * BLOCK_TEXELS + i] = w[i];
+        texels[index * BLOCK_TEXELS + i] = floatBitsToUint(w[i]);
         if (w[i] > 0.0) {
             count += 1.0;
             sum += w[i];
@@ -102,9 +111,11 @@ void main()
             mask[i / 32] |= 1u << (i % 32);
         }
     }
+    int all_blocks = int(gl_NumWorkGroups.z) * push.row * push.row;
     if (count == 0.0) {
         blocks[2 * index] = uvec4(0u);
         blocks[2 * index + 1] = uvec4(0u);
+        blocks[2 * all_blocks + index] = uvec4(0u);
         return;
     }
     float mean = sum / count;
@@ -117,25 +128,36 @@ void main()
     mean += rest / count;
     // Prefix sums over the texels above and to the left, which give the sums over any rectangle.
     vec4 columns[BLOCK];
+    vec3 slopes[BLOCK];
     for (int x = 0; x < BLOCK; ++x) {
         columns[x] = vec4(0.0);
+        slopes[x] = vec3(0.0);
     }
-    // With both sides, maps of more than 1984 texels have more blocks than there is room for their sums: a storage buffer
+    // With both sides, maps of more than 1408 texels have more blocks than there is room for their sums: a storage buffer
     // of more than 128 MB is not guaranteed.
-    bool room = push.sums + (index + 1) * BLOCK_TEXELS <= nodes.length();
+    bool room = push.sums + 2 * (index + 1) * BLOCK_TEXELS <= nodes.length();
     for (int y = 0; y < BLOCK; ++y) {
         vec4 row = vec4(0.0);
+        vec3 slope_row = vec3(0.0);
         for (int x = 0; x < BLOCK; ++x) {
             int i = y * BLOCK + x;
             float d = w[i] - mean;
             row += w[i] > 0.0 ? vec4(1.0, d, d * d, d * d * d) : vec4(0.0);
             columns[x] += row;
+            uint stored = w[i] > 0.0 ? packed_slope(slope_at(block * BLOCK + ivec2(x, y), side)) : 0u;
+            texels[push.slopes + index * BLOCK_TEXELS + i] = stored;
+            vec2 slope = unpacked_slope(stored);
+            slope_row += vec3(dot(vec2(x, y) + 0.5, slope), slope);
+            slopes[x] += slope_row;
             if (room) {
-                nodes[push.sums + index * BLOCK_TEXELS + i] = floatBitsToUint(columns[x]);
+                int at = push.sums + 2 * (index * BLOCK_TEXELS + i);
+                nodes[at] = floatBitsToUint(columns[x]);
+                nodes[at + 1] = floatBitsToUint(vec4(slopes[x], 0.0));
             }
         }
     }
     vec4 total = columns[BLOCK - 1];
     blocks[2 * index] = floatBitsToUint(vec4(count, mean, w_min, w_max));
     blocks[2 * index + 1] = uvec4(floatBitsToUint(total.zw), mask);
+    blocks[2 * all_blocks + index] = floatBitsToUint(vec4(slopes[BLOCK - 1], 0.0));
 }

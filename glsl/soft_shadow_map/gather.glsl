@@ -2,6 +2,8 @@
 //
 // The hierarchical gather at four receivers at once, one lane of each vec4 a receiver.
 //
+// `#define SLOPED` lets micro-patches slope as the map does around them; without it they are parallel to the light.
+//
 // The including shader declares the buffers `texels` and `nodes`, and the test against the receivers' own
 // planes:
 //     struct Receivers { vec4 t_x; vec4 t_y; vec4 w; ... };
@@ -21,6 +23,7 @@ struct Map {
     float spread; // the series' limit, see classify
     int row;      // superblocks a row
     int sums;     // where the prefix sums begin in `nodes`
+    int slopes;   // where the slopes begin in `texels`
 };
 
 float least(vec4 a)
@@ -44,8 +47,18 @@ Tile tile_of(Receivers r)
                 vec2(least(r.w), most(mix(r.w, vec4(0.0), nothing))));
 }
 
-// The occlusion of one occluder texel.
-vec4 texel_occlusion(vec2 lo, float w_o, Receivers r, vec2 scale)
+// How w changes at an occluder texel.
+vec2 slope_of(int texel, Map map)
+{
+#ifdef SLOPED
+    return unpacked_slope(texels[map.slopes + texel]);
+#else
+    return vec2(0.0);
+#endif
+}
+
+// The occlusion of one occluder texel, whose w changes by `slope` a texel.
+vec4 texel_occlusion(vec2 lo, float w_o, vec2 slope, Receivers r, vec2 scale)
 {
     // Receivers in front of the texel, and missing ones, get a magnification of 0.
     vec4 k = mix(vec4(0.0), 1.0 / (w_o - r.w), greaterThan(vec4(w_o), r.w));
@@ -59,24 +72,40 @@ vec4 texel_occlusion(vec2 lo, float w_o, Receivers r, vec2 scale)
     vec4 b_y = (lo.y + 1.0 - r.t_y) * m_y + 0.5;
     vec4 x = clamp(b_x, 0.0, 1.0) - clamp(a_x, 0.0, 1.0);
     vec4 y = clamp(b_y, 0.0, 1.0) - clamp(a_y, 0.0, 1.0);
-    return mix(vec4(0.0), x * y, is_above(lo, w_o, r));
+    vec4 area = x * y;
+#ifdef SLOPED
+    // A step of (u, v) on the patch changes k, too: the determinant of its projection is k^2 (1 - k (c - t).g).
+    area *= 1.0 - k * ((lo.x + 0.5 - r.t_x) * slope.x + (lo.y + 0.5 - r.t_y) * slope.y);
+#endif
+    return mix(vec4(0.0), area, is_above(lo, w_o, r));
 }
 
-// The moments of the texels [lo, hi) of a block whose prefix sums begin at `first`.
+// The moments of the texels [lo, hi) of a block whose prefix sums begin at `first`; from the next place on those of
+// slopes.
 vec4 sums_within(int first, ivec2 lo, ivec2 hi)
 {
-    int last = first - 1 - BLOCK;
-    vec4 s = uintBitsToFloat(nodes[last + hi.y * BLOCK + hi.x]);
+    int last = first - 2 * (1 + BLOCK);
+    vec4 s = uintBitsToFloat(nodes[last + 2 * (hi.y * BLOCK + hi.x)]);
     if (lo.x > 0) {
-        s -= uintBitsToFloat(nodes[last + hi.y * BLOCK + lo.x]);
+        s -= uintBitsToFloat(nodes[last + 2 * (hi.y * BLOCK + lo.x)]);
     }
     if (lo.y > 0) {
-        s -= uintBitsToFloat(nodes[last + lo.y * BLOCK + hi.x]);
+        s -= uintBitsToFloat(nodes[last + 2 * (lo.y * BLOCK + hi.x)]);
         if (lo.x > 0) {
-            s += uintBitsToFloat(nodes[last + lo.y * BLOCK + lo.x]);
+            s += uintBitsToFloat(nodes[last + 2 * (lo.y * BLOCK + lo.x)]);
         }
     }
     return s;
+}
+
+// The occlusion by the texels with moments `s` and moments of slopes `m` that lie wholly inside the light.
+vec4 core_occlusion(vec4 s, vec4 m, float mean, vec2 lo, Receivers r)
+{
+    vec4 sum = series(s, mean, r.w);
+#ifdef SLOPED
+    sum += slope_series(s, m.xyz, mean, lo, r.t_x, r.t_y, r.w);
+#endif
+    return sum;
 }
 
 // Removes the first texel from a mask that has one, and returns its index. The caller tests whether there is one:
@@ -92,18 +121,20 @@ int take_texel(inout uvec2 todo)
 }
 
 // The occlusion by the first texel of a mask, which is removed from it; 0 where the mask is empty.
-vec4 next_texel(inout uvec2 todo, int block, vec2 lo, Receivers r, vec2 scale)
+vec4 next_texel(inout uvec2 todo, int block, vec2 lo, Receivers r, Map map)
 {
     if ((todo.x | todo.y) == 0u) {
         return vec4(0.0);
     }
     int n = take_texel(todo);
-    return texel_occlusion(lo + vec2(n % BLOCK, n / BLOCK), texels[block * BLOCK_TEXELS + n], r, scale);
+    int index = block * BLOCK_TEXELS + n;
+    float w_o = uintBitsToFloat(texels[index]);
+    return texel_occlusion(lo + vec2(n % BLOCK, n / BLOCK), w_o, slope_of(index, map), r, map.scale);
 }
 
 // The occlusion by the first texel of a mask, which is removed from it: by its back face, or by its front face where
 // the back face does not lie before the receiver.
-vec4 next_pair(inout uvec2 todo, int block, int backs, vec2 lo, Receivers r, vec2 scale)
+vec4 next_pair(inout uvec2 todo, int block, int backs, vec2 lo, Receivers r, Map map)
 {
     if ((todo.x | todo.y) == 0u) {
         return vec4(0.0);
@@ -111,9 +142,10 @@ vec4 next_pair(inout uvec2 todo, int block, int backs, vec2 lo, Receivers r, vec
     int n = take_texel(todo);
     vec2 at = lo + vec2(n % BLOCK, n / BLOCK);
     int index = block * BLOCK_TEXELS + n;
-    vec4 front = texel_occlusion(at, texels[index], r, scale);
-    float w_b = texels[index + backs];
-    vec4 back = texel_occlusion(at, w_b, r, scale);
+    float w_f = uintBitsToFloat(texels[index]);
+    vec4 front = texel_occlusion(at, w_f, slope_of(index, map), r, map.scale);
+    float w_b = uintBitsToFloat(texels[index + backs]);
+    vec4 back = texel_occlusion(at, w_b, slope_of(index + backs, map), r, map.scale);
     vec4 before = mix(vec4(0.0), vec4(greaterThan(vec4(w_b), r.w)), is_above(at, w_b, r));
     return w_b > 0.0 ? mix(front, back, before) : front;
 }
@@ -190,7 +222,10 @@ vec4 gather(Map map, int side, Receivers r)
             plane = kind == OUTSIDE ? -1 : plane_side(node, lo, extent, r);
             kind = plane < 0 ? OUTSIDE : (kind == INSIDE && (plane == 0 || pairs)) ? MIXED : kind;
             if (kind == INSIDE) {
-                sum_of_superblock += cell * series(vec4(node.count, 0.0, node.s2, node.s3), node.mean, r.w);
+                int its = index + from_side * map.row * map.row * FAMILY;
+                vec4 m = uintBitsToFloat(nodes[2 * (map.sums / 3) + its]);
+                vec4 s = vec4(node.count, 0.0, node.s2, node.s3);
+                sum_of_superblock += cell * core_occlusion(s, m, node.mean, lo, r);
             }
             children = !whole ? children & (children - 1u) : kind == MIXED ? node.mask.x : 0u;
             open = kind == MIXED && !whole;
@@ -218,13 +253,15 @@ vec4 gather(Map map, int side, Receivers r)
         ivec2 outer_hi = ivec2(clamp(ceil(tile.t_max + reach - lo), 0.0, float(BLOCK)));
         uvec2 todo = node.mask & rectangle_mask(outer_lo, outer_hi);
         float deviation = max(node.w_max - node.mean, node.mean - node.w_min);
-        int sums = map.sums + block * BLOCK_TEXELS;
-        bool summed = sums + BLOCK_TEXELS <= nodes.length();
+        int sums = map.sums + 2 * block * BLOCK_TEXELS;
+        bool summed = sums + 2 * BLOCK_TEXELS <= nodes.length();
         if (summed && plane > 0 && !pairs && deviation <= map.spread * (node.mean - tile.w.y)) {
             ivec2 core_lo = ivec2(clamp(ceil(tile.t_max - inner - lo), 0.0, float(BLOCK)));
             ivec2 core_hi = ivec2(clamp(floor(tile.t_min + inner - lo), 0.0, float(BLOCK)));
             if (core_lo.x < core_hi.x && core_lo.y < core_hi.y) {
-                sum_of_superblock += cell * series(sums_within(sums, core_lo, core_hi), node.mean, r.w);
+                vec4 s = sums_within(sums, core_lo, core_hi);
+                vec4 m = sums_within(sums + 1, core_lo, core_hi);
+                sum_of_superblock += cell * core_occlusion(s, m, node.mean, lo, r);
                 todo &= ~rectangle_mask(core_lo, core_hi);
             }
         }
@@ -234,24 +271,24 @@ vec4 gather(Map map, int side, Receivers r)
         // Each turn handles eight texels: Mesa's CPU driver cuts an invocation off, silently, after 65535 turns of all
         // its loops together.
         while (pairs && (todo.x | todo.y) != 0u) {
-            part += next_pair(todo, block, backs, lo, r, map.scale);
-            part += next_pair(todo, block, backs, lo, r, map.scale);
-            part += next_pair(todo, block, backs, lo, r, map.scale);
-            part += next_pair(todo, block, backs, lo, r, map.scale);
-            part += next_pair(todo, block, backs, lo, r, map.scale);
-            part += next_pair(todo, block, backs, lo, r, map.scale);
-            part += next_pair(todo, block, backs, lo, r, map.scale);
-            part += next_pair(todo, block, backs, lo, r, map.scale);
+            part += next_pair(todo, block, backs, lo, r, map);
+            part += next_pair(todo, block, backs, lo, r, map);
+            part += next_pair(todo, block, backs, lo, r, map);
+            part += next_pair(todo, block, backs, lo, r, map);
+            part += next_pair(todo, block, backs, lo, r, map);
+            part += next_pair(todo, block, backs, lo, r, map);
+            part += next_pair(todo, block, backs, lo, r, map);
+            part += next_pair(todo, block, backs, lo, r, map);
         }
         while ((todo.x | todo.y) != 0u) {
-            part += next_texel(todo, block, lo, r, map.scale);
-            part += next_texel(todo, block, lo, r, map.scale);
-            part += next_texel(todo, block, lo, r, map.scale);
-            part += next_texel(todo, block, lo, r, map.scale);
-            part += next_texel(todo, block, lo, r, map.scale);
-            part += next_texel(todo, block, lo, r, map.scale);
-            part += next_texel(todo, block, lo, r, map.scale);
-            part += next_texel(todo, block, lo, r, map.scale);
+            part += next_texel(todo, block, lo, r, map);
+            part += next_texel(todo, block, lo, r, map);
+            part += next_texel(todo, block, lo, r, map);
+            part += next_texel(todo, block, lo, r, map);
+            part += next_texel(todo, block, lo, r, map);
+            part += next_texel(todo, block, lo, r, map);
+            part += next_texel(todo, block, lo, r, map);
+            part += next_texel(todo, block, lo, r, map);
         }
         sum_of_superblock += part;
     }

@@ -10,7 +10,7 @@
 layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0) uniform texture2D receiver_depth;
-layout(set = 0, binding = 1, std430) readonly buffer Texels { float texels[]; };
+layout(set = 0, binding = 1, std430) readonly buffer Texels { uint texels[]; };
 layout(set = 0, binding = 2, std430) readonly buffer Nodes { uvec4 nodes[]; };
 layout(set = 0, binding = 3, r32f) writeonly uniform image2D soft_shadow_map;
 
@@ -68,7 +68,7 @@ void main()
         r.t_y[i] = t.y;
         r.w[i] = stored > 0.0 ? stored * push.receiver_inv_near : NOTHING;
     }
-    Map map = Map(push.scale, push.w_max, push.spread, push.row, push.sums);
+    Map map = Map(push.scale, push.w_max, push.spread, push.row, push.sums, 0);
     vec4 occlusion = gather(map, push.side, r);
     for (int i = 0; i < 4; ++i) {
         ivec2 p = quad + ivec2(i & 1, i >> 1);

@@ -13,7 +13,7 @@ layout(local_size_x = 64) in;
 #include "common/light_space.glsl"
 #include "soft_shadow_map/node.glsl"
 
-layout(set = 0, binding = 2, std430) readonly buffer Texels { float texels[]; };
+layout(set = 0, binding = 2, std430) readonly buffer Texels { uint texels[]; };
 layout(set = 0, binding = 3, std430) readonly buffer Nodes { uvec4 nodes[]; };
 layout(set = 0, binding = 4, r32f) writeonly uniform image2D visibility;
 
@@ -60,6 +60,7 @@ int plane_side(Node node, vec2 lo, float side, Receivers r)
     return all(greaterThan(mix(least, vec4(NOTHING), nothing), r.bias)) ? 1 : 0;
 }
 
+#define SLOPED
 #include "soft_shadow_map/gather.glsl"
 
 void main()
@@ -107,7 +108,8 @@ void main()
         // In a tile that no occluder can shadow, only a pixel's own surface hides light.
         r.w[i] = there && shadowable ? w : NOTHING;
     }
-    Map map = Map(push.scale, push.w_max, push.spread, push.row, push.sums);
+    int slopes = (1 + (push.flags & 1)) * push.row * push.row * FAN * FAN * BLOCK_TEXELS;
+    Map map = Map(push.scale, push.w_max, push.spread, push.row, push.sums, slopes);
     vec4 hidden = below;
     bool mean = (push.flags & 2) != 0;
     for (int side = 0; side <= (push.flags & 1); ++side) {
@@ -116,7 +118,8 @@ void main()
         vec4 sum = below + gather(map, side == 1 && mean ? BACK_OR_FRONT : side, r);
         hidden = side == 1 && mean ? merged_sides(hidden, sum) : max(hidden, sum);
     }
-    vec4 v = 1.0 - min(hidden, vec4(1.0));
+    // Where patches are seen from behind, some may be less than nothing together.
+    vec4 v = 1.0 - clamp(hidden, below, vec4(1.0));
     for (int i = 0; i < 4; ++i) {
         ivec2 p = quad + ivec2(i & 1, i >> 1);
         if (served[i] && p.x < gbuffer.extent.x && p.y < gbuffer.extent.y) {

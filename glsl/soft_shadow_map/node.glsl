@@ -1,6 +1,10 @@
 // Entered from blocks.comp, superblocks.comp, patch_emit.comp, tiles.comp and gather.glsl.
 //
 // Nodes: square groups of occluder-map texels with the moments of w over the occupied ones.
+//
+// The buffer of nodes holds two uvec4 a node; then one a node of the moments of slopes, (sum c.g, sum g.x, sum g.y, 0),
+// with c from the node's first corner to a texel's centre, texels, and g the change of w a texel; and from `sums` on two
+// uvec4 a texel: the prefix sums over its block of (1, d, d^2, d^3), with d = w - mean, and of the moments of slopes.
 
 #ifndef SOFT_SHADOW_MAP_NODE_GLSL
 #define SOFT_SHADOW_MAP_NODE_GLSL
@@ -31,6 +35,18 @@ Node unpack_node(uvec4 a, uvec4 b)
     return Node(f.x, f.y, f.z, f.w, uintBitsToFloat(b.x), uintBitsToFloat(b.y), b.zw);
 }
 
+// A slope as the upper halves of two floats, rounded to 1/256 of it: naga has no 16-bit floats everywhere.
+uint packed_slope(vec2 slope)
+{
+    uvec2 bits = floatBitsToUint(slope) + 0x8000u;
+    return (bits.x >> 16u) | (bits.y & 0xffff0000u);
+}
+
+vec2 unpacked_slope(uint stored)
+{
+    return uintBitsToFloat(uvec2(stored << 16u, stored & 0xffff0000u));
+}
+
 // The sum of k^2 over texels whose w is mean + d, with s = (count, sum d, sum d^2, sum d^3), all of them
 // back-projected wholly inside the light: the Taylor series of 1/(w - w_r)^2 about the mean to the third
 // order, for four receivers. Times scale.x * scale.y it is the occlusion.
@@ -38,6 +54,16 @@ vec4 series(vec4 s, float mean, vec4 w_r)
 {
     vec4 k = 1.0 / (mean - w_r);
     return k * k * (s.x + k * (-2.0 * s.y + k * (3.0 * s.z - 4.0 * s.w * k)));
+}
+
+// The patches' slopes change that sum by this much: the sum of -k^3 (c - t).g over the texels, to the first order of d,
+// for texels of one plane (d = g.(c - mean c)). `m` is (sum c.g, sum g.x, sum g.y) with c from the corner `lo`.
+vec4 slope_series(vec4 s, vec3 m, float mean, vec2 lo, vec4 t_x, vec4 t_y, vec4 w_r)
+{
+    vec4 k = 1.0 / (mean - w_r);
+    vec4 turned = m.x + (lo.x - t_x) * m.y + (lo.y - t_y) * m.z;
+    float n = max(s.x, 1.0);
+    return k * k * k * (3.0 * k * (s.z - s.y * s.y / n + turned * (s.y / n)) - turned);
 }
 
 // A bit for each texel of a block in [lo, hi).

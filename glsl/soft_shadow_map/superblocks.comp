@@ -25,6 +25,10 @@ void main()
     int first = (side * push.row * FAN + super.y * FAN) * push.row * FAN + super.x * FAN;
     int index = ((side * push.row + super.y) * push.row + super.x) * FAMILY;
 
+    int sides = int(gl_NumWorkGroups.z);
+    int all_blocks = sides * push.row * FAN * push.row * FAN;
+    int slopes = 2 * sides * push.row * push.row * FAMILY; // where the moments of slopes begin in nodes
+    vec3 slope = vec3(0.0);
     float count = 0.0;
     float sum = 0.0;
     float w_min = 3.0e38;
@@ -36,6 +40,10 @@ void main()
         uvec4 b = blocks[2 * at + 1];
         nodes[2 * (index + 1 + i)] = a;
         nodes[2 * (index + 1 + i) + 1] = b;
+        uvec4 c = blocks[2 * all_blocks + at];
+        nodes[slopes + index + 1 + i] = c;
+        vec3 of_block = uintBitsToFloat(c.xyz);
+        slope += vec3(of_block.x + dot(vec2(i % FAN, i / FAN) * float(BLOCK), of_block.yz), of_block.yz);
         Node node = unpack_node(a, b);
         if (node.count > 0.0) {
             count += node.count;
@@ -48,6 +56,7 @@ void main()
     if (count == 0.0) {
         nodes[2 * index] = uvec4(0u);
         nodes[2 * index + 1] = uvec4(0u);
+        nodes[slopes + index] = uvec4(0u);
         return;
     }
     float mean = sum / count;
@@ -72,4 +81,5 @@ void main()
     }
     nodes[2 * index] = floatBitsToUint(vec4(count, mean, w_min, w_max));
     nodes[2 * index + 1] = uvec4(floatBitsToUint(vec2(s2, s3)), mask, 0u);
+    nodes[slopes + index] = floatBitsToUint(vec4(slope, 0.0));
 }

@@ -21,8 +21,8 @@ const FAMILY: u64 = 17;
 pub(super) struct Nodes {
     pub texels: ResourceId,
     pub blocks: ResourceId,
-    /// Superblocks with their blocks, and behind them the prefix sums that give the moments of any rectangle of a
-    /// block's texels: one buffer, since a stage has four for sure.
+    /// Superblocks with their blocks, their slopes, and behind them the prefix sums that give the moments of any rectangle
+    /// of a block's texels: one buffer, since a stage has four for sure.
     pub families: ResourceId,
     /// Where the sums begin in it, in 16 bytes.
     pub sums: u32,
@@ -60,6 +60,8 @@ pub struct Blocks {
     pub inv_near: f32,
     /// Where the prefix sums begin among the nodes, in 16 bytes.
     pub sums: i32,
+    /// Where the slopes begin among the texels, in 4 bytes.
+    pub slopes: i32,
     /// 0: both layers as they are; 1: front texels take the back layer's distance where it has one; 2:
     /// back texels behind a front that is flatter by far are left out.
     pub faces: i32,
@@ -84,16 +86,17 @@ pub(super) fn declare_nodes(
     let superblock_row = inputs.occluders.side.div_ceil(SUPERBLOCK);
     let block_row = superblock_row * (SUPERBLOCK / BLOCK);
     let count = |row: u32| u64::from(row) * u64::from(row) * u64::from(sides);
-    let node_bytes = 2 * size_of::<[f32; 4]>() as u64;
+    // The moments of w and of its slopes.
+    let node_bytes = 3 * size_of::<[f32; 4]>() as u64;
     let texels_a_block = u64::from(BLOCK * BLOCK);
     let families = count(superblock_row) * FAMILY * node_bytes;
     let nodes = Nodes {
-        texels: graph.buffer("soft_shadow_map.texels", count(block_row) * texels_a_block * 4),
+        texels: graph.buffer("soft_shadow_map.texels", count(block_row) * texels_a_block * 8),
         blocks: graph.buffer("soft_shadow_map.blocks", count(block_row) * node_bytes),
         families: graph.buffer(
             "soft_shadow_map.families",
-            // From N = 1,985 on it would be larger with two sides; blocks beyond have no sums.
-            (families + count(block_row) * texels_a_block * 16).min(STORAGE_BYTES),
+            // From N = 1,409 on it would be larger with two sides; blocks beyond have no sums.
+            (families + count(block_row) * texels_a_block * 32).min(STORAGE_BYTES),
         ),
         sums: (families / 16) as u32,
         block_row,
@@ -108,6 +111,7 @@ pub(super) fn declare_nodes(
             row: block_row as i32,
             inv_near: inputs.occluders.top() as f32,
             sums: nodes.sums as i32,
+            slopes: (count(block_row) * texels_a_block) as i32,
             faces: match combination(settings) {
                 Sides::Bottom => 1,
                 Sides::Mean => 2,
