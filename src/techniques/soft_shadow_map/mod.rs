@@ -34,6 +34,15 @@
 //! g(q)/(1 − g(q)) of the visible fraction at most. [`spread_of`] inverts g. The float sums add
 //! 2e-6 at most to that, whatever the tolerance (measured; `docs/rounding.md` derives a bound).
 //!
+//! **Sloped patches.** A patch parallel to the light stands for a surface that leans, and the patches of a leaning surface
+//! overlap or leave gaps (eq. 3): an edge-on one, which hides nothing, still counts all of its treads. Where we depart, at
+//! the pixels: a patch has the slope g of w from texel to texel, along each axis the lesser step to its two neighbours.
+//! From a receiver its projection's determinant is k²(1 − k (c − t)·g), with c its centre in texels, so that is what it
+//! counts; it is below 0 where the receiver sees the side that the light sees. Inside a node that is linear in moments of
+//! c·g and g: Σ −k³(c − t)·g, to the first order in δ for texels of a plane. Mean errors with patches parallel to the
+//! light and with sloped ones, defaults, 640×480: bunny 2.3 and 1.7 %, Suzanne 1.6 and 1.0, a room behind a window that is
+//! the light 36 and 6.2.
+//!
 //! **At the pixels.** The same gather, evaluated at the G-buffer's pixels, needs no receiver map and
 //! no split into occluders and receivers, which the authors name as their largest limitation
 //! (section 7). A plane of light space is linear in (u, v, w), so whether a texel lies above the
@@ -68,9 +77,10 @@
 //! each front texel's patch is put at the distance of the furthest back face behind it, which costs
 //! what one pass costs, as the figure's frame rates do, and closes contact shadows.
 //!
-//! **Limits.** Neighbouring patches at different distances overlap or leave gaps (eq. 3); full umbra
-//! sums to 0.89 … 1.13. What the light's centre cannot see casts nothing. A tall box under a large
-//! light is wrong by 5 % in the mean, at any resolution.
+//! **Limits.** On a soft shadow map, whose patches are as published, neighbours at different distances overlap or leave
+//! gaps (eq. 3): full umbra sums to 0.89 … 1.13. What the light's centre cannot see casts nothing. A ray that enters and
+//! leaves a solid by sides that the light's centre sees counts once below 0 and once above: beside tall boxes under a light
+//! that reaches over them, shadows are too light by 2 % in the mean.
 //!
 //! Mesa's CPU driver (llvmpipe, 22.3) cuts a shader invocation off after 65,535 turns of all its loops
 //! together, and says nothing: light leaks in where the rest of the sum is missing. The gather takes

@@ -32,6 +32,49 @@ pub fn occlusion(map: &OccluderMap, t: [f32; 2], w_r: f32) -> f64 {
         .sum()
 }
 
+/// The change of w at each texel of a map, a texel along x and along y: along each axis the lesser of the steps to both
+/// neighbours, 0 where there is none. As the device keeps them, rounded to the upper half of a float.
+pub fn slopes(w: &[f32], side: usize) -> Vec<[f32; 2]> {
+    let kept = |x: f32| f32::from_bits((x.to_bits().wrapping_add(0x8000)) & 0xffff_0000);
+    let lesser = |steps: [Option<f32>; 2]| {
+        let steps = steps.into_iter().flatten();
+        kept(steps.reduce(|a, b| if b.abs() < a.abs() { b } else { a }).unwrap_or(0.0))
+    };
+    let of = |at: usize| {
+        let (x, y) = (at % side, at / side);
+        let before = |inside: bool, by: usize| {
+            inside.then(|| w[at - by]).filter(|&w| w > 0.0).map(|other| w[at] - other)
+        };
+        let after = |inside: bool, by: usize| {
+            inside.then(|| w[at + by]).filter(|&w| w > 0.0).map(|other| other - w[at])
+        };
+        [
+            lesser([before(x > 0, 1), after(x + 1 < side, 1)]),
+            lesser([before(y > 0, side), after(y + 1 < side, side)]),
+        ]
+    };
+    (0..w.len()).map(|at| if w[at] > 0.0 { of(at) } else { [0.0; 2] }).collect()
+}
+
+/// The occlusion of a receiver by every micro-patch of a map, whose `slopes` are those of [`slopes`], added up in f64:
+/// the projected area of each counts k²(1 − k (c − t)·g), with c its centre and g its slope, where that of a patch
+/// parallel to the light counts k².
+pub fn sloped_occlusion(map: &OccluderMap, slopes: &[[f32; 2]], t: [f32; 2], w_r: f32) -> f64 {
+    let wide = |a: [f32; 2]| a.map(f64::from);
+    let (t, w_r, scale) = (wide(t), f64::from(w_r), wide(map.scale));
+    let of = |(i, (&w, &slope)): (usize, (&f32, &[f32; 2]))| {
+        let w = f64::from(w);
+        if w <= w_r {
+            return 0.0;
+        }
+        let lo = [(i % map.side) as f64, (i / map.side) as f64];
+        let flat = patch_occlusion(lo, lo.map(|x| x + 1.0), w, t, w_r, scale);
+        let g = wide(slope);
+        flat * (1.0 - ((lo[0] + 0.5 - t[0]) * g[0] + (lo[1] + 0.5 - t[1]) * g[1]) / (w - w_r))
+    };
+    map.w.iter().zip(slopes).enumerate().map(of).sum()
+}
+
 /// The back layer as the mean uses it: w of each back texel, 0 where there is none or where the front is
 /// flatter than it by `FLATTER` and there is nothing to cancel.
 pub fn backs_of_mean(front: &[f32], back: &[f32], side: usize) -> Vec<f32> {
@@ -235,6 +278,29 @@ mod tests {
         let map = OccluderMap { w: &w, side: 64, scale: [1.0 / 40.0; 2] };
         let sum = occlusion(&map, [32.25, 31.5], 0.5);
         assert!((sum - 1.0).abs() < 1e-12, "{sum}");
+    }
+
+    /// A plane that fills the light's window hides all of it, whichever way it leans.
+    #[test]
+    fn a_leaning_map_that_fills_the_light_sums_to_one() {
+        let side = 256;
+        let plane = |i: usize| 1.0 + 2e-3 * (i % side) as f32 - 1e-3 * (i / side) as f32;
+        let w: Vec<f32> = (0..side * side).map(plane).collect();
+        let map = OccluderMap { w: &w, side, scale: [1.0 / 40.0; 2] };
+        let (t, w_r) = ([128.3, 127.6], 0.3);
+        let (flat, sloped) =
+            (occlusion(&map, t, w_r), sloped_occlusion(&map, &slopes(&w, side), t, w_r));
+        assert!((flat - 1.0).abs() > 5e-3, "{flat}");
+        assert!((sloped - 1.0).abs() < 1e-3, "{sloped}");
+    }
+
+    #[test]
+    fn slopes_stop_at_edges_and_gaps() {
+        let w = [1.0, 1.5, 9.0, 0.0, 2.0, 0.0, 0.0, 0.0, 1.0];
+        let of = slopes(&w, 3);
+        // The lesser step, then the only one, then none.
+        assert_eq!([of[0][0], of[1][0], of[2][0]], [0.5, 0.5, 7.5]);
+        assert_eq!((of[4], of[8], of[3]), ([0.0, 0.5], [0.0, 0.0], [0.0, 0.0]));
     }
 
     #[test]
