@@ -33,15 +33,16 @@ fn one_view_is_enough_for_what_lies_below_a_lamp() {
     let floor = [cuboid([-9.0, -9.0, 2.6], [9.0, 9.0, 2.7])];
     for projection in [Projection::Behind, Projection::Centre, Projection::Orthographic] {
         let mut views = Vec::new();
-        let why = fit_served([0.3; 2], [&table, &floor], projection, 256, 8, &mut views);
+        let why = fit_served([0.3; 2], [&table, &floor], projection, [256, 512], 8, &mut views);
         assert_eq!(views.len(), 1, "{why}");
         let alone = view_from([0.3; 2], &table, projection, 256).unwrap();
         assert_eq!((views[0].map, views[0].region), (alone, Region::ALL));
     }
     let mut views = Vec::new();
-    let why = fit_served([0.3; 2], [&room(), &floor], Projection::Behind, 256, 1, &mut views);
+    let why =
+        fit_served([0.3; 2], [&room(), &floor], Projection::Behind, [256, 512], 1, &mut views);
     assert!(views.len() == 1 && why.to_string().contains("no more are allowed"), "{why}");
-    fit_served([0.3; 2], [&[], &floor], Projection::Behind, 256, 4, &mut views);
+    fit_served([0.3; 2], [&[], &floor], Projection::Behind, [256, 512], 4, &mut views);
     assert!(views.is_empty());
 }
 
@@ -51,8 +52,9 @@ fn rays_from_a_region_stay_in_its_view() {
     for half in [[0.3, 0.3], [1.3, 0.015], [0.0, 0.0], [2.0, 0.7]] {
         let boxes = room();
         let mut views = Vec::new();
-        fit_served(half, [&boxes, &boxes], Projection::Behind, 256, 4, &mut views);
+        fit_served(half, [&boxes, &boxes], Projection::Behind, [256, 512], 4, &mut views);
         assert_eq!(views.len(), 4);
+        assert!(views.iter().all(|served| served.map.side == 512));
         for Served { map, region, deepest } in &views[..3] {
             let tangent = region.tangent();
             assert!(*deepest <= map.far && tangent < WIDEST);
@@ -76,7 +78,8 @@ fn windows_grow_by_one_factor_up_to_what_lies_furthest_aside() {
     let boxes = room();
     for most in 2..=8 {
         let mut views = Vec::new();
-        let why = fit_served([0.3; 2], [&boxes, &boxes], Projection::Centre, 128, most, &mut views);
+        let why =
+            fit_served([0.3; 2], [&boxes, &boxes], Projection::Centre, [64, 128], most, &mut views);
         let tangents: Vec<f64> = views.iter().map(|v| v.map.max[0]).collect();
         assert!(views.len() as u32 <= most && why.to_string().contains("64.00"), "{why}");
         let ratios: Vec<f64> = tangents.windows(2).map(|pair| pair[1] / pair[0]).collect();
