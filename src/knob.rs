@@ -11,7 +11,7 @@ use std::fmt;
 pub(crate) const MAP_OF_256: &str = "side of the occluder maps; any whole number, and 0 for 256 where one view serves a \
                                      light, 512 where several do";
 
-/// The same where it has 128.
+/// What it says where a map has 128 by itself.
 pub(crate) const MAP_OF_128: &str = "side of the occluder maps; any whole number, and 0 for 128 where one view serves a \
                                      light, 512 where several do";
 

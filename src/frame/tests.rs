@@ -169,9 +169,9 @@ fn every_bad_description_is_one_sentence() {
     assert!(refuse(|d| d.depth_format = vk::Format::R8_UNORM).contains("no depth"));
     assert!(refuse(|d| d.position_strides = vec![12, 8]).contains("8 bytes"));
     let tiny = |d: &mut Description| {
-        d.technique = crate::techniques::pcss::Settings { map: 0, ..Default::default() }.into();
+        d.technique = crate::techniques::pcss::Settings { map: 4097, ..Default::default() }.into();
     };
-    assert!(refuse(tiny).contains("1 to 4096"));
+    assert!(refuse(tiny).contains("0 to 4096"));
 }
 
 /// Each fault of an image gets an error that names the image, what it is and what it should be.

@@ -145,7 +145,8 @@ fn compare(scene: &Scene, words: &str, bounds: [f64; 4]) {
 #[test]
 fn at_the_pixels() {
     let spheres = generate::spheres(generate::square_light(0.6).unwrap());
-    compare(&spheres, "receivers=pixels sides=two", [0.0, 1e-8, 1e-7, 1e-5]);
+    // Slopes are differences of neighbours, rounded to 1/256, which a last digit of depth may change.
+    compare(&spheres, "receivers=pixels sides=two", [0.0, 1e-6, 1e-5, 1e-4]);
 }
 
 /// One comparison that comes out otherwise is a whole tap; none does here.

@@ -253,13 +253,13 @@ fn descriptions() {
         ),
         d(
             "no map",
-            |d| d.technique = hard::Settings { map: 0, ..Default::default() }.into(),
-            &["setting map", "1 to 4096"],
+            |d| d.technique = hard::Settings { map: 4097, ..Default::default() }.into(),
+            &["setting map", "0 to 4096"],
         ),
         d(
             "an absurd map",
             |d| d.technique = hard::Settings { map: 1 << 20, ..Default::default() }.into(),
-            &["setting map", "1 to 4096"],
+            &["setting map", "0 to 4096"],
         ),
         d(
             "a bad knob",

@@ -162,6 +162,6 @@ mod tests {
             assert_eq!(count(|s| s.in_quick), curve.quick.split_whitespace().count());
         }
         assert_eq!(method("time-machine", "map=1").unwrap(), None);
-        assert!(method("soft-shadow-map", "map=0").unwrap_err().0.contains("1 to 4096"));
+        assert!(method("soft-shadow-map", "map=4097").unwrap_err().0.contains("0 to 4096"));
     }
 }
