@@ -21,7 +21,8 @@ pub(crate) const LENGTHS: std::ops::RangeInclusive<f64> = 1e-15..=1e15;
 /// The largest angular size of a sun, radians.
 const MAX_ANGULAR_SIZE: f64 = 1.0;
 
-/// A rectangle that emits from one side; one of no height is a line ([`Self::line`]).
+/// A rectangle that emits from one side; one of no height is a line ([`Self::line`]), and one without sides a point
+/// ([`Self::point`]).
 ///
 /// Light space has its origin at the light's centre, +z along the emission, and x and y along the
 /// half-axes; it is right-handed and its unit is the metre. Positions and axes are world space in
@@ -143,6 +144,29 @@ impl RectangleLight {
     /// Whether the light is a segment without height.
     pub fn is_line(&self) -> bool {
         self.half_extents[1] == 0.0 && self.half_extents[0] > 0.0
+    }
+
+    /// A point light, which shines into the half space about `emission`, of any length: its shadows have no penumbra.
+    ///
+    /// Its width and height are 0. [`Light::point`] makes one that shines to all sides.
+    ///
+    /// # Errors
+    /// [`Error::Light`] for values that are not finite, or no emission.
+    pub fn point(center: impl Into<Vector>, emission: impl Into<Vector>) -> Result<Self, Error> {
+        let [Vector(center), Vector(emission)] = [center.into(), emission.into()];
+        let z = emission.normalize_or_zero();
+        if !center.is_finite() || z == DVec3::ZERO {
+            return Err(Error::Light(
+                "its position and emission must be finite numbers, and it must shine into some direction".into(),
+            ));
+        }
+        let x = z.any_orthonormal_vector();
+        Ok(Self { center, axes: DMat3::from_cols(x, z.cross(x), z), half_extents: [0.0; 2] })
+    }
+
+    /// Whether the light is a point: without width and height.
+    pub fn is_point(&self) -> bool {
+        self.half_extents == [0.0; 2]
     }
 
     /// A sun: a light of an angular size, so far away that its rays are all but parallel.

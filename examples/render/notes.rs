@@ -5,7 +5,7 @@ use crate::report::Drawn;
 use antumbra::auto::{Budget, Choice};
 use antumbra::effects::{Effect, Outcome};
 use antumbra::scene::{AreaLight, Scene};
-use antumbra::{FramePlan, Shape};
+use antumbra::FramePlan;
 
 /// One line each, for standard error.
 pub fn of(options: &Options, scene: &Scene, lights: &[Drawn]) -> Vec<String> {
@@ -87,9 +87,10 @@ fn namesakes(options: &Options, scene: &Scene) -> Option<String> {
 fn unshadowed(light: &AreaLight, plan: &FramePlan) -> Option<String> {
     let shadow = plan.verdicts().of(Effect::Shadow).outcome;
     let [x, y, z] = light.light.emission().to_array().map(|c| (c * 100.0).round() / 100.0 + 0.0);
-    let whither = match light.light.shape() {
-        Shape::Sphere { .. } | Shape::Capsule { .. } | Shape::Point => "to all sides".into(),
-        _ => format!("along its node's -Z, here towards ({x}, {y}, {z})"),
+    let whither = if light.light.is_round() {
+        "to all sides".into()
+    } else {
+        format!("along its node's -Z, here towards ({x}, {y}, {z})")
     };
     (shadow == Outcome::LeftOut).then(|| {
         format!(

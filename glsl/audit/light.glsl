@@ -20,7 +20,8 @@ layout(push_constant) uniform Push {
     float half_length; // half the length of a stadium's or a capsule's segment, m
     float radius;      // m; a sun's is a tangent
     uvec2 cells;       // along the image's width and height
-    uvec2 unused;
+    uint all_sides;    // 1 for a light that shines to all sides
+    uint unused;
     uint corners[16];  // as shares of the light's width and height, 16 bits each
 } push;
 
@@ -38,7 +39,7 @@ struct Figure {
 // Whether a pixel shows a receiver that the light may reach: in front of its plane, where it shines to one side.
 bool is_lit(Receiver r)
 {
-    bool all_sides = push.kind == SPHERE || push.kind == CAPSULE || push.kind == POINT;
+    bool all_sides = push.all_sides != 0u;
     // A pixel without a receiver has no position.
     return r.receives || (all_sides && any(notEqual(r.in_light, vec3(0.0))));
 }

@@ -14,28 +14,35 @@ layout(set = 0, binding = 2) uniform texture2D point_depth;
 layout(set = 0, binding = 3, r32f) uniform image2D hidden_points;
 
 layout(push_constant) uniform Push {
-    vec2 point;         // the point's place on the light, m
+    vec2 point;         // the point's place on the light, m; of parallel light how x and y go on a metre towards it
     vec2 texels_per_uv; // map texels a unit of u and v, in the point's map
     vec2 first;         // texel coordinates of u = v = 0
     ivec2 extent;       // the G-buffer's width and height
-    float inv_near;     // 1 over the map's near plane, 1/m
+    float inv_near;     // 1 over the map's near plane, 1/m; or its height, m
     float snap;         // how far a raster moves a vertex, in texels
     int map;            // the map's side in texels
+    int parallel;       // 1 where light is parallel
 } push;
 
 bool hidden(ivec2 pixel)
 {
     vec4 position = texelFetch(positions, pixel, 0);
-    if (position.w == 0.0) {
+    if (position.w <= 0.0) {
         return false;
     }
     vec3 normal = texelFetch(normals, pixel, 0).xyz;
-    vec3 p = position.xyz - vec3(push.point, 0.0);
+    // Under a sun the point is a direction: x and y are made the same all along the ray to it, and planes are turned along.
+    bool parallel = push.parallel != 0;
+    vec3 p = position.xyz + vec3(push.point * (parallel ? position.z : -1.0), 0.0);
+    normal.z -= parallel ? dot(normal.xy, push.point) : 0.0;
+    float c = parallel ? normal.z : dot(normal, p);
     // The point lies below the pixel's own surface.
-    if (dot(normal, p) >= 0.0) {
+    if (c >= 0.0) {
         return true;
     }
-    MapPlane m = map_plane(p, normal, position.w == 2.0, push.texels_per_uv, push.first, push.snap, 0.0);
+    float w = parallel ? -p.z : 1.0 / p.z;
+    MapPlane m = map_plane_at(p.xy * (parallel ? 1.0 : w), w, normal.xy, parallel ? -dot(normal, p) : normal.z, c,
+                              position.w == 2.0, push.texels_per_uv, push.first, push.snap, 0.0);
     ivec2 texel = ivec2(floor(m.t));
     if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(push.map)))) {
         return false;

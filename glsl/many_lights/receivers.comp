@@ -21,8 +21,9 @@ void main()
         return;
     }
     Receiver r = receiver_at(p);
-    // 0: nothing to hide; 1: receives only; 2: its own surface blocks.
-    float kind = r.receives && r.position.z > 0.0 ? (r.blocks ? 2.0 : 1.0) : 0.0;
+    // -1: another view serves it; 0: nothing to hide; 1: receives only; 2: its own surface blocks.
+    float kind = r.receives && is_before_light(r.position) ? (r.blocks ? 2.0 : 1.0) : 0.0;
+    kind = is_served(r.position) ? kind : -1.0;
     imageStore(positions, p, vec4(r.position, kind));
     imageStore(normals, p, vec4(r.normal, 0.0));
     imageStore(hidden_points, p, vec4(0.0));

@@ -7,13 +7,21 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
+layout(set = 0, binding = 5, std430) buffer Pixels {
+    uint count;
+    uint none[3];
+    mat4 ndc_from_light;
+    vec2 corners[16];
+    uvec2 pieces[16];
+    uint pixels[];
+};
+
 #define NOISY_BINDING 7
 #define SURFACE_BINDING 8
 #include "ray_march/pixel.glsl"
 #include "common/lists.glsl"
 
 layout(set = 0, binding = 4, std430) buffer Arguments { uint groups[4]; };
-layout(set = 0, binding = 5, std430) buffer Pixels { uint count; uint none[3]; mat4 ndc_from_light; uint pixels[]; };
 
 layout(set = 0, binding = 6, FRACTION_FORMAT) writeonly uniform image2D halfway;
 

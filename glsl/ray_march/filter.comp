@@ -16,6 +16,8 @@ layout(set = 0, binding = 1, std430) readonly buffer Pixels {
     uint count;
     uint none[3];
     mat4 ndc_from_light;
+    vec2 corners[16];
+    uvec2 pieces[16];
     uint pixels[];
 };
 layout(set = 0, binding = 2) uniform texture2D noisy;

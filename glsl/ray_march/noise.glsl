@@ -231,7 +231,7 @@ void put_known(ivec2 p, float v)
 #endif
 
 // ---------------------------------------------------------------------------------------------
-// Lights that are discs: the part of them above a plane, and their points.
+// Lights that are discs or polygons: the part of them above a plane, and their points.
 
 // The fraction of the unit disc above a plane, which is a segment of it; a disc's half-extents are its radius.
 float fraction_of_disc_above(vec2 slope, float c)
@@ -245,6 +245,25 @@ float fraction_of_disc_above(vec2 slope, float c)
     }
     float d = c / steep;
     return (acos(d) - d * sqrt(max(1.0 - d * d, 0.0))) / 3.14159265;
+}
+
+// The area between an edge of a polygon and a line, of what of the edge lies above the line: x of its ends runs along the
+// line, y is the height. Over the edges of a polygon that runs counter-clockwise they add up to less the area above.
+float area_above(vec2 a, vec2 b)
+{
+    float high = max(a.y, b.y);
+    float low = min(a.y, b.y);
+    if (high <= 0.0) {
+        return 0.0;
+    }
+    float share = low >= 0.0 ? 1.0 : high / (high - low);
+    return (b.x - a.x) * share * 0.5 * (high + max(low, 0.0));
+}
+
+// The point of a triangle for one of [0, 1]^2: equal areas go to equal areas (Turk 1990).
+vec2 in_triangle(vec2 a, vec2 b, vec2 c, vec2 s)
+{
+    return a + sqrt(s.x) * ((b - a) + s.y * (c - b));
 }
 
 // The point of the unit disc for one of [-1, 1]^2: equal areas go to equal areas (Shirley and Chiu 1997).

@@ -64,6 +64,11 @@ bool is_modern() { return (push.flags & 1 << 19) != 0; }
 bool classifies() { return (push.flags & 1 << 21) != 0; }
 bool filters() { return (push.flags & 1 << 22) != 0; }
 bool is_disc() { return (push.flags & 1 << 28) != 0; }
+#ifdef FORWARD
+bool is_polygon() { return false; }
+#else
+bool is_polygon() { return (push.flags & 1 << 29) != 0; }
+#endif
 int sampling() { return push.flags >> 23 & 3; }
 
 // `#define USUAL` leaves out what only unusual settings need: the rays then take 0.4 of the time.
@@ -96,9 +101,57 @@ vec3 pixel_normal(ivec2 p, Receiver r)
 }
 #endif
 
+#ifndef FORWARD
+// A polygon is given in the list of pixels: its corners, counter-clockwise, in metres; and the triangles that it is cut
+// into, each as the share of the area before it and the numbers of its corners, 4 bits each, behind which the share is 1.
+// The last of these has 1 over the area and the number of corners.
+const int LAST_PIECE = 15;
+
+// The part of the polygon where dot(n, p) > c.
+float part_of_polygon_above(vec2 n, float c)
+{
+    float reach = dot(abs(n), push.half_light);
+    if (abs(c) >= reach) {
+        return c < 0.0 ? 1.0 : 0.0;
+    }
+    float steep = length(n);
+    mat2 turn = mat2(n.y, n.x, -n.x, n.y) / steep;
+    int count = int(pieces[LAST_PIECE].y);
+    vec2 a = turn * corners[count - 1] - vec2(0.0, c / steep);
+    float area = 0.0;
+    for (int i = 0; i < count; ++i) {
+        vec2 b = turn * corners[i] - vec2(0.0, c / steep);
+        area -= area_above(a, b);
+        a = b;
+    }
+    return clamp(area * uintBitsToFloat(pieces[LAST_PIECE].x), 0.0, 1.0);
+}
+
+// The point of the polygon for one of [0, 1]^2.
+vec2 in_polygon(vec2 s)
+{
+    int at = 0;
+    float before = 0.0;
+    float behind = uintBitsToFloat(pieces[1].x);
+    while (s.x >= behind && behind < 1.0) {
+        ++at;
+        before = behind;
+        behind = uintBitsToFloat(pieces[at + 1].x);
+    }
+    uint numbers = pieces[at].y;
+    vec2 within = vec2(clamp((s.x - before) / (behind - before), 0.0, 1.0), s.y);
+    return in_triangle(corners[numbers & 15u], corners[numbers >> 4 & 15u], corners[numbers >> 8 & 15u], within);
+}
+#endif
+
 // The part of the light above the pixel's own plane; all of it where the pixel's surface does not block.
 float part_above(Receiver r)
 {
+#ifndef FORWARD
+    if (r.blocks && is_polygon()) {
+        return part_of_polygon_above(r.normal.xy, c_of(r.normal, r.position));
+    }
+#endif
     vec2 slope = r.normal.xy * push.half_light;
     float c = c_of(r.normal, r.position);
     return !r.blocks ? 1.0 : is_disc() ? fraction_of_disc_above(slope, c) : fraction_above(slope, c);
@@ -265,8 +318,14 @@ Found found_by_rays(ivec2 p, Receiver r, float start, float end)
         vec2 s = light_sample(sampling(), is_modern(), i, rays(), cell_rows(), uvec2(p), push.seed);
         vec2 q = 2.0 * s - 1.0;
         vec2 point = (is_disc() ? on_disc(q) : q) * push.half_light;
+#ifndef FORWARD
+        if (is_polygon()) {
+            point = in_polygon(s);
+        }
+#endif
 #ifdef TEXTURED
-        FRACTION weight = emitted_at(s);
+        // The texture covers the rectangle around a disc or a polygon.
+        FRACTION weight = emitted_at(is_disc() || is_polygon() ? 0.5 + 0.5 * point / push.half_light : s);
         emitted += weight;
 #endif
         // The pixel's own surface hides this point of the light; no ray is needed.

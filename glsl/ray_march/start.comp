@@ -6,7 +6,14 @@
 layout(local_size_x = 1) in;
 
 layout(set = 0, binding = 0, std430) buffer Arguments { uint groups[4]; };
-layout(set = 0, binding = 1, std430) buffer Pixels { uint count; uint none[3]; mat4 ndc_from_light; uint pixels[]; };
+layout(set = 0, binding = 1, std430) buffer Pixels {
+    uint count;
+    uint none[3];
+    mat4 ndc_from_light;
+    vec2 corners[16];
+    uvec2 pieces[16];
+    uint pixels[];
+};
 
 layout(push_constant) uniform Push {
     mat4 ndc_from_light;

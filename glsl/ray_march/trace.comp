@@ -11,6 +11,8 @@ layout(set = 0, binding = 4, std430) readonly buffer Pixels {
     uint count;
     uint none[3];
     mat4 ndc_from_light;
+    vec2 corners[16];
+    uvec2 pieces[16];
     uint pixels[];
 };
 

@@ -42,8 +42,10 @@ pub struct LightPush {
     pub radius: f32,
     /// Cells along the image's width and height.
     pub cells: [u32; 2],
+    /// 1 for a light that shines to all sides.
+    pub all_sides: u32,
     /// Bytes that no shader reads.
-    pub unused: [u32; 2],
+    pub unused: u32,
     /// A polygon's corners as shares of the light's width and height, 16 bits each.
     pub corners: [u32; CORNERS],
 }
@@ -103,7 +105,8 @@ impl LightPush {
             half_length: half_length as f32,
             radius: radius as f32,
             cells,
-            unused: [0; 2],
+            all_sides: u32::from(light.is_round()),
+            unused: 0,
             corners: packed(corners, light),
         }
     }

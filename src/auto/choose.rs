@@ -123,7 +123,10 @@ impl Auto {
         drop_the_slow(&mut expected, &budget);
         match share(std::slice::from_ref(&expected), &budget)[0] {
             Some(best) => self.settle(0, situation, &expected, best, &budget),
-            None => self.unshadowed(0, &Technique::default()),
+            None => {
+                let kept = self.lights[0].technique.unwrap_or_default();
+                self.unshadowed(0, &kept)
+            }
         }
     }
 
@@ -197,7 +200,13 @@ impl Auto {
             choices.push(match (situation, picked[i]) {
                 (Some(s), Some(best)) => self.settle(i, s, &expected[i], best, &budget),
                 // An unshadowed light keeps its technique, which then costs nothing.
-                (None, _) if !is_line(frame) => self.unshadowed(i, &description.technique),
+                (None, _) if !is_line(frame) => {
+                    let kept = self.lights[i].technique.unwrap_or(description.technique);
+                    let holds = |t: &&Technique| t.room().takes().shapes.hold(&frame.light);
+                    let another = || techniques().iter().find(holds);
+                    let technique = Some(&kept).filter(holds).or_else(another);
+                    self.unshadowed(i, technique.unwrap_or(&kept))
+                }
                 (s, _) => self.for_line(i, frame, s.as_ref(), &budget),
             });
         }
@@ -229,13 +238,12 @@ impl Auto {
         expected.iter().find(|e| e.candidate == candidate).copied()
     }
 
-    /// The choice where nothing can be shadowed: the light keeps its technique.
+    /// The choice where nothing can be shadowed: the technique that the light has.
     fn unshadowed(&mut self, light: usize, technique: &Technique) -> Choice {
         let state = &mut self.lights[light];
         state.expected = None;
-        let technique = state.technique.unwrap_or(*technique);
         Choice {
-            technique,
+            technique: *technique,
             error: None,
             ms: None,
             nearest: None,
@@ -345,7 +353,8 @@ fn takes(technique: &Technique, description: &Description, frame: &Frame, s: &Si
     let fits = takes.lent_maps.is_ok()
         && maps.side <= description.technique.map()
         && (back || !maps.layers.back);
-    (!textured || takes.texture)
+    takes.shapes.hold(&frame.light)
+        && (!textured || takes.texture)
         && (!lent || fits)
         && (s.host_drawn == 0 || takes.host_draws == HostDraws::Any)
         && room::check_extent(technique.room(), description.extent).is_ok()

@@ -336,6 +336,18 @@ fn a_line_is_for_linear_light() {
     assert!(c.problem.unwrap().contains("no error below"));
 }
 
+#[test]
+fn discs_and_points_are_for_what_takes_them() {
+    let (meshes, up, down) = (over(CUBE, 2.0), DVec3::Y * 4.0, DVec3::NEG_Y);
+    let disc = crate::Light::disc(up, down, 0.2).unwrap();
+    let point = RectangleLight::point(up, down).unwrap().into();
+    for (light, meshes) in [(disc, &meshes[..]), (point, &meshes), (disc, &[ground()])] {
+        let of = Frame { light, ..frame(square(0.4), meshes) };
+        let c = auto(Some(0.03), None).choose(&description(), &of).unwrap();
+        assert!(c.technique.room().takes().shapes.hold(&light) && c.problem.is_none(), "{c}");
+    }
+}
+
 /// Scenes as the table has them, and scenes that it has not seen.
 #[test]
 fn promises_are_kept_in_the_tables_own_views_and_mostly_in_others() {

@@ -89,11 +89,17 @@ impl Case {
     /// Whether the penumbra is needed, and the bound of leaving it out.
     pub fn penumbra(&self) -> Judgement {
         let s = &self.situation;
+        if s.is_point() {
+            return (false, 0.0);
+        }
         let bound = (0.5 * s.penumbra_pixels * s.edges_a_pixel).min(1.0);
         (s.penumbra_pixels > HARD_PIXELS || self.exceeds(bound) || self.texture, bound)
     }
 
     fn why_penumbra(&self) -> Why {
+        if self.situation.is_point() {
+            return "the light is a point".into();
+        }
         Why::from("the widest penumbra spans ")
             .number(self.situation.penumbra_pixels, 2)
             .and(" pixels, with at most ")
@@ -163,8 +169,8 @@ pub const RULES: [Rule; COUNT] = [
     Rule {
         effect: Effect::Penumbra,
         name: "penumbra",
-        needed: "the widest penumbra spans more than a pixel, or ½ s e is above what may be omitted: s its width in pixels, e \
-                 the most edges a pixel's width of shadow may have",
+        needed: "the light is no point, and the widest penumbra spans more than a pixel, or ½ s e is above what may be \
+                 omitted: s its width in pixels, e the most edges a pixel's width of shadow may have",
         bound: "½ s e",
         passes: "all of the technique's; `hard.visibility` stands for them where it is left out",
         soft: false,
@@ -192,6 +198,7 @@ pub const RULES: [Rule; COUNT] = [
         soft: true,
         judge: |case| where_present(case.situation.light[1] > 0.0),
         why: |case, _| match case.situation.light {
+            [0.0, 0.0] => "the light is a point".into(),
             [_, 0.0] => "the light is a line".into(),
             [w, h] => Why::from("the light is ").number(w, 3).and(" by ").number(h, 3).and(" m"),
         },

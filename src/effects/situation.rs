@@ -13,7 +13,7 @@ const MOST_COMPARED: usize = 16;
 /// Distances are from the light's plane along its normal, in metres. They are bounds: the true distances lie between.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Situation {
-    /// The light's width and height, metres; the height of a line is 0.
+    /// The light's width and height, metres; the height of a line is 0, and a point has neither.
     pub light: [f64; 2],
     /// The number of meshes that may block light on its way to a receiver.
     pub occluders: usize,
@@ -139,11 +139,20 @@ impl Situation {
         s
     }
 
+    /// Whether the light is a point, whose shadows have no penumbra.
+    pub fn is_point(&self) -> bool {
+        self.light == [0.0; 2]
+    }
+
     /// The situation with its values in a camera's pixels filled in.
     pub(crate) fn seen_by(mut self, camera: &Camera, shadowed: &MapView, map: &MapView) -> Self {
         let [smallest, largest] = pixel_sizes(camera, shadowed);
         let inside = smallest <= 0.0;
-        self.penumbra_pixels = if inside { f64::INFINITY } else { self.penumbra / smallest };
+        self.penumbra_pixels = match (self.is_point(), inside) {
+            (true, _) => 0.0,
+            (false, true) => f64::INFINITY,
+            (false, false) => self.penumbra / smallest,
+        };
         self.edges_a_pixel = (self.edges * largest).min(1.0);
         let side = (0..2).map(|i| map.max[i] - map.min[i]).fold(f64::INFINITY, f64::min);
         let reach = match map.eye {

@@ -97,6 +97,9 @@ impl Verdicts {
         let Some(case) = &self.case else { return "nothing can be shadowed".into() };
         let rule = effect.rule();
         if rule.soft && !self.needs(Effect::Penumbra) {
+            if case.situation.is_point() {
+                return "shadows are hard: the light is a point".into();
+            }
             return Why::from("shadows are hard: the widest penumbra spans ")
                 .number(case.situation.penumbra_pixels, 2)
                 .and(" pixels");

@@ -31,9 +31,13 @@ fn check_shape(light: &Light, technique: &str, takes: &Takes) -> Result<(), Erro
     if !others.is_empty() {
         others.push_str("or ");
     }
-    let shape = light.shape().name();
+    let (shape, these) = match light.shape() {
+        // Only those that shine to all sides are refused.
+        Shape::Point => ("point that shines to all sides", "such points".into()),
+        shape => (shape.name(), format!("{}s", shape.name())),
+    };
     bad(format!(
-        "the light is a {shape}, and {technique} takes no {shape}s; choose {others}traced, which takes every shape"
+        "the light is a {shape}, and {technique} takes no {these}; choose {others}traced, which takes every shape"
     ))
 }
 

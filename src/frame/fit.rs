@@ -5,6 +5,7 @@ use super::hull::Hull;
 use super::odd::Odd;
 use super::passes::PLACEHOLDER;
 use super::placed::Placed;
+use super::request::FitRequest;
 use super::{Description, Frame};
 use crate::Error;
 use crate::effects::{Seen, Situation};
@@ -12,8 +13,7 @@ use crate::graph::{Need, Why};
 use crate::light::{Light, RectangleLight};
 use crate::stages::depth_layers::{self, HostMapView, LightBox, MapView, Projection};
 use crate::stages::views::{Extent, Region, Served, Views, fit_served};
-use crate::technique::Technique;
-use crate::techniques::room::{Maps, Room, Seen as ViewsSeen, Takes};
+use crate::techniques::room::{Room, Seen as ViewsSeen};
 use glam::DMat4;
 
 /// A view for passes that do not run, which serves all pixels.
@@ -30,35 +30,6 @@ struct Inputs {
     meshes: usize,
     /// The camera, where the views follow it.
     camera: Option<DMat4>,
-}
-
-/// What a technique needs from a fit.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct FitRequest {
-    /// The technique whose views are made; `None` before one is chosen, when there are none.
-    pub technique: Option<Technique>,
-    /// Which lights and meshes the technique accepts.
-    pub takes: Takes,
-    /// The maps that the technique draws.
-    pub maps: Maps,
-    /// The most views that may share the pixels.
-    pub most_served: u32,
-    /// Whether the technique takes a sun's light as parallel.
-    pub parallel: bool,
-}
-
-impl FitRequest {
-    /// The request of a technique.
-    pub fn of(technique: &Technique) -> Self {
-        let room = technique.room();
-        Self {
-            technique: Some(*technique),
-            takes: room.takes(),
-            maps: room.maps(),
-            most_served: room.most_served(),
-            parallel: room.takes_parallel(),
-        }
-    }
 }
 
 /// The meshes that matter to a light, and the views of its maps.
@@ -168,7 +139,7 @@ impl Fit {
         boxes: &Boxes,
         near: &mut Vec<u32>,
     ) -> Result<(), Error> {
-        let (maps, most) = (&request.maps, request.most_served);
+        let (maps, most) = (&request.maps, if request.nests { request.most_served } else { 1 });
         let light = frame.light.rectangle();
         let half = light.half_extents();
         self.light_from_world = light.light_from_world();
@@ -340,6 +311,11 @@ impl Fit {
         }
     }
 
+    /// Whether the light is a point, which every view sees from its centre.
+    pub fn is_point(&self) -> bool {
+        self.light.is_point()
+    }
+
     /// The number of this fit: the meshes and views are the same while it is.
     pub fn number(&self) -> u64 {
         self.number
@@ -370,6 +346,7 @@ impl Fit {
             occluders: &self.occluders.bounds,
             receivers: &self.receivers.bounds,
             centre: self.centre.as_ref().unwrap_or(&PLACEHOLDER),
+            parallel: if self.parallel { &self.served } else { &[] },
             w_far: self.shadowed.as_ref().map_or(0.0, |receivers| 1.0 / receivers.far),
         })
     }

@@ -3,8 +3,9 @@
 
 use super::boxes::MeshBoxes;
 use super::check::bad;
-use super::fit::{Fit, FitRequest};
+use super::fit::Fit;
 use super::passes::{FrameInputs, Needs};
+use super::request::FitRequest;
 use super::triangles::TriangleList;
 use super::{Description, Frame};
 use crate::Error;
@@ -50,10 +51,11 @@ pub(super) fn frame_inputs<'a>(
     let fit = &*fit;
     let (host_maps, receivers) = (fit.host_maps, fit.receiver_view);
     let served = &fit.served[..];
-    let (views, occluders) = match (is_soft, served.is_empty()) {
-        (true, false) => (fit.views(), served),
-        (true, true) => (fit.views(), slice::from_ref(&fit.alone)),
-        (false, _) => (&Views::Centre, slice::from_ref(&fit.alone)),
+    let views = if is_soft { fit.views() } else { &Views::Centre };
+    // A hard shadow in the technique's place has one view, but that of a point, which is no smaller matter than others.
+    let occluders = match served.is_empty() || !(is_soft || needs.hard.is_yes() && fit.is_point()) {
+        true => slice::from_ref(&fit.alone),
+        false => served,
     };
     let inputs = FrameInputs {
         light: &fit.light,
@@ -124,7 +126,7 @@ impl SituationCache {
         mesh_boxes: &mut MeshBoxes,
     ) -> Result<Option<Situation>, Error> {
         // What the technique accepts is checked once it is chosen.
-        let shapes = Shapes::LINES.and(Shapes::POLYGONS);
+        let shapes = Shapes::LINES.and(Shapes::POLYGONS).and(Shapes::DISCS);
         let takes = Takes { shapes, ..Takes::RECTANGLES };
         frame.check_numbers(description, ANY, &takes)?;
         let side = match frame.occluder_maps {
@@ -137,6 +139,7 @@ impl SituationCache {
             maps: Maps::front(side),
             most_served: 1,
             parallel: false,
+            nests: false,
         };
         let frame = Frame { light: (*frame.light.rectangle()).into(), ..*frame };
         self.fit.update(description, &request, &frame, mesh_boxes)?;

@@ -3,10 +3,11 @@
 use super::accesses::{HostAccess, NodeUse};
 use super::boxes::MeshBoxes;
 use super::doubts::Sight;
-use super::fit::{Fit, FitRequest, follows_camera};
+use super::fit::{Fit, follows_camera};
 use super::inputs::frame_inputs;
 use super::passes::{Clips, Ids, Limits, build};
 use super::plan::{FramePlan, Stamp};
+use super::request::FitRequest;
 use super::reuse::{self, Cached, CameraDependence, Revisions};
 use super::triangles::TreeKey;
 use super::views::PlannedView;
@@ -139,6 +140,8 @@ pub(crate) fn plan_into(
         (inputs.receivers, inputs.views.count() + inputs.occluders.len(), inputs.needs.bits());
     let side = inputs.occluders[0].map.side;
     let lit = inputs.needs.unshadowed().is_some();
+    let (own, served) = (inputs.views.count(), inputs.occluders.len());
+    let through_views = inputs.needs.technique.is_yes() || served > 1;
     // Description, needs and views decide which passes there are; only then can the cache leave some of them out.
     let before = built
         .take()
@@ -183,8 +186,9 @@ pub(crate) fn plan_into(
         plan.triangles.meshes.clear();
     }
     plan.views.clear();
-    if needs & 1 == 1
-        && views == fit.served.len()
+    if through_views
+        && served == fit.served.len()
+        && (fit.parallel || own == 0)
         && (room.most_served() > 1 || room.takes_parallel())
     {
         plan.views.extend(fit.served.iter().map(|served| PlannedView::of(&served.map)));

@@ -18,6 +18,7 @@ mod passes;
 mod placed;
 mod plan;
 mod plans;
+mod request;
 mod reuse;
 mod seen;
 #[cfg(test)]

@@ -1,7 +1,8 @@
 //! The views of a sun, whose light is parallel: they follow what the camera sees.
 
 use super::boxes::around;
-use super::fit::{Fit, FitRequest};
+use super::fit::Fit;
+use super::request::FitRequest;
 use super::seen::{Bounds, Frustum};
 use super::{Description, Frame};
 use crate::graph::Why;

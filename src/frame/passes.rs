@@ -278,10 +278,9 @@ pub(super) fn build(
         tree: &frame.tree,
         hierarchy: tree,
     };
-    let nodes = (maps.eye == Projection::Centre && room.most_served() > 1)
+    let nodes = (maps.eye == Projection::Centre && room.most_served() > 1 && room.nests())
         .then(|| inner::declare(graph, side));
     let declared = graph.declared();
-    let mut nearest = None;
     let is_centred = |map: &MapView| map.eye == Eye::Behind(0.0);
     // The widest view's passes are first: its maps tell what lies before the receivers of the finer ones.
     for (nth, view) in (0..count).rev().enumerate() {
@@ -292,7 +291,7 @@ pub(super) fn build(
             graph.again(declared);
         }
         let finer = view.checked_sub(1).filter(|_| is_centred(map));
-        let found = if finer.is_some() { *need } else { Need::No(one) };
+        let found = if finer.is_some() { *shadowed } else { Need::No(one) };
         let layers = LightLayers {
             view: view as u32,
             // A frame without a finer view declares the passes once, for the plan to name them.
@@ -314,13 +313,15 @@ pub(super) fn build(
             layers: &layers,
             ..inputs
         };
-        nearest = room.declare(graph, &inputs);
+        let nearest = room.declare(graph, &inputs);
+        // A frame declares the hard shadow once where it is not needed, for the plan to name it.
+        if hardens(description) && (nth == 0 || hard.is_yes()) {
+            let map = || depth_layers::hard(graph, side, view as u32, hard);
+            let front = nearest.unwrap_or_else(map);
+            hard::declare(graph, front, Filter::One, hard, &inputs);
+        }
     }
     graph.declares_anew();
-    if hardens(description) {
-        let front = nearest.unwrap_or_else(|| depth_layers::hard(graph, side, hard));
-        hard::declare(graph, front, Filter::One, hard, &inputs);
-    }
     let lit = match needs.unshadowed() {
         Some(why) => Need::Yes(*why),
         None => Need::No("something can be shadowed, and is written elsewhere".into()),

@@ -1,4 +1,5 @@
 use super::*;
+use crate::RectangleLight;
 use crate::graph::MeshList;
 use crate::lent::Slot;
 use crate::lent::*;

@@ -14,6 +14,7 @@
 use super::RectangleLight;
 use crate::Error;
 use glam::{DMat3, DVec2, DVec3};
+use smallvec::SmallVec;
 use std::ops::RangeInclusive;
 
 /// The number of corners that an outline may have: a technique may visit them at every pixel.
@@ -91,6 +92,35 @@ fn wrong_shape(corners: &[[f64; 2]]) -> Option<String> {
         return Some(NO_AREA.into());
     }
     meets_itself(&unit).then(|| "its outline must neither touch nor cross itself".into())
+}
+
+/// The triangles that a valid outline is cut into, as the numbers of their corners, counter-clockwise: one ear after the
+/// other is cut off (Meisters 1975). Triangles without an area are left out.
+pub(crate) fn triangles(corners: &[[f64; 2]]) -> SmallVec<[[u8; 3]; 14]> {
+    let at = |i: u8| DVec2::from_array(corners[usize::from(i)]);
+    let doubled = |[a, b, c]: [u8; 3]| (at(b) - at(a)).perp_dot(at(c) - at(a));
+    let holds = |[a, b, c]: [u8; 3], p: u8| {
+        ![a, b, c].contains(&p)
+            && [[a, b, p], [b, c, p], [c, a, p]].into_iter().all(|t| doubled(t) >= 0.0)
+    };
+    let mut rest: SmallVec<[u8; 16]> = (0..corners.len() as u8).collect();
+    let mut cut = SmallVec::new();
+    while rest.len() >= 3 {
+        let n = rest.len();
+        let corner = |i: usize| [rest[(i + n - 1) % n], rest[i], rest[(i + 1) % n]];
+        let is_ear = |&i: &usize| {
+            let ear = corner(i);
+            doubled(ear) >= 0.0 && !rest.iter().any(|&p| holds(ear, p))
+        };
+        // Rounding may leave no ear; the largest triangle is then cut off.
+        let largest = || (0..n).max_by(|&i, &j| doubled(corner(i)).total_cmp(&doubled(corner(j))));
+        let ear = (0..n).find(is_ear).or_else(largest).unwrap_or(0);
+        if doubled(corner(ear)) > 0.0 {
+            cut.push(corner(ear));
+        }
+        rest.remove(ear);
+    }
+    cut
 }
 
 const NOT_FINITE: &str = "its corners must be finite numbers";

@@ -12,6 +12,29 @@ fn flat(corners: &[[f64; 2]]) -> Vec<DVec3> {
     corners.iter().map(|&[x, y]| DVec3::new(x, y, 0.0)).collect()
 }
 
+/// The triangles of an outline have its area together, and none is turned the other way, whatever its bays.
+#[test]
+fn triangles_cover_an_outline() {
+    // Teeth that hang down from a bar.
+    let tooth = |i: usize| [[0.0f64, 0.0], [0.4, -2.0], [0.6, 0.0]][i % 3];
+    let teeth = (0..14).map(|i| [(i / 3) as f64 + tooth(i)[0], tooth(i)[1]]);
+    let comb: Vec<[f64; 2]> = teeth.chain([[6.0, 1.0], [-0.5, 1.0]]).collect();
+    let fan: Vec<[f64; 2]> =
+        (0..16).map(|i| (DVec2::from_angle(f64::from(i) * 0.39) * 2.0).to_array()).collect();
+    for corners in [&L[..], &comb, &fan, &[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [1.0, 1.0]]] {
+        let mut corners = corners.to_vec();
+        if doubled_area(&corners) < 0.0 {
+            corners.reverse();
+        }
+        let cut = triangles(&corners);
+        let areas: Vec<f64> =
+            cut.iter().map(|t| doubled_area(&t.map(|i| corners[usize::from(i)]))).collect();
+        let whole = doubled_area(&corners);
+        assert!(cut.len() <= corners.len() - 2 && areas.iter().all(|area| *area > 0.0));
+        assert!((areas.iter().sum::<f64>() / whole - 1.0).abs() < 1e-12, "{areas:?}, not {whole}");
+    }
+}
+
 /// The rectangle is the smallest, its light space takes the corners to where they were, and they run
 /// counter-clockwise in it, wherever the polygon is, whichever way it is turned.
 #[test]

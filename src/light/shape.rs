@@ -9,8 +9,8 @@ use glam::{DMat3, DVec3};
 /// As many corners as an outline may have.
 const MOST: usize = *CORNERS.end();
 
-/// A light: a rectangle, line, polygon or disc, which shine to one side; a sphere, capsule or point, which shine to all
-/// sides; or a sun, which shines along a direction.
+/// A light: a rectangle, line, polygon or disc, which shine to one side; a sphere or capsule, which shine to all sides; a
+/// point, which does either; or a sun, which shines along a direction.
 ///
 /// A [`RectangleLight`] is a light by `into()`; the other shapes have constructors here. Positions are world space in
 /// f64, lengths are metres. [`Self::shape`] says what a light is, and [`Self::rectangle`] has its light space.
@@ -27,7 +27,7 @@ pub struct Light {
     reason = "a light is a plain value, which is copied a few times a frame"
 )]
 enum Form {
-    /// The rectangle itself, or its line where it has no height.
+    /// The rectangle itself, or its line where it has no height, or its point where it has no sides.
     Rectangle,
     Polygon(Outline),
     /// Half the rectangle's width is the radius of these two.
@@ -78,7 +78,8 @@ pub enum Shape<'a> {
         /// The radius, above 0.
         radius: f64,
     },
-    /// The light's centre.
+    /// The light's centre, which shines to one side ([`RectangleLight::point`]) or to all ([`Light::point`]):
+    /// [`Light::is_one_sided`] says which.
     Point,
     /// A disc of an angular size, infinitely far away.
     Sun {
@@ -138,10 +139,11 @@ impl Light {
     /// outline need not be convex, and neither touches nor crosses itself.
     ///
     /// # Errors
-    /// [`Error::Light`] for an outline that is not that, and for a line, which has none.
+    /// [`Error::Light`] for an outline that is not that, and for a line or a point, which have none.
     pub fn with_outline(rectangle: RectangleLight, corners: &[[f64; 2]]) -> Result<Self, Error> {
-        if rectangle.is_line() {
-            return Err(Error::Light("it is a line, which has no outline".into()));
+        if rectangle.half_extents()[1] == 0.0 {
+            let what = if rectangle.is_point() { "point" } else { "line" };
+            return Err(Error::Light(format!("it is a {what}, which has no outline")));
         }
         if let Some(problem) = outline::problem(corners, rectangle.half_extents()) {
             return Err(Error::Light(format!("of its outline, {problem}")));
@@ -215,7 +217,8 @@ impl Light {
         Ok(Self { rectangle, form: Form::Capsule { half_length, radius } })
     }
 
-    /// A point that shines to all sides, in world space: its shadows have no penumbra.
+    /// A point that shines to all sides, in world space: its shadows have no penumbra. [`RectangleLight::point`] makes one
+    /// that shines to one side, which more techniques take.
     ///
     /// # Errors
     /// [`Error::Light`] for a centre that is not finite.
@@ -255,6 +258,7 @@ impl Light {
         let [radius, _] = self.rectangle.half_extents();
         match &self.form {
             Form::Rectangle if self.rectangle.is_line() => Shape::Line,
+            Form::Rectangle if self.rectangle.is_point() => Shape::Point,
             Form::Rectangle => Shape::Rectangle,
             Form::Polygon(outline) => Shape::Polygon(&outline.corners[..outline.count]),
             Form::Disc => Shape::Disc { radius },
@@ -269,10 +273,10 @@ impl Light {
     ///
     /// | shape | rectangle |
     /// |---|---|
-    /// | rectangle, line | the light itself |
+    /// | rectangle, line, point that shines to one side | the light itself |
     /// | polygon | a rectangle around its outline |
     /// | disc | the square around it |
-    /// | sphere, capsule, point | the light's extent along axes of which only a capsule's x, its axis, means anything: the light shines to all sides, whatever the rectangle's emission |
+    /// | sphere, capsule, point that shines to all sides | the light's extent along axes of which only a capsule's x, its axis, means anything: the light shines to all sides, whatever the rectangle's emission |
     /// | sun | the square as wide as the sun's disc that [`RectangleLight::sun`] makes, very far away |
     pub fn rectangle(&self) -> &RectangleLight {
         &self.rectangle
@@ -296,8 +300,8 @@ impl Light {
 
     /// Whether the light has a plane and shines to one side of it: what lies at or behind that plane is not lit by it.
     ///
-    /// True of a rectangle, line, polygon and disc. A sphere, capsule and point shine to all sides, and a sun has no
-    /// position that anything could lie behind.
+    /// True of a rectangle, line, polygon, disc and [`RectangleLight::point`]. A sphere, a capsule and [`Light::point`] shine
+    /// to all sides, and a sun has no position that anything could lie behind.
     pub fn is_one_sided(&self) -> bool {
         match self.form {
             Form::Rectangle | Form::Polygon(_) | Form::Disc => true,
@@ -305,7 +309,7 @@ impl Light {
         }
     }
 
-    /// Whether the light is a sphere, a capsule or a point, which shine to all sides.
+    /// Whether the light shines to all sides: a sphere, a capsule or [`Light::point`].
     pub fn is_round(&self) -> bool {
         matches!(self.form, Form::Sphere | Form::Capsule { .. } | Form::Point)
     }

@@ -10,7 +10,7 @@ use crate::lent::MeshBounds;
 use crate::light::{Light, RectangleLight, Shape};
 use crate::stages::depth_layers::{self, DepthLayers, LightLayers, MapView, Projection, Wanted};
 use crate::stages::hierarchy::{Hierarchy, Sizes};
-use crate::stages::views::Views;
+use crate::stages::views::{Served, Views};
 use crate::stages::visibility::GBuffer;
 use crate::{Error, graph};
 use glam::DMat4;
@@ -29,7 +29,7 @@ pub struct Takes {
 }
 
 impl Takes {
-    /// The capabilities of a technique for rectangles and suns alone, with any occluders that the host has.
+    /// The capabilities of a technique for rectangles, suns and points that shine to one side alone, with any occluders that the host has.
     pub const RECTANGLES: Self = Self {
         shapes: Shapes::RECTANGLES,
         host_draws: HostDraws::Any,
@@ -38,14 +38,15 @@ impl Takes {
     };
 }
 
-/// A set of shapes of lights. Rectangles and suns are in each, for every technique takes these.
+/// A set of shapes of lights. Rectangles, suns and points that shine to one side are in each, for every technique takes
+/// these.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shapes(u8);
 
 impl Shapes {
-    /// Rectangles and suns alone.
+    /// Rectangles, suns and points that shine to one side alone.
     pub const RECTANGLES: Self = Self(0);
-    /// Lines, beside rectangles and suns, as in all of the following.
+    /// Lines, beside those, as in all of the following.
     pub const LINES: Self = Self(1);
     /// Polygons.
     pub const POLYGONS: Self = Self(1 << 1);
@@ -55,7 +56,7 @@ impl Shapes {
     pub const SPHERES: Self = Self(1 << 3);
     /// Capsules.
     pub const CAPSULES: Self = Self(1 << 4);
-    /// Points.
+    /// Points that shine to all sides.
     pub const POINTS: Self = Self(1 << 5);
     /// Every shape.
     pub const ALL: Self = Self((1 << 6) - 1);
@@ -69,6 +70,7 @@ impl Shapes {
     pub fn hold(self, light: &Light) -> bool {
         let one = match light.shape() {
             Shape::Rectangle | Shape::Sun { .. } => Self::RECTANGLES,
+            Shape::Point if light.is_one_sided() => Self::RECTANGLES,
             Shape::Line => Self::LINES,
             Shape::Polygon(_) => Self::POLYGONS,
             Shape::Disc { .. } => Self::DISCS,
@@ -211,6 +213,8 @@ pub struct Seen<'a> {
     pub receivers: &'a [(MeshBounds, DMat4)],
     /// The view of the occluders from the light's centre.
     pub centre: &'a MapView,
+    /// The views that share the pixels where the light is parallel, the finest first; none for a lamp.
+    pub(crate) parallel: &'a [Served],
     /// The w of the furthest receiver that may be shadowed, 1/m.
     pub w_far: f64,
 }
@@ -298,6 +302,11 @@ pub trait Room: Tune + std::fmt::Debug {
     /// [`Self::declare`] run for each of them, on the same resources.
     fn most_served(&self) -> u32 {
         1
+    }
+
+    /// Whether several views may share the pixels of a lamp too, and not of a sun alone.
+    fn nests(&self) -> bool {
+        true
     }
 
     /// Whether the technique's passes take a sun's light as parallel, through views of its own; otherwise a sun is a

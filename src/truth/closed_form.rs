@@ -24,14 +24,14 @@ pub fn visible_fraction_of_quad(light: &RectangleLight, quad: [DVec3; 4], receiv
 /// The error is a few roundings of f64 relative to the light's area, as long as the distances
 /// between polygon, receiver and light are not themselves lost to cancellation.
 ///
-/// NaN where a corner or the receiver is not finite, and for a line, which has no area.
+/// NaN where a corner or the receiver is not finite, and for a line or a point, which have no area.
 pub fn visible_fraction_of_polygon(
     light: &RectangleLight,
     polygon: &[DVec3],
     receiver: DVec3,
 ) -> f64 {
     let finite = receiver.is_finite() && polygon.iter().all(|corner| corner.is_finite());
-    if !finite || light.is_line() {
+    if !finite || light.half_extents()[1] == 0.0 {
         return f64::NAN;
     }
     let frame = Frame::of(light);

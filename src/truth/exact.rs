@@ -152,7 +152,7 @@ impl Exact {
     ) -> Result<f64, Error> {
         let frame = light.frame().relative_to(self.blockers.origin);
         if !frame.rows.iter().all(|row| row.is_finite()) {
-            return Err(Error::Light("it has no area; ask truth::ExactLine about a line".into()));
+            return Err(Error::Light("it has no area; ask truth::ExactLine about a line, and truth::Tracer about a point".into()));
         }
         let apex = Apex::new(&frame, point);
         if !apex.local.is_finite() || apex.local.abs().max_element() > FURTHEST {

@@ -20,7 +20,7 @@
 //! | line | its length | the light | at and behind the plane across its emission |
 //! | sphere, radius R | the disc across the direction from r to the centre, through the centre, of radius R · D / √(D² − R²): it fills the cone that touches the sphere | the disc | inside: D ≤ R |
 //! | capsule, radius R, half-length h | the stadium about the segment in the plane that contains it and faces r: a rectangle of 2h by 2R and two half discs; without a length the disc of radius R that faces r | the stadium | inside: D ≤ R |
-//! | point | the point | the point | where r is the point |
+//! | point | the point | the point | where r is the point; at and behind its plane, where it shines to one side |
 //! | sun, angular size α | the directions r + t, where t is in the disc of radius tan(α/2) of the plane across the sun's direction at unit distance | nowhere: all that blocks counts | nowhere |
 //!
 //! What lies within a sphere or capsule but nearer to r than the figure blocks, as a lamp's glass does: such a mesh is best

@@ -149,6 +149,13 @@ fn a_light_knows_its_shape_and_a_rectangle_around_it() {
     let point = Light::point([5.0f32, -1.0, 2.0]).unwrap();
     assert_eq!((point.shape(), half(&point)), (Shape::Point, [0.0; 2]));
     assert!(!point.rectangle().is_line(), "a point has no length either");
+    let half_point = RectangleLight::point(at, DVec3::NEG_Y * 3.0).unwrap();
+    assert!(half_point.is_point() && !half_point.is_line());
+    assert!((half_point.emission() - DVec3::NEG_Y).length() < 1e-12);
+    assert!((axes(&half_point).determinant() - 1.0).abs() < 1e-12);
+    let half_point = Light::from(half_point);
+    assert!(half_point.shape() == Shape::Point && half_point.is_one_sided());
+    assert!(!half_point.is_round() && point.is_round());
     assert!(sphere.center() == at && point.center() == at);
     assert!(!sphere.is_one_sided() && !point.is_one_sided());
     let ball = Light::capsule(at, DVec3::ZERO, 0.3).unwrap();
@@ -184,6 +191,8 @@ fn lights_of_no_size_or_no_place_are_refused_with_a_sentence() {
         refused(Light::sphere(place, 1.0), "position");
         refused(Light::capsule(place, DVec3::X, 1.0), "position");
         refused(Light::point(place), "position");
+        refused(RectangleLight::point(place, down).map(Light::from), "position");
+        refused(RectangleLight::point(zero, place).map(Light::from), "emission");
         refused(Light::disc(zero, place, 1.0), "emission");
         refused(Light::capsule(zero, place, 1.0), "axis");
         refused(Light::sun(down, 0.1, place, 1.0), "finite");

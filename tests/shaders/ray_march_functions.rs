@@ -1,6 +1,7 @@
 //! The GLSL functions of ray marching alone, beside their twins.
 
 use antumbra::graph::STORAGE_BYTES;
+use antumbra::techniques::common::twin::{area_above, in_triangle};
 use antumbra::techniques::ray_march::twin::{
     beveled, bounds_of, cell_of, filter_weight, filter_width, md5, one_interval, pcg, sobol,
     step_down, two_intervals,
@@ -92,6 +93,36 @@ fn points_of_a_sequence_and_cells_of_a_grid() {
         .f32(Tolerance::ulps(4), twin::<f32>)
         .f64(Tolerance::absolute(3e-7), twin::<f64>)
         .check(&device());
+}
+
+#[test]
+fn parts_and_points_of_polygons() {
+    let pair = || (-2.0..2.0f32, -2.0..2.0f32).prop_map(|(x, y)| [x, y]);
+    Function::new("ray_march/noise.glsl", "float area_above(vec2 a, vec2 b)")
+        // Above the line, below it, along it, and a place where an edge only touches it.
+        .case(([0.0, 1.0], [2.0, 1.0]))
+        .case(([0.0, -1.0], [2.0, -1.0]))
+        .case(([0.0, 0.0], [2.0, 0.0]))
+        .case(([0.0, 0.0], [2.0, -1.0]))
+        .random(2_000, (pair(), pair()))
+        .f32(Tolerance::absolute(2e-6), |x| vec![area_above([x[0], x[1]], [x[2], x[3]])])
+        .f64(Tolerance::absolute(2e-5), |x| vec![area_above([x[0], x[1]], [x[2], x[3]])])
+        .check(&device());
+    fn twin<T: Float>(x: &[T]) -> Vec<T> {
+        let corners = [[x[0], x[1]], [x[2], x[3]], [x[4], x[5]]];
+        in_triangle(corners, [x[6], x[7]]).to_vec()
+    }
+    let s = (0.0..1.0f32, 0.0..1.0f32).prop_map(|(x, y)| [x, y]);
+    Function::new("ray_march/noise.glsl", "vec2 in_triangle(vec2 a, vec2 b, vec2 c, vec2 s)")
+        .random(2_000, (pair(), pair(), pair(), s))
+        .f32(Tolerance::absolute(4e-6), twin::<f32>)
+        .f64(Tolerance::absolute(8e-6), twin::<f64>)
+        .check(&device());
+    // The unit square, counter-clockwise: what of it lies above a line at 0.3.
+    let square = [[0.0, -0.3], [1.0, -0.3], [1.0, 0.7], [0.0, 0.7]];
+    let edges = (0..4).map(|i| (square[i], square[(i + 1) % 4]));
+    let above: f64 = edges.map(|(a, b)| -area_above::<f64>(a, b)).sum();
+    assert!((above - 0.7).abs() < 1e-12, "{above}");
 }
 
 #[test]

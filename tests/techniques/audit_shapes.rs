@@ -1,10 +1,10 @@
 //! The audit under every shape of a light: does it see the light that the truth has?
 
 use crate::audit::{audited, frame, moves_surfaces, seen, sun};
-use antumbra::Light;
 use antumbra::audit::ErrorWindow;
 use antumbra::scene::{Camera, Role, generate};
 use antumbra::truth::{Sampling, Tracer};
+use antumbra::{Light, RectangleLight};
 use antumbra_tests::device::unwatched;
 use antumbra_tests::measure::{Setup, summary};
 use glam::DVec3;
@@ -17,7 +17,7 @@ fn the_truth_of_a_shape_is_the_tracers() {
         return;
     }
     let (above, down) = (DVec3::Y * 4.0, DVec3::NEG_Y);
-    let lights: [(&str, Light); 7] = [
+    let lights: [(&str, Light); 8] = [
         ("line", generate::line_light(1.0, 0.4).unwrap().into()),
         ("disc", Light::disc(above, down, 0.4).unwrap()),
         ("polygon", generate::polygon_light(&[[-0.4, -0.4], [0.5, -0.3], [0.0, 0.5]]).unwrap()),
@@ -25,6 +25,7 @@ fn the_truth_of_a_shape_is_the_tracers() {
         ("sphere", Light::sphere(above, 0.4).unwrap()),
         ("capsule", Light::capsule(above, DVec3::X * 0.5, 0.1).unwrap()),
         ("point", Light::point(above).unwrap()),
+        ("point to one side", RectangleLight::point(above, down).unwrap().into()),
     ];
     for (name, light) in lights {
         let scene = generate::spheres(light).with_occluders_as(Role::Both);

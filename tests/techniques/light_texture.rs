@@ -217,6 +217,25 @@ fn textures_lie_on_flat_lights() {
     assert!(
         plain.iter().zip(&textured_disc).all(same) && plain.iter().any(|v| *v > 0.1 && *v < 0.9)
     );
+    // Half of it emits: rays go to the disc's points, and the texture's texels lie where these are.
+    let half = texture(&device, [2, 1], &[[1.0; 4], [0.0; 4]]);
+    let lent = half.lend(Scope::COMPUTE_SAMPLED, Scope::COMPUTE_SAMPLED);
+    let outline = [[-0.3, -0.3], [0.3, -0.3], [0.3, 0.0], [-0.3, 0.3]];
+    let polygon = Light::with_outline(place, &outline).unwrap();
+    for light in [disc, polygon] {
+        let [truth, image] =
+            ["technique=traced samples=1024", "technique=ray-march map=512 rays=256"].map(
+                |words| {
+                    let mut stage = stage(&device, &setup, words, false);
+                    let plan = stage.plan_with(light, |f| f.light_texture = Some(lent)).unwrap();
+                    stage.run(&plan).unwrap();
+                    stage.visibility().unwrap()
+                },
+            );
+        let error = percent(&truth, &image);
+        println!("half a {}: {error:.2} %", light.shape().name());
+        assert!(error < 1.0, "{}: {error}", light.shape().name());
+    }
     let ball = Light::sphere(place.center(), 0.3).unwrap();
     let problem =
         textured.plan_with(ball, |frame| frame.light_texture = Some(lent)).unwrap_err().to_string();

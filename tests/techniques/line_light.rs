@@ -17,6 +17,7 @@ const TABLE: &[(&str, [f64; 3])] = &[
     ("technique=many-lights samples=64", [0.50, 0.99, 1.96]),
     ("technique=many-lights samples=256", [0.31, 0.73, 1.87]),
     ("technique=many-lights samples=256 map=1024", [0.12, 0.24, 1.16]),
+    ("technique=ray-march map=1024 rays=64", [0.39, 0.53, 1.18]),
     ("technique=hard", [17.89, 23.67, 14.17]),
 ];
 

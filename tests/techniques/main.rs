@@ -19,6 +19,7 @@ mod normals;
 mod occlusion_textures;
 mod occlusion_textures_slices;
 mod planner;
+mod point_light;
 mod polygon_light;
 mod ray_march;
 mod ray_march_limits;

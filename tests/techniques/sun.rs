@@ -1,7 +1,7 @@
 //! Suns: no technique takes them for anything but a light.
 
-use antumbra::RectangleLight;
-use antumbra::scene::generate;
+use antumbra::scene::{Scene, generate};
+use antumbra::{Light, RectangleLight};
 use antumbra_tests::device;
 use antumbra_tests::measure::{Setup, model, percent};
 use glam::DVec3;
@@ -40,3 +40,29 @@ const SUN: &[(&str, f64)] = &[
     ("technique=pcss", 2.4),
     ("technique=many-lights", 0.5),
 ];
+
+/// Many lights go to the directions of a sun's disc, and not of the square around it, however large the sphere is that it
+/// is said to shine on: a rectangle as far away as that would be lost in rounding.
+#[test]
+fn many_lights_are_a_suns_disc() {
+    let device = device();
+    let down = DVec3::new(0.2, -1.0, 0.1);
+    let under = |light: Light| -> Scene { generate::card(light) };
+    let mut images = Vec::new();
+    for radius in [3.0, 3e5] {
+        let scene = under(Light::sun(down, 0.2, DVec3::ZERO, radius).unwrap());
+        let setup = Setup::ground(&scene, 2.2, 96);
+        let mut stage = setup.stage(&device, "technique=many-lights samples=256 map=512");
+        let image = setup.visibility(&mut stage);
+        let square = under(RectangleLight::sun(down, 0.2, DVec3::ZERO, 3.0).unwrap().into());
+        let [right, wrong] = [&scene, &square].map(|scene| {
+            let (truth, _) = Setup { scene, ..setup }.traced(&stage, 2048);
+            percent(&truth, &image)
+        });
+        println!("{radius:e} m: {right:.2} %, of the square {wrong:.2} %");
+        assert!(right < 0.7 && wrong > 2.0 * right, "{radius}: {right} {wrong}");
+        images.push(image);
+    }
+    let differ = percent(&images[0], &images[1]);
+    assert!(differ < 0.01, "{differ} %");
+}

@@ -81,13 +81,14 @@ fn every_shape_of_a_light_is_its_own() {
     let half = 0.5;
     let rectangle = RectangleLight::facing(at, DVec3::NEG_Y, DVec3::X, [2.0 * half; 2]).unwrap();
     let l = [[-0.5, -0.5], [0.5, -0.5], [0.5, -0.2], [-0.2, -0.2], [-0.2, 0.5], [-0.5, 0.5]];
-    let lights: [(Light, f64); 8] = [
+    let lights: [(Light, f64); 9] = [
         (rectangle.into(), 0.5),
         (Light::with_outline(rectangle, &l).unwrap(), 1.1),
         (Light::disc(at, DVec3::NEG_Y, half).unwrap(), 0.5),
         (Light::sphere(at, half).unwrap(), 0.75),
         (Light::capsule(at, DVec3::X * 0.5, 0.1).unwrap(), 0.5),
         (Light::point(at).unwrap(), 0.5),
+        (RectangleLight::point(at, DVec3::NEG_Y).unwrap().into(), 0.5),
         (RectangleLight::line(at, DVec3::X * half, DVec3::NEG_Y).unwrap().into(), 0.5),
         (Light::sun(DVec3::NEG_Y, 0.05, DVec3::ZERO, 5.0).unwrap(), 0.5),
     ];

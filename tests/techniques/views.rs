@@ -104,6 +104,23 @@ fn rooms_and_yards_are_seen_finely_where_somebody_looks() {
     }
 }
 
+/// Many lights have a map for each direction of a sun's disc in each view; the error that is left is of the pickets.
+#[test]
+fn many_lights_see_a_yard_through_views() {
+    let device = device();
+    let (yard, eye) = yard();
+    let setup = setup(&yard, &eye);
+    let errors = [1, 4].map(|views| {
+        let words = format!("technique=many-lights samples=16 views={views}");
+        let mut stage = stage(&device, &setup, &words);
+        let image = setup.visibility(&mut stage);
+        let (truth, _) = setup.traced(&stage, 128);
+        percent(&truth, &image)
+    });
+    println!("{:.2} % with one view, {:.2} % with four", errors[0], errors[1]);
+    assert!(errors[1] < 9.0 && errors[1] < 0.4 * errors[0], "{errors:?}");
+}
+
 /// What the image held before does not show: each pixel is written through one view.
 #[test]
 fn every_pixel_is_served() {

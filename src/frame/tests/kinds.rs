@@ -85,6 +85,7 @@ fn frames_have_the_kinds_that_the_node_was_made_for() {
         let names = |graph: &graph::Graph| graph.kinds().map(|p| p.name).collect::<Vec<_>>();
         let lamp = |side| Light::from(generate::square_light(side).unwrap());
         let sun = Light::sun(DVec3::new(0.2, -1.0, 0.1), 0.01, DVec3::ZERO, 6.0).unwrap();
+        let point = RectangleLight::point(DVec3::Y * 4.0, DVec3::NEG_Y).unwrap().into();
         for (meshes, light) in [
             (&cube, lamp(0.5)),
             (&sheet, lamp(0.5)),
@@ -94,6 +95,8 @@ fn frames_have_the_kinds_that_the_node_was_made_for() {
             (&walls, lamp(0.5)),
             (&cube, sun),
             (&walls, sun),
+            (&cube, point),
+            (&walls, point),
         ] {
             for omit in [Omit::Nothing, Omit::Invisible, Omit::Below(1.0)] {
                 let description = Description { omit, ..description.clone() };

@@ -11,12 +11,12 @@ fn a_line_is_refused_by_what_needs_an_area() {
     for name in Technique::NAMES {
         let d = of_technique(name);
         let planned = plan(&d, Limits::default(), &Frame { light: light.into(), ..frame(&meshes) });
-        if ["hard", "many-lights", "linear-light", "traced"].contains(name) {
+        if ["hard", "many-lights", "ray-march", "linear-light", "traced"].contains(name) {
             assert!(ran(&planned.unwrap()).len() > 1, "{name}");
         } else {
             let sentence = planned.unwrap_err().to_string();
             let start = format!(
-                "the light is a line, and {name} takes no lines; choose hard, many-lights, "
+                "the light is a line, and {name} takes no lines; choose hard, many-lights, ray-march, "
             );
             assert!(sentence.starts_with(&start), "{sentence}");
         }
@@ -52,7 +52,7 @@ fn lengths_that_single_precision_does_not_hold_are_refused() {
     assert!(sentence.starts_with("mesh 1 blocks up to"), "{sentence}");
 }
 
-/// Two techniques take a polygon; the others name those two.
+/// Some techniques take a polygon; the others name those.
 #[test]
 fn an_outline_is_refused_by_what_knows_rectangles_alone() {
     let meshes = meshes();
@@ -61,12 +61,12 @@ fn an_outline_is_refused_by_what_knows_rectangles_alone() {
     for name in Technique::NAMES {
         let d = of_technique(name);
         let planned = plan(&d, Limits::default(), &Frame { light, ..frame(&meshes) });
-        if ["many-lights", "linear-light", "traced"].contains(name) {
+        if ["many-lights", "ray-march", "linear-light", "traced"].contains(name) {
             assert!(ran(&planned.unwrap()).len() > 1, "{name}");
         } else {
             let sentence = planned.unwrap_err().to_string();
             let start = format!(
-                "the light is a polygon, and {name} takes no polygons; choose many-lights, linear-light, or traced"
+                "the light is a polygon, and {name} takes no polygons; choose many-lights, ray-march, linear-light, or traced"
             );
             assert!(sentence.starts_with(&start), "{sentence}");
         }
@@ -88,6 +88,10 @@ fn shapes_are_refused_by_what_does_not_take_them() {
     for (light, shape) in lights.into_iter().zip(names) {
         let light = light.unwrap();
         assert_eq!(light.shape().name(), shape);
+        let (said, these) = match shape {
+            "point" => ("point that shines to all sides", "such points".into()),
+            _ => (shape, format!("{shape}s")),
+        };
         let refused = |name: &str| {
             let d = of_technique(name);
             let planned = plan(&d, Limits::default(), &Frame { light, ..frame(&meshes) });
@@ -98,17 +102,38 @@ fn shapes_are_refused_by_what_does_not_take_them() {
             let taken = shape == "sun" || *name == "traced" || (shape == "disc" && takes_discs);
             let others = if shape == "disc" { "many-lights, ray-march, or " } else { "" };
             let sentence = format!(
-                "the light is a {shape}, and {name} takes no {shape}s; choose {others}traced, which takes every shape"
+                "the light is a {said}, and {name} takes no {these}; choose {others}traced, which takes every shape"
             );
             assert_eq!(refused(name), if taken { Ok(()) } else { Err(sentence) });
         }
         let looked = situation(&description(&[]), &Frame { light, ..frame(&meshes) });
-        let start = format!("the light is a {shape}, and auto takes no {shape}s; choose ");
+        let start = format!("the light is a {said}, and auto takes no {these}; choose ");
         match looked {
-            Ok(_) => assert_eq!(shape, "sun"),
+            Ok(_) => assert!(["sun", "disc"].contains(&shape), "{shape}"),
             Err(e) => assert!(e.to_string().starts_with(&start), "{e}"),
         }
     }
+}
+
+/// Every technique takes a point that shines to one side, and shows it by a hard shadow where it knows no other way.
+#[test]
+fn a_point_to_one_side_is_taken_by_all() {
+    let meshes = meshes();
+    let light = Light::from(RectangleLight::point(DVec3::Y * 4.0, DVec3::NEG_Y).unwrap());
+    for name in Technique::NAMES {
+        for omit in [Omit::Nothing, Omit::Invisible] {
+            let d = Description { omit, ..of_technique(name) };
+            let plan = make(&d, &Frame { light, ..frame(&meshes) });
+            let hard = ran(&plan).contains(&"hard.visibility");
+            assert_eq!(hard, *name != "traced", "{name}: {}", plan.explain());
+            assert!(*name == "hard" || !hard || plan.explain().contains("the light is a point"));
+        }
+    }
+    assert!(situation(&description(&[]), &Frame { light, ..frame(&meshes) }).unwrap().is_some());
+    // What it shines on lies before it, as before a rectangle.
+    let up = Light::from(RectangleLight::point(DVec3::Y * 4.0, DVec3::Y).unwrap());
+    let plan = make(&of_technique("hard"), &Frame { light: up, ..frame(&meshes) });
+    assert_eq!(ran(&plan), ["visibility.lit"]);
 }
 
 /// The host cannot draw linear-light's maps, receivers included: only the device knows where their samples lie.

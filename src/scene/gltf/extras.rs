@@ -91,7 +91,11 @@ fn rectangle(extras: &Value, world: &DMat4) -> Result<Light, Problem> {
     let half_u = world.x_axis.truncate() * (0.5 * width);
     let half_v = world.y_axis.truncate() * (0.5 * height);
     let light = match (width == 0.0, height == 0.0) {
-        (true, true) => return Light::point(center).map_err(unusable),
+        (true, true) => {
+            return RectangleLight::point(center, emission(world))
+                .map(Light::from)
+                .map_err(unusable);
+        }
         (false, true) => line(center, in_range("width", half_u)?, world),
         (true, false) => line(center, in_range("height", half_v)?, world),
         (false, false) => {

@@ -175,9 +175,10 @@ pub(crate) fn declare(
     }
 }
 
-/// Adds the depth map of a hard shadow, for a technique that draws none from the light's centre.
-pub(crate) fn hard(graph: &mut Graph, side: u32, need: &Need) -> ResourceId {
-    drawn(graph, Layer::Front, ["depth_layers.hard_depth", "depth_layers.hard"], side, 0, need)
+/// Adds the depth map of a hard shadow through one of the frame's views, for a technique that draws none from the light's
+/// centre.
+pub(crate) fn hard(graph: &mut Graph, side: u32, view: u32, need: &Need) -> ResourceId {
+    drawn(graph, Layer::Front, ["depth_layers.hard_depth", "depth_layers.hard"], side, view, need)
 }
 
 /// The raster state of a layer.

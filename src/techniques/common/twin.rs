@@ -99,6 +99,23 @@ pub fn fraction_of_disc_above<T: Float>(slope: [T; 2], c: T) -> T {
     (d.acos() - d * (T::one() - d * d).max(T::zero()).sqrt()) / pi
 }
 
+/// The area between an edge of a polygon and a line, of what of the edge lies above the line; see `noise.glsl`.
+pub fn area_above<T: Float>(a: [T; 2], b: [T; 2]) -> T {
+    let (high, low) = (a[1].max(b[1]), a[1].min(b[1]));
+    let zero = T::zero();
+    if high <= zero {
+        return zero;
+    }
+    let share = if low >= zero { T::one() } else { high / (high - low) };
+    (b[0] - a[0]) * share * (high + low.max(zero)) / (T::one() + T::one())
+}
+
+/// The point of a triangle for one of [0, 1]²; see `noise.glsl`.
+pub fn in_triangle<T: Float>([a, b, c]: [[T; 2]; 3], s: [T; 2]) -> [T; 2] {
+    let far = s[0].sqrt();
+    [0, 1].map(|i| a[i] + far * (b[i] - a[i] + s[1] * (c[i] - b[i])))
+}
+
 /// The point of the unit disc for one of [−1, 1]²: equal areas go to equal areas (Shirley and Chiu 1997).
 pub fn on_disc<T: Float>([x, y]: [T; 2]) -> [T; 2] {
     let (far, near) = if x.abs() > y.abs() { (x, y) } else { (y, x) };

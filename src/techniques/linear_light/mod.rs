@@ -165,6 +165,7 @@ mod tests {
                     far: 4.0,
                     side: 64,
                 },
+                parallel: &[],
                 w_far: 0.25,
             };
             let lines = lines(&settings, &seen).unwrap();

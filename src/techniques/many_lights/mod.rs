@@ -16,6 +16,9 @@
 //! from the G-buffer's depth: the bias for a pixel's own bent surface shrinks with the texel. Each point adds a whole
 //! number, so the sum is exact and independent of order.
 //!
+//! A sun's points are the directions to the points of its disc. Its light is parallel, and each direction has an
+//! orthographic map, or one for each of up to `views` parts of what the camera sees.
+//!
 //! The two passes in the middle are repeated for each point, with another view of the meshes and other push constants;
 //! a plan shows them once, with their number.
 //!
@@ -32,8 +35,8 @@ use crate::Error;
 use crate::graph::{Access, Graph, Layer, Owner, Pass, Push, ResourceId, Use, Uses};
 use crate::light::Shape;
 use crate::shaders::module;
-use crate::stages::depth_layers::{self, MapView};
-use crate::stages::views::{LightPoint, Views};
+use crate::stages::depth_layers::{self, Eye, MapView};
+use crate::stages::views::{LightPoint, Served, Views};
 use crate::stages::visibility::grid;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
@@ -63,11 +66,24 @@ impl Room for Settings {
     }
 
     fn most_views(&self, view: MapView) -> Views {
-        Views::Points(vec![LightPoint { at: [0.0; 2], view }; self.samples as usize])
+        let most = self.samples * self.views;
+        Views::Points(vec![LightPoint { at: [0.0; 2], view }; most as usize])
+    }
+
+    fn most_served(&self) -> u32 {
+        self.views
+    }
+
+    fn nests(&self) -> bool {
+        false
+    }
+
+    fn takes_parallel(&self) -> bool {
+        true
     }
 
     fn declare(&self, graph: &mut Graph, inputs: &PassInputs) -> Option<ResourceId> {
-        declare(graph, inputs.views.points(), inputs);
+        declare(graph, self.samples as usize, inputs);
         None
     }
 }
@@ -76,7 +92,7 @@ impl Room for Settings {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct AddPoint {
-    /// The point's place on the light, m from its centre.
+    /// The point's place on the light, m from its centre; of parallel light how x and y go on for each metre towards it.
     pub point: [f32; 2],
     /// Map texels a unit of u and v, in the point's map.
     pub texels_per_uv: [f32; 2],
@@ -84,12 +100,14 @@ pub struct AddPoint {
     pub first: [f32; 2],
     /// The G-buffer's width and height.
     pub extent: [i32; 2],
-    /// 1 over the map's near plane, 1/m.
+    /// 1 over the map's near plane, 1/m, or its height where light is parallel, m.
     pub inv_near: f32,
     /// How far a raster moves a vertex, in texels.
     pub snap: f32,
     /// The map's side in texels.
     pub map: i32,
+    /// 1 where light is parallel.
+    pub parallel: i32,
 }
 
 /// The push constants of `average.comp`.
@@ -102,14 +120,22 @@ pub struct Average {
     pub points: f32,
 }
 
-/// The points of a frame, each with a map of `side` texels fitted to the occluders. A point that sees none of them
-/// gets a view in which nothing is visible.
+/// The points of a frame, each with a map of `side` texels fitted to the occluders; of a sun those of each view. A point
+/// that sees none of the occluders gets a view in which nothing is visible.
 fn points(settings: &Settings, seen: &Seen) -> Vec<LightPoint> {
-    let Seen { light, shape, occluders, centre, .. } = *seen;
+    let Seen { light, shape, occluders, centre, parallel, .. } = *seen;
     let Settings { samples, seed, .. } = *settings;
     let places = match shape {
         Shape::Polygon(corners) => places_within(corners, samples, seed),
         Shape::Disc { radius } => places_on_disc(radius, samples, seed),
+        Shape::Sun { angular_size } if !parallel.is_empty() => {
+            let places = places_on_disc((0.5 * angular_size).tan(), samples, seed);
+            let through = |view: &Served| {
+                let map = view.map;
+                places.iter().map(move |&at| towards(at, &map))
+            };
+            return parallel.iter().flat_map(through).collect();
+        }
         _ => places(light.half_extents(), samples, seed),
     };
     places
@@ -122,8 +148,20 @@ fn points(settings: &Settings, seen: &Seen) -> Vec<LightPoint> {
         .collect()
 }
 
-/// Adds the passes that turn the meshes, as `points` see them, into the visible fraction.
-fn declare(graph: &mut Graph, points: &[LightPoint], inputs: &PassInputs) {
+/// A point of a sun with a map of all that a view shows, which the direction to the point slants.
+fn towards(at: [f64; 2], view: &MapView) -> LightPoint {
+    let slanted = |i: usize| at[i] * view.near;
+    let (mut min, mut max) = (view.min, view.max);
+    for i in 0..2 {
+        min[i] += slanted(i).min(0.0);
+        max[i] += slanted(i).max(0.0);
+    }
+    LightPoint { at, view: MapView { min, max, ..*view } }
+}
+
+/// Adds the passes that turn the meshes, as the points see them, of which each view has as many as there are `samples`, into
+/// the visible fraction.
+fn declare(graph: &mut Graph, samples: usize, inputs: &PassInputs) {
     let PassInputs { gbuffer, visibility, need, .. } = *inputs;
     let extent = gbuffer.extent.map(|e| e as i32);
     let image = |graph: &mut Graph, name, format| {
@@ -150,8 +188,9 @@ fn declare(graph: &mut Graph, points: &[LightPoint], inputs: &PassInputs) {
     ));
     // A frame without shadows has no points; it declares its passes once, for the plan to name them.
     let none = [LightPoint { at: [0.0; 2], view: *inputs.occluders }];
-    let points = if points.is_empty() { &none } else { points };
-    for (nth, point) in points.iter().enumerate() {
+    let first = samples * inputs.view as usize;
+    let points = inputs.views.points().get(first..first + samples).unwrap_or(&none);
+    for (nth, point) in (first..).zip(points) {
         depth_layers::draw(graph, "many_lights.point_depth", depth, Layer::Front, nth as u32, need);
         graph.push(Pass::compute(
             "many_lights.add_point",
@@ -162,9 +201,10 @@ fn declare(graph: &mut Graph, points: &[LightPoint], inputs: &PassInputs) {
                 texels_per_uv: point.view.texels_per_uv().map(|x| x as f32),
                 first: point.view.first().map(|x| x as f32),
                 extent,
-                inv_near: (1.0 / point.view.near) as f32,
+                inv_near: point.view.top() as f32,
                 snap: inputs.snap,
                 map: point.view.side as i32,
+                parallel: i32::from(point.view.eye == Eye::Infinity),
             }),
             smallvec![
                 Use::bound(0, positions, Access::SampledCompute),
@@ -183,6 +223,7 @@ fn declare(graph: &mut Graph, points: &[LightPoint], inputs: &PassInputs) {
         smallvec![
             Use::bound(0, hidden, Access::SampledCompute),
             Use::bound(1, visibility, Access::ImageWrite),
+            Use::bound(2, positions, Access::SampledCompute),
         ],
         need,
     ));

@@ -1,6 +1,6 @@
 //! The knobs of many lights.
 
-use crate::knob::{Field, Knobs};
+use crate::knob::{Field, Knobs, MOST_VIEWS};
 
 /// The knobs of many lights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,11 +11,13 @@ pub struct Settings {
     pub samples: u32,
     /// The seed of the points' random places; 0 puts the points into the middle of their cells.
     pub seed: u32,
+    /// The most views of a sun, 1 to 8; 6 by default.
+    pub views: u32,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { map: 256, samples: 256, seed: 1 }
+        Self { map: 256, samples: 256, seed: 1, views: 6 }
     }
 }
 
@@ -38,6 +40,14 @@ impl Knobs for Settings {
             "which random places of the light have points; 0 puts the points into the middle of their cells",
             |s| s.seed,
             |s, seed| s.seed = seed,
+        ),
+        Field::whole(
+            "views",
+            "views",
+            [1, MOST_VIEWS],
+            "most views of a sun, in each of which every point has a map; a lamp has one",
+            |s| s.views,
+            |s, views| s.views = views,
         ),
     ];
 }

@@ -50,8 +50,10 @@
 //! visible fraction is that of the emission: of its luminance, or of red, green and blue each
 //! (`Description::light_texture`). The rays then also sample the part of the light under the pixel's own plane.
 //!
-//! **Discs and suns**: rays go to the points of a disc, and the part of it below the pixel's own plane is a segment. A
-//! sun is its disc, and its light parallel.
+//! **Discs, suns, polygons and lines**: rays go to the points of a disc, and the part of it below the pixel's own plane is
+//! a segment. A sun is its disc, and its light parallel. A polygon's points are those of the triangles that it is cut into,
+//! and its part above the plane is a sum over its edges. A line's rays have each a part of its length, and no filter: the
+//! penumbra has no width across it.
 //!
 //! **Deferred** (algorithm 1): the rays are those of the G-buffer's pixels. The benchmark also measures a forward
 //! renderer, which traces rays for every fragment as it is drawn: `antumbra_harness::Forward` calls the same functions
@@ -78,7 +80,8 @@ use crate::stages::depth_layers::Wanted;
 
 impl Room for Settings {
     fn takes(&self) -> Takes {
-        Takes { shapes: Shapes::DISCS, texture: true, ..Takes::RECTANGLES }
+        let shapes = Shapes::LINES.and(Shapes::POLYGONS).and(Shapes::DISCS);
+        Takes { shapes, texture: true, ..Takes::RECTANGLES }
     }
 
     fn shows(&self) -> Shows {

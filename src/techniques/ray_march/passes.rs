@@ -3,6 +3,7 @@
 use super::settings::{Hash, Layers, Sampling, Search, Settings};
 use crate::Shape;
 use crate::graph::{Access, Graph, Need, Owner, Pass, Push, ResourceId, Use, Uses, Work};
+use crate::light::outline::{CORNERS, doubled_area, triangles};
 use crate::shaders::{self, Module, module};
 use crate::stages::depth_layers::{DepthLayers, Eye};
 use crate::stages::nbuffer::{self, Levels};
@@ -12,9 +13,9 @@ use bytemuck::{Pod, Zeroable};
 use smallvec::smallvec;
 use std::f64::consts::PI;
 
-/// The bytes of the list of pixels: its head, and for each pixel its place and the heights that its rays must search.
+/// The bytes of the list of pixels: its head with the light's outline, and for each pixel its place and the heights that its rays must search.
 pub(super) fn list_bytes([width, height]: [u32; 2]) -> u64 {
-    80 + 12 * u64::from(width) * u64::from(height)
+    END + 12 * u64::from(width) * u64::from(height)
 }
 
 /// The shaders that some settings need.
@@ -97,6 +98,7 @@ pub(super) fn declare(
         ],
         inputs.need,
     ));
+    declare_outline(graph, pixels, inputs);
     let pushed = Push::new(&pixel_push(settings, inputs));
     let shaders = shaders_of(settings, inputs);
     let mut common = Uses::from_slice(&gbuffer.all_bound());
@@ -232,6 +234,66 @@ fn declare_levels(
     windows
 }
 
+/// The most corners.
+const MOST: usize = *CORNERS.end();
+
+/// Where the outline begins in the list of pixels, and where it ends, in bytes.
+const START: u64 = 80;
+const END: u64 = START + (size_of::<Corners>() + size_of::<Pieces>()) as u64;
+
+/// The corners of the light's outline (`pixel.glsl`).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct Corners([[f32; 2]; MOST]);
+
+/// The triangles that the outline is cut into: the share of the area before each, and its corners' numbers by 4 bits. Behind
+/// the last one the share is 1; the last of all has 1 over the area and the number of corners.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct Pieces([[u32; 2]; MOST]);
+
+/// The corners of a light that is a polygon; none of others.
+fn outline_of<'a>(inputs: &PassInputs<'a>) -> Option<&'a [[f64; 2]]> {
+    inputs.tree.1.light.outline()
+}
+
+/// Adds the passes that write the outline into the list of pixels, where the light has one.
+fn declare_outline(graph: &mut Graph, pixels: ResourceId, inputs: &PassInputs) {
+    let (mut corners, mut pieces) = (Corners::zeroed(), Pieces::zeroed());
+    let need = match outline_of(inputs) {
+        Some(outline) => {
+            (corners, pieces) = written(outline);
+            *inputs.need
+        }
+        None => Need::No(graph.because("the light is no polygon")),
+    };
+    let name = "ray_march.outline";
+    graph.push(Pass::constants(name, pixels, START, &corners, &need));
+    let behind = START + size_of::<Corners>() as u64;
+    graph.push(Pass::constants(name, pixels, behind, &pieces, &need));
+}
+
+fn written(outline: &[[f64; 2]]) -> (Corners, Pieces) {
+    let (mut corners, mut pieces) = (Corners::zeroed(), Pieces::zeroed());
+    for (to, from) in corners.0.iter_mut().zip(outline) {
+        *to = from.map(|x| x as f32);
+    }
+    let area = doubled_area(outline);
+    let share =
+        |[a, b, c]: [u8; 3]| doubled_area(&[a, b, c].map(|i| outline[usize::from(i)])) / area;
+    let mut before = 0.0;
+    let mut count = 0;
+    for (to, piece) in pieces.0.iter_mut().zip(triangles(outline)) {
+        let [a, b, c] = piece.map(u32::from);
+        *to = [(before as f32).to_bits(), a | b << 4 | c << 8];
+        before += share(piece);
+        count += 1;
+    }
+    pieces.0[count.min(MOST - 2)] = [1.0f32.to_bits(), 0];
+    pieces.0[MOST - 1] = [((2.0 / area) as f32).to_bits(), outline.len() as u32];
+    (corners, pieces)
+}
+
 /// The push constants of `classify.comp` and `trace.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -258,7 +320,8 @@ pub struct Pixels {
     pub seed: u32,
 }
 
-/// Half the width and height of the light, or the radius of one that is a disc, and whether it is.
+/// Half the width and height of the light, or the radius of one that is a disc, and whether it is; of a polygon those of
+/// the rectangle around it.
 fn disc_or_rectangle(inputs: &PassInputs) -> ([f64; 2], bool) {
     let half = inputs.light.half_extents();
     match inputs.tree.1.light.shape() {
@@ -276,7 +339,8 @@ fn pixel_push(settings: &Settings, inputs: &PassInputs) -> Pixels {
     let (half, is_disc) = disc_or_rectangle(inputs);
     let [half_x, half_y] = light.half_extents();
     let rays = f64::from(settings.rays);
-    let rows = (rays * half_y / half_x).sqrt().round().clamp(1.0, rays) as i32;
+    // A point has no sides, and no number as their ratio; its shadows are hard.
+    let rows = (rays * half_y / half_x).sqrt().round().max(1.0).min(rays) as i32;
     let bit = |on: bool, at: i32| i32::from(on) << at;
     let flags = (settings.rays as i32 - 1)
         | (rows - 1) << 8
@@ -294,7 +358,8 @@ fn pixel_push(settings: &Settings, inputs: &PassInputs) -> Pixels {
         } << 23
         | settings.levels.code() << 25
         | bit(inputs.light_texture.is_some(), 27)
-        | bit(is_disc, 28);
+        | bit(is_disc, 28)
+        | bit(outline_of(inputs).is_some(), 29);
     Pixels {
         texels_per_unit: view.texels_per_uv().map(|x| x as f32),
         first: view.first().map(|x| x as f32),

@@ -43,6 +43,7 @@ enum Flat {
     Line,
     Disc,
     Polygon(Vec<Piece>),
+    Point,
 }
 
 /// A triangle of a polygon, and the shares of the polygon's area before it and in it.
@@ -95,6 +96,9 @@ impl LightFrame {
             }
             Shape::Sphere { radius } => Kind::Sphere { radius },
             Shape::Capsule { half_length, radius } => Kind::Capsule { half_length, radius },
+            Shape::Point if light.is_one_sided() => {
+                Kind::Flat(center, [DVec3::ZERO; 2], Flat::Point)
+            }
             Shape::Point => Kind::Point,
             Shape::Sun { angular_size } => {
                 Kind::Sun { tangent: (0.5 * angular_size).tan(), extent }
@@ -115,6 +119,7 @@ impl LightFrame {
                     Flat::Line => Figure::Line,
                     Flat::Disc => Figure::Disc,
                     Flat::Polygon(pieces) => Figure::Triangles(pieces),
+                    Flat::Point => Figure::Point,
                 };
                 let target = Target { base: *base, sides: *sides, figure, end: 0.0 };
                 target.ending(offset, distance)

@@ -45,12 +45,21 @@ fn round_lights_lie_where_their_node_puts_them() {
     assert_eq!(ball.unwrap().light.shape(), shape);
 }
 
-/// Neither the node's rotation nor its scale matters to a point.
+/// Like the rectangle that shrinks to it, it shines along the node's −Z; the scale does not matter to it.
 #[test]
 fn a_rectangle_without_sides_is_a_point() {
-    let node = json!({"translation": [1, 2, 3], "scale": [0, 2, 1e9]});
-    let point = light(node, json!({"width": 0, "height": 0})).unwrap().light;
-    assert_eq!((point.shape(), point.center()), (Shape::Point, DVec3::new(1.0, 2.0, 3.0)));
+    let half_root = 0.5f64.sqrt();
+    for (rotation, minus_z) in
+        [([0.0, 0.0, 0.0, 1.0], DVec3::NEG_Z), ([half_root, 0.0, 0.0, half_root], DVec3::Y)]
+    {
+        let node = json!({"translation": [1, 2, 3], "rotation": rotation, "scale": [0, 2, 1e9]});
+        let point = light(node, json!({"width": 0, "height": 0})).unwrap().light;
+        assert_eq!((point.shape(), point.center()), (Shape::Point, DVec3::new(1.0, 2.0, 3.0)));
+        assert!(point.is_one_sided() && (point.emission() - minus_z).length() < 1e-12);
+    }
+    let nowhere = light(json!({"scale": [0, 0, 0]}), json!({"width": 0, "height": 0}));
+    let sentence = nowhere.unwrap_err();
+    assert!(sentence.contains("it must shine into some direction"), "{sentence}");
 }
 
 #[test]

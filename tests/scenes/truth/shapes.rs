@@ -29,6 +29,7 @@ fn lights() -> Vec<Light> {
         Light::sphere(up, 0.4).unwrap(),
         Light::capsule(up, DVec3::X * 0.4, 0.2).unwrap(),
         Light::point(up).unwrap(),
+        RectangleLight::point(up, DVec3::NEG_Y).unwrap().into(),
         Light::sun(DVec3::NEG_Y, 0.2, DVec3::ZERO, 5.0).unwrap(),
     ]
 }
