@@ -44,13 +44,13 @@ numbers! { Slot LightIndex TechniqueIndex }
 /// An axis-aligned box in mesh space: least and largest corner, metres before the transform.
 pub type MeshBounds = [[f32; 3]; 2];
 
-/// How many half-extents away from 0 a mesh is at least whose positions are taken from another origin. From 3 on no
+/// How many half-extents away from 0 a mesh is at least whose positions count from another origin. From 3 on no
 /// position is more than twice as large as another, and f32 subtracts such numbers exactly (Sterbenz 1974); nearer by, an
 /// origin would win less than two bits.
 const FAR: f32 = 3.0;
 
-/// Where a mesh's positions are taken from before they are transformed, in mesh space: 0, or along the axes on which its
-/// bounds lie far from 0 (a town in the coordinates of a country) their middle.
+/// The origin from which a mesh's positions count when they are transformed, in mesh space: 0, or along the axes on which
+/// its bounds lie far from 0 (a town in the coordinates of a country) their middle.
 ///
 /// The differences from there are exact, and the matrix that they are transformed with ([`from_origin`]) is a product in
 /// 64 bits: nothing is rounded at the size of the positions themselves.
@@ -249,7 +249,7 @@ pub struct MeshInstance {
     pub world_from_mesh: DMat4,
     /// A box around the positions, in mesh space: [least, largest] corners. The node never reads positions on the CPU,
     /// so nothing tells it that a box is too small; what reaches beyond it may cast no shadow, and show none.
-    /// Where it lies far from 0, more than three of its half-extents along an axis, positions are taken from its middle
+    /// Where it lies far from 0, more than three of its half-extents along an axis, its middle is subtracted from positions
     /// before anything is transformed in 32 bits.
     pub bounds: MeshBounds,
     /// Occluder, receiver or both.

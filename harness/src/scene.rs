@@ -14,7 +14,7 @@ struct OwnedMesh {
     indices: HostBuffer,
     count: u32,
     bounds: MeshBounds,
-    /// Where the positions in the buffer are taken from, in the scene's mesh.
+    /// The origin from which the positions in the buffer count, in the scene's mesh.
     origin: DVec3,
 }
 

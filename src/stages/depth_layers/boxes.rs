@@ -71,7 +71,7 @@ pub(crate) struct LightBox {
     pub thin_axis: Option<usize>,
 }
 
-/// The largest sum whose rounding a corner's distance carries, where positions are taken from `origin`.
+/// The largest sum whose rounding a corner's distance carries, where positions count from `origin`.
 fn summed([low, high]: &MeshBounds, light_from_mesh: &DMat4, origin: [f32; 3]) -> f64 {
     let furthest = [0, 1, 2].map(|i| {
         let [low, high] = [low[i], high[i]].map(|x| f64::from(x) - f64::from(origin[i]));
