@@ -9,7 +9,7 @@ use crate::error::quoted;
 use crate::graph::Scope;
 use crate::plain::Matrix;
 use ash::vk;
-use glam::DMat4;
+use glam::{DMat4, DVec3};
 use std::fmt;
 use std::str::FromStr;
 
@@ -43,6 +43,30 @@ numbers! { Slot LightIndex TechniqueIndex }
 
 /// An axis-aligned box in mesh space: least and largest corner, metres before the transform.
 pub type MeshBounds = [[f32; 3]; 2];
+
+/// How many half-extents away from 0 a mesh is at least whose positions count from another origin. From 3 on no
+/// position is more than twice as large as another, and f32 subtracts such numbers exactly (Sterbenz 1974); nearer by, an
+/// origin would win less than two bits.
+const FAR: f32 = 3.0;
+
+/// The origin from which a mesh's positions count when they are transformed, in mesh space: 0, or along the axes on which
+/// its bounds lie far from 0 (a town in the coordinates of a country) their middle.
+///
+/// The differences from there are exact, and the matrix that they are transformed with ([`from_origin`]) is a product in
+/// 64 bits: nothing is rounded at the size of the positions themselves.
+pub(crate) fn origin_of([low, high]: &MeshBounds) -> [f32; 3] {
+    [0, 1, 2].map(|i| {
+        let [middle, half] = [0.5 * low[i] + 0.5 * high[i], 0.5 * high[i] - 0.5 * low[i]];
+        // Numbers that are not finite are refused elsewhere.
+        if middle.abs() > FAR * half && middle.is_finite() { middle } else { 0.0 }
+    })
+}
+
+/// The transform of positions less their mesh's origin.
+pub(crate) fn from_origin(world_from_mesh: &DMat4, origin: [f32; 3]) -> DMat4 {
+    let at = DVec3::from_array(origin.map(f64::from)).extend(1.0);
+    DMat4 { w_axis: *world_from_mesh * at, ..*world_from_mesh }
+}
 
 /// What a mesh does with light: blocks it, shows shadows, or both.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -225,6 +249,8 @@ pub struct MeshInstance {
     pub world_from_mesh: DMat4,
     /// A box around the positions, in mesh space: [least, largest] corners. The node never reads positions on the CPU,
     /// so nothing tells it that a box is too small; what reaches beyond it may cast no shadow, and show none.
+    /// Where it lies far from 0, more than three of its half-extents along an axis, its middle is subtracted from positions
+    /// before anything is transformed in 32 bits.
     pub bounds: MeshBounds,
     /// Occluder, receiver or both.
     pub role: Role,
@@ -287,4 +313,36 @@ pub enum BorderBarriers {
     Node,
     /// The host, from [`FramePlan::accesses`](crate::FramePlan::accesses).
     Host,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Within bounds three half-extents away and more, f32 subtracts the origin without rounding; nearer ones have none.
+    #[test]
+    fn positions_less_their_origin_are_exact() {
+        for (middle, half) in [(1e5, 3.0), (-7e6, 2.1e6), (3.3e-5, 1e-5), (12.0, 0.0), (1e30, 1e29)]
+        {
+            let (low, high) = (middle - half, middle + half);
+            let [origin, ..] = origin_of(&[[low, 0.0, -1.0], [high, 0.0, 1.0]]);
+            for step in 0..=1000 {
+                let p = (low + (high - low) * (step as f32 / 1000.0)).clamp(low, high);
+                assert_eq!(f64::from(p - origin), f64::from(p) - f64::from(origin), "{p}");
+            }
+            assert!(origin >= low && origin <= high);
+        }
+        for (low, high) in [(-1.0, 1.0), (0.0, 5.0), (1.0, 2.0), (-3.0, -1.5), (f32::NAN, 2.0)] {
+            assert_eq!(origin_of(&[[low; 3], [high; 3]]), [0.0; 3], "{low} to {high}");
+        }
+    }
+
+    #[test]
+    fn the_transform_from_an_origin_takes_it_where_it_was() {
+        let world = DMat4::from_translation(DVec3::new(-1e5, 2.0, 3.0))
+            * DMat4::from_scale(DVec3::splat(2.0));
+        let moved = from_origin(&world, [5e4, 0.0, 0.25]);
+        assert_eq!(moved.transform_point3(DVec3::X), DVec3::new(2.0, 2.0, 3.5));
+        assert_eq!(from_origin(&world, [0.0; 3]), world);
+    }
 }

@@ -6,10 +6,11 @@
 layout(location = 0) in vec3 position;
 
 layout(push_constant) uniform Push {
-    mat4 clip_from_mesh;
+    mat4 clip_from_mesh; // from `origin` on
+    vec4 origin;         // see origin_of (src/lent.rs)
 } push;
 
 void main()
 {
-    gl_Position = push.clip_from_mesh * vec4(position, 1.0);
+    gl_Position = push.clip_from_mesh * vec4(position - push.origin.xyz, 1.0);
 }

@@ -11,7 +11,7 @@
 #include "ray_march/pixel.glsl"
 
 layout(push_constant) uniform Mesh {
-    layout(offset = 124) float role; // the G-buffer's role values
+    layout(offset = 124) uint flags; // see headless/gbuffer.vert
 } mesh;
 
 layout(location = 0) out float visible;
@@ -27,15 +27,20 @@ vec3 pixel_normal(ivec2 p, Receiver r)
 void main()
 {
     ivec2 p = ivec2(gl_FragCoord.xy);
+    float role = float(mesh.flags & 255u) / 255.0;
     Receiver r;
-    r.receives = mesh.role > 0.25;
-    r.blocks = mesh.role > 0.75;
+    r.receives = role > 0.25;
+    r.blocks = role > 0.75;
     // A G-buffer would hold this very depth.
     r.position = dehomogenize(
         unproject(gbuffer.light_from_ndc, vec2(p), vec2(gbuffer.extent), gl_FragCoord.z));
     r.normal = vec3(0.0);
     fragment_normal = plane_normal(dFdx(r.position), dFdy(r.position),
                                    towards_viewer(gbuffer.light_from_ndc, r.position, gbuffer.background));
+    uint hidden = mesh.flags >> 8u & 3u;
+    if (hidden == (gl_FrontFacing ? 1u : 2u)) {
+        discard;
+    }
     float v;
     Reach reach;
     if (is_open(p, r, v, reach)) {

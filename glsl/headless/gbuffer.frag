@@ -1,6 +1,9 @@
 #version 450
 
-layout(location = 0) in vec3 position_ws;
+// A pixel of the G-buffer. The back of a single-sided face is not seen; that of a double-sided one has the normal
+// of its front turned round (glTF 2.0 section 3.9.6, doubleSided).
+
+layout(location = 0) in vec3 from_origin; // in the world's axes, from where the mesh's origin is
 layout(location = 1) in vec3 normal_ws;
 
 layout(location = 0) out vec4 position;
@@ -9,15 +12,22 @@ layout(location = 2) out float role;
 layout(location = 3) out vec4 plane;
 
 layout(push_constant) uniform Push {
-    layout(offset = 124) float role; // 1 blocks and receives, 1/2 receives only, 0 only blocks
+    layout(offset = 112) vec3 origin_ws;
+    layout(offset = 124) uint mesh; // see gbuffer.vert
 } push;
 
 void main()
 {
-    position = vec4(position_ws, 1.0);
+    // The triangle's own normal, towards the viewer. Differences of world positions would not do far from the world's
+    // origin, where neighbouring pixels have the same.
+    plane = vec4(normalize(cross(normalize(dFdy(from_origin)), normalize(dFdx(from_origin)))), 0.0);
+    uint hidden = push.mesh >> 8u & 3u;
+    if (hidden == (gl_FrontFacing ? 1u : 2u)) {
+        discard;
+    }
+    position = vec4(push.origin_ws + from_origin, 1.0);
     float length2 = dot(normal_ws, normal_ws);
     normal = vec4(length2 > 0.0 ? normal_ws * inversesqrt(length2) : vec3(0.0), 0.0);
-    role = push.role;
-    // The triangle's own normal.
-    plane = vec4(normalize(cross(normalize(dFdx(position_ws)), normalize(dFdy(position_ws)))), 0.0);
+    normal *= gl_FrontFacing ? 1.0 : -1.0;
+    role = float(push.mesh & 255u) / 255.0;
 }

@@ -11,7 +11,7 @@
 layout(local_size_x = 64) in;
 
 layout(push_constant) uniform Push {
-    vec4 row_x;      // mesh space to the hierarchy's space, a plane each
+    vec4 row_x;      // mesh space, from the origin below on, to the hierarchy's space: a plane each
     vec4 row_y;
     vec4 row_z;
     vec4 low;        // the least corner of the mesh's box, in mesh space
@@ -25,6 +25,9 @@ layout(push_constant) uniform Push {
     uint index_bits; // 16 or 32; 0 without indices
     uint key;        // the bits of a key that are the mesh's
     uint key_bits;   // how many bits of a key are its triangles'
+    float origin_x;  // see origin_of (src/lent.rs)
+    float origin_y;
+    float origin_z;
 } push;
 
 layout(set = 1, binding = 0, std430) readonly buffer Positions { float positions[]; };

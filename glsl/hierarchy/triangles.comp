@@ -19,8 +19,9 @@ void main()
     vec3 corners[3];
     bool there = triangle_at(triangle, corners);
     uint first = 3u * places[push.first + triangle];
+    vec3 origin = vec3(push.origin_x, push.origin_y, push.origin_z);
     for (int i = 0; i < 3; ++i) {
-        vec4 p = vec4(corners[i], 1.0);
+        vec4 p = vec4(corners[i] - origin, 1.0);
         vec3 corner = vec3(dot(push.row_x, p), dot(push.row_y, p), dot(push.row_z, p));
         there = there && is_number(corner.x) && is_number(corner.y) && is_number(corner.z);
         corners[i] = corner;

@@ -227,8 +227,12 @@ Receiver receiver_of(ivec2 pixel)
     float slope = slope_along(pixel, depth, ivec2(1, 0)) + slope_along(pixel, depth, ivec2(0, 1));
     vec4 sloped = p + frame.eye_from_ndc[2] * (frame.background == 0.0 ? slope : -slope);
     float footprint = length(frame.eye_from_ndc[0].xyz) * 2.0 / (float(frame.extent.x) * abs(p.w));
-    float snapped = 0.5 * frame.snap * min(length(from_eye - sloped.xyz / sloped.w), STEEP * footprint);
-    float off = snapped + 2.0 * length(moved) + 8.0 * ROUNDING * max(max(size.x, size.y), size.z);
+    float rise = min(length(from_eye - sloped.xyz / sloped.w), STEEP * footprint);
+    float snapped = 0.5 * frame.snap * rise;
+    // What rounds in any direction must not be more than how far the move takes the receiver off a surface that it is seen
+    // on grazingly; otherwise a sheet that is lit from behind hides nothing from itself.
+    float grazing = length(vec2(1.0, rise / max(footprint, 1.0e-30)));
+    float off = snapped + 2.0 * length(moved) + 8.0 * ROUNDING * max(max(size.x, size.y), size.z) * grazing;
     r.blocks = role > 0.75;
     r.position = frame.eye.xyz + from_eye + towards * off;
     r.in_light = in_light_space(r.position);

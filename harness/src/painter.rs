@@ -9,17 +9,23 @@ use antumbra::Error;
 use antumbra::scene::{Instance, Scene};
 use antumbra::shaders::{DEPTH_VERT, Module};
 use ash::vk;
+use glam::DMat4;
 use std::time::Duration;
 
-/// 124 bytes of the vertex stage and 4 of the fragment stage.
+/// The push constants of `glsl/headless/gbuffer.vert` and of the fragment stages.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct Push {
     clip_from_mesh: [f32; 16],
     /// Columns of three, the fourth float of each but the last unused.
     world_from_mesh: [f32; 15],
-    role: f32,
+    /// The role in bits 0 to 7, which faces are not seen in bits 8 and 9.
+    flags: u32,
 }
+
+/// Bit 8 hides the faces whose corners run counter-clockwise in the image, bit 9 the others.
+const COUNTER_CLOCKWISE: u32 = 1 << 8;
+const CLOCKWISE: u32 = 2 << 8;
 
 /// A mesh ready to be drawn. Its buffers are the [`SceneBuffers`]' that it was made of, which must live as
 /// long.
@@ -40,7 +46,16 @@ pub(crate) fn draws(
 ) -> Vec<SceneDraw> {
     let draw = |instance: &Instance| {
         let (positions, normals, indices, count) = buffers.draw(instance.mesh)?;
-        Some(SceneDraw { push: push_of(instance, view), positions, normals, indices, count })
+        let double_sided = scene.meshes[instance.mesh].double_sided;
+        let backs = match (double_sided, instance.mirrored()) {
+            (true, _) => 0,
+            // A transform that mirrors turns the order of corners round, and fronts are fronts all the same.
+            (false, true) => COUNTER_CLOCKWISE,
+            (false, false) => CLOCKWISE,
+        };
+        let flags = u32::from(instance.role.mask()) | backs;
+        let push = push_of(&buffers.world_from_buffer(instance), flags, view);
+        Some(SceneDraw { push, positions, normals, indices, count })
     };
     scene.instances.iter().filter(|i| keep(i)).filter_map(draw).collect()
 }
@@ -49,6 +64,7 @@ pub(crate) fn draws(
 pub(crate) struct Painter {
     device: HeadlessDevice,
     raster: Raster,
+    inputs: bool,
 }
 
 impl Painter {
@@ -80,7 +96,7 @@ impl Painter {
             set,
             push: size_of::<Push>() as u32,
         };
-        Ok(Self { device: device.clone(), raster: Raster::new(device, info)? })
+        Ok(Self { device: device.clone(), raster: Raster::new(device, info)?, inputs })
     }
 
     /// Paints into the images, the color attachments in order and then depth, submits and waits; how long
@@ -98,7 +114,11 @@ impl Painter {
                     indices: (draw.indices, 0, vk::IndexType::UINT32),
                     count: draw.count,
                 };
-                self.raster.draw(cmd, bytemuck::bytes_of(&draw.push), &triangles);
+                // `depth.vert` has a mesh's origin in this place, which is 0.
+                let world_from_mesh =
+                    if self.inputs { draw.push.world_from_mesh } else { [0.0; 15] };
+                let push = Push { world_from_mesh, ..draw.push };
+                self.raster.draw(cmd, bytemuck::bytes_of(&push), &triangles);
             }
         };
         let painted = self.device.submit_timed(|cmd| {
@@ -109,17 +129,13 @@ impl Painter {
     }
 }
 
-fn push_of(instance: &Instance, view: &View) -> Push {
-    let m = instance.world_from_mesh;
+fn push_of(m: &DMat4, flags: u32, view: &View) -> Push {
     let mut world_from_mesh = [0.0; 15];
     for (column, c) in [m.x_axis, m.y_axis, m.z_axis, m.w_axis].iter().enumerate() {
         for (row, value) in c.truncate().to_array().into_iter().enumerate() {
             world_from_mesh[column * 4 + row] = value as f32;
         }
     }
-    Push {
-        clip_from_mesh: (view.clip_from_world * m).as_mat4().to_cols_array(),
-        world_from_mesh,
-        role: f32::from(instance.role.mask()) / 255.0,
-    }
+    let clip_from_mesh = (view.clip_from_world * *m).as_mat4().to_cols_array();
+    Push { clip_from_mesh, world_from_mesh, flags }
 }

@@ -235,7 +235,8 @@ impl ReadbackScheme {
                 let Geometry::Buffers(b) = mesh.geometry else { continue };
                 let Some(indices) = b.indices else { continue };
                 let clip_from_mesh = (clip_from_world * mesh.world_from_mesh).as_mat4();
-                let push = DepthPush { clip_from_mesh: clip_from_mesh.to_cols_array() };
+                let clip_from_mesh = clip_from_mesh.to_cols_array();
+                let push = DepthPush { clip_from_mesh, origin: [0.0; 4] };
                 let triangles = Triangles {
                     vertices: &[b.positions],
                     offsets: &[b.positions_offset],

@@ -2,9 +2,10 @@
 
 use crate::{HeadlessDevice, HostBuffer};
 use antumbra::lent::MeshBounds;
-use antumbra::scene::Scene;
+use antumbra::scene::{Instance, Scene};
 use antumbra::{Error, Geometry, MeshBuffers, MeshInstance};
 use ash::vk;
+use glam::{DMat4, DVec3};
 
 /// The buffers of one mesh.
 struct OwnedMesh {
@@ -13,6 +14,8 @@ struct OwnedMesh {
     indices: HostBuffer,
     count: u32,
     bounds: MeshBounds,
+    /// The origin from which the positions in the buffer count, in the scene's mesh.
+    origin: DVec3,
 }
 
 /// A scene as the device sees it.
@@ -31,6 +34,8 @@ impl SceneBuffers {
             if mesh.indices.len() < 3 {
                 return Ok(None);
             }
+            let mut near = mesh.clone();
+            let origin = near.move_to_origin();
             let vertices = |name, data| {
                 HostBuffer::with_data::<[f32; 3]>(
                     device,
@@ -40,7 +45,7 @@ impl SceneBuffers {
                 )
             };
             Ok(Some(OwnedMesh {
-                positions: vertices("positions", &mesh.positions)?,
+                positions: vertices("positions", &near.positions)?,
                 normals: vertices("normals", &mesh.normals)?,
                 indices: HostBuffer::with_data(
                     device,
@@ -49,7 +54,8 @@ impl SceneBuffers {
                     Usage::INDEX_BUFFER | Usage::STORAGE_BUFFER,
                 )?,
                 count: mesh.indices.len() as u32,
-                bounds: mesh.bounds(),
+                bounds: near.bounds(),
+                origin,
             }))
         };
         let meshes = scene.meshes.iter().map(upload).collect::<Result<_, Error>>()?;
@@ -58,7 +64,7 @@ impl SceneBuffers {
 
     /// The scene's instances as the node takes them.
     pub fn instances(&self, scene: &Scene) -> Vec<MeshInstance> {
-        let instance = |i: &antumbra::scene::Instance| {
+        let instance = |i: &Instance| {
             let mesh = self.meshes.get(i.mesh)?.as_ref()?;
             Some(MeshInstance {
                 geometry: Geometry::Buffers(MeshBuffers::indexed(
@@ -67,7 +73,7 @@ impl SceneBuffers {
                     mesh.indices.raw(),
                     mesh.count,
                 )),
-                world_from_mesh: i.world_from_mesh,
+                world_from_mesh: self.world_from_buffer(i),
                 bounds: mesh.bounds,
                 role: i.role,
                 double_sided: scene.meshes[i.mesh].double_sided,
@@ -81,5 +87,12 @@ impl SceneBuffers {
     pub(crate) fn draw(&self, mesh: usize) -> Option<(vk::Buffer, vk::Buffer, vk::Buffer, u32)> {
         let mesh = self.meshes.get(mesh)?.as_ref()?;
         Some((mesh.positions.raw(), mesh.normals.raw(), mesh.indices.raw(), mesh.count))
+    }
+
+    /// Where the positions of an instance in its buffer go in the world.
+    pub(crate) fn world_from_buffer(&self, instance: &Instance) -> DMat4 {
+        let mesh = self.meshes.get(instance.mesh).and_then(Option::as_ref);
+        let origin = mesh.map_or(DVec3::ZERO, |mesh| mesh.origin);
+        instance.world_from_mesh * DMat4::from_translation(origin)
     }
 }

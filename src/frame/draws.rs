@@ -2,7 +2,7 @@
 
 use super::Description;
 use crate::Error;
-use crate::lent::{Geometry, MeshBuffers, MeshInstance};
+use crate::lent::{Geometry, MeshBuffers, MeshInstance, from_origin, origin_of};
 use glam::DMat4;
 
 /// Which of a mesh's triangles face the light: the winding of front faces, as the light sees them.
@@ -25,13 +25,16 @@ pub struct MeshDraw {
     pub stride: usize,
     /// Which faces are front faces.
     pub faces: Faces,
+    /// What is subtracted from positions before the matrix; 0 for a mesh that the host draws.
+    pub origin: [f32; 3],
 }
 
 /// A list of meshes, and the matrices that transform them into each of the list's views.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct DrawList {
     pub meshes: Vec<MeshDraw>,
-    /// Matrices from mesh space to clip space, column-major: all meshes of view 0, then those of view 1, and so on.
+    /// Matrices from mesh space, moved by each mesh's origin, to clip space, column-major: all meshes of view 0, then those
+    /// of view 1, and so on.
     pub clip_from_mesh: Vec<[f32; 16]>,
 }
 
@@ -58,10 +61,12 @@ impl DrawList {
         let count = meshes.len();
         self.clip_from_mesh.resize(views.len() * count, [0.0; 16]);
         for (nth, mesh) in meshes.enumerate() {
-            self.meshes.push(draw_of(description, mesh)?);
-            let light_from_mesh = *light_from_world * mesh.world_from_mesh;
+            let draw = draw_of(description, mesh)?;
+            let light_from_origin =
+                *light_from_world * from_origin(&mesh.world_from_mesh, draw.origin);
+            self.meshes.push(draw);
             for (view, clip) in views.iter().enumerate() {
-                let matrix = (*clip * light_from_mesh).as_mat4().to_cols_array();
+                let matrix = (*clip * light_from_origin).as_mat4().to_cols_array();
                 self.clip_from_mesh[view * count + nth] = matrix;
             }
         }
@@ -89,5 +94,9 @@ fn draw_of(description: &Description, mesh: &MeshInstance) -> Result<MeshDraw, E
     } else {
         Faces::CounterClockwise
     };
-    Ok(MeshDraw { mesh: *mesh, stride, faces })
+    let origin = match mesh.geometry {
+        Geometry::HostDrawn(_) => [0.0; 3],
+        Geometry::Buffers(_) => origin_of(&mesh.bounds),
+    };
+    Ok(MeshDraw { mesh: *mesh, stride, faces, origin })
 }

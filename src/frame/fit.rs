@@ -225,7 +225,7 @@ impl Fit {
         occluders.clear();
         receivers.clear();
         for (place, mesh) in frame.meshes.iter().enumerate().filter(|(_, m)| has_triangles(m)) {
-            let placed = LightBox::new(&mesh.bounds, &(*light_from_world * mesh.world_from_mesh));
+            let placed = LightBox::of(mesh, light_from_world);
             if mesh.role.receives() {
                 receivers.push(place as u32, placed);
             }
@@ -260,7 +260,7 @@ impl Fit {
         receivers.clear();
         for &place in near {
             let mesh = &frame.meshes[place as usize];
-            let placed = LightBox::new(&mesh.bounds, &(*light_from_world * mesh.world_from_mesh));
+            let placed = LightBox::of(mesh, light_from_world);
             if placed.max.z <= 0.0 {
                 continue;
             }

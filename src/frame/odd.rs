@@ -43,7 +43,7 @@ fn all_behind(frame: &Frame, which: impl Fn(&MeshInstance) -> bool) -> bool {
     let light_from_world = frame.light.rectangle().light_from_world();
     let mut some = false;
     for mesh in frame.meshes.iter().filter(|mesh| which(mesh) && has_triangles(mesh)) {
-        let placed = LightBox::new(&mesh.bounds, &(light_from_world * mesh.world_from_mesh));
+        let placed = LightBox::of(mesh, &light_from_world);
         let nearest = DVec3::ZERO.max(placed.min).min(placed.max);
         if frame.reach.is_some_and(|reach| nearest.length() > reach) {
             continue;

@@ -168,8 +168,8 @@ impl FramePlan {
         &self.list(list).meshes
     }
 
-    /// The meshes of a list with their matrices from mesh space to the clip space of one of the list's views,
-    /// column-major. Empty for a view that does not exist.
+    /// The meshes of a list with their matrices from mesh space, moved by [`MeshDraw::origin`], to the clip space of one of
+    /// the list's views, column-major. Empty for a view that does not exist.
     pub fn draws(
         &self,
         list: MeshList,

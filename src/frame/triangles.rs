@@ -5,7 +5,7 @@ use super::camera::Camera;
 use super::check::bad;
 use super::{Description, Frame};
 use crate::Error;
-use crate::lent::{Geometry, LightIndex, MeshBuffers, MeshInstance};
+use crate::lent::{Geometry, LightIndex, MeshBuffers, MeshInstance, from_origin, origin_of};
 use crate::light::{Light, Shape};
 use crate::stages::hierarchy::{LEAF, MeshPush, Sizes};
 use ash::vk;
@@ -138,7 +138,8 @@ impl TriangleList {
         first: u32,
     ) -> Result<TriangleMesh, Error> {
         let (indices, offset, index_bits) = indices_of(buffers).or_else(bad)?;
-        let m = mesh.world_from_mesh;
+        let origin = origin_of(&mesh.bounds);
+        let m = from_origin(&mesh.world_from_mesh, origin);
         let row = |i: usize| {
             let row = m.row(i);
             DVec4::new(row.x, row.y, row.z, row.w - self.origin[i]).as_vec4().to_array()
@@ -159,6 +160,7 @@ impl TriangleList {
             index_bits,
             key: 0,
             key_bits: 0,
+            origin,
         };
         Ok(TriangleMesh { positions: buffers.positions, indices, push })
     }

@@ -63,7 +63,7 @@ impl PassObjects {
             // A command writes them into a buffer, and no shader sees them pushed.
             Work::Constants { .. } | Work::FrameNumber => (vk::ShaderStageFlags::COMPUTE, 0),
             Work::Raster { draw: Draw::Layer { .. }, .. } => {
-                // Each mesh pushes its matrix; the pass's own push constants follow it.
+                // Each mesh pushes its matrix and origin; the pass's own push constants follow it.
                 (vk::ShaderStageFlags::VERTEX, pass.push.bytes().len().max(size_of::<DepthPush>()))
             }
             Work::Raster { .. } => (

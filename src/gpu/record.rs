@@ -16,6 +16,7 @@ use crate::graph::{
     Target, Use, Work,
 };
 use crate::lent::{Geometry, MeshBuffers};
+use crate::stages::depth_layers::DepthPush;
 use ash::vk;
 use std::ffi::CString;
 
@@ -249,13 +250,15 @@ impl Recorder<'_> {
 
     fn mesh(&self, made: &PassObjects, draw: &MeshDraw, matrix: &[f32; 16], mesh: &MeshBuffers) {
         let (device, cmd) = (&self.host.device, self.cmd);
-        let matrix: &[u8] = bytemuck::cast_slice(matrix);
+        let [x, y, z] = draw.origin;
+        let push = DepthPush { clip_from_mesh: *matrix, origin: [x, y, z, 0.0] };
+        let push = bytemuck::bytes_of(&push);
         let pipeline = made.pipelines[variant(draw.stride, draw.faces)];
         // SAFETY: inside the pass's render pass, with a pipeline made for it.
         unsafe { device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::GRAPHICS, pipeline) };
-        // SAFETY: the layout's range is one 4×4 matrix for the vertex stage.
+        // SAFETY: the layout's range begins with one DepthPush for the vertex stage.
         unsafe {
-            device.cmd_push_constants(cmd, made.layouts.pipeline, made.push_stages, 0, matrix);
+            device.cmd_push_constants(cmd, made.layouts.pipeline, made.push_stages, 0, push);
         };
         // SAFETY: Host::borrow's promise: the mesh's buffers are valid and hold what the frame
         // says of them.

@@ -82,7 +82,7 @@ pub enum Target {
 /// The draw of a raster pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Draw {
-    /// Draws the meshes of a depth layer, with positions at location 0 and a pushed matrix for each mesh.
+    /// Draws the meshes of a depth layer, with positions at location 0 and a pushed matrix and origin for each mesh.
     Layer {
         /// The layer.
         layer: Layer,
@@ -238,7 +238,7 @@ pub struct Pass {
     pub name: &'static str,
     /// The resources that it uses.
     pub uses: Uses,
-    /// The push constants of the pass, without the matrix that each mesh draw pushes before them.
+    /// The push constants of the pass, without the matrix and origin that each mesh draw pushes before them.
     pub push: Push,
     /// The command of the pass.
     pub work: Work,

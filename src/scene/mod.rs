@@ -7,7 +7,7 @@
 pub use crate::lent::Role;
 
 use crate::error::quoted;
-use crate::lent::MeshBounds;
+use crate::lent::{MeshBounds, origin_of};
 use crate::{Error, Light};
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
@@ -40,6 +40,22 @@ impl Mesh {
             self.positions.iter().fold([start; 3], |m, p| [0, 1, 2].map(|i| pick(m[i], p[i])))
         };
         [extreme(f32::min, f32::INFINITY), extreme(f32::max, f32::NEG_INFINITY)]
+    }
+
+    /// Moves a mesh that lies far from the origin of its own space, as one in the coordinates of a country does, to around
+    /// that origin. Returns the way that it was moved back by: its instances stay where they are with a translation by that
+    /// behind their transforms. Along axes on which the mesh lies within three half-extents of the origin it stays.
+    ///
+    /// Nothing is rounded: f32 holds the difference of positions that are less than twice as large as each other. But what
+    /// transforms the positions in f32 then rounds at the size of the mesh, not at that of its distance.
+    pub fn move_to_origin(&mut self) -> DVec3 {
+        let origin = origin_of(&self.bounds());
+        if origin != [0.0; 3] {
+            for position in &mut self.positions {
+                *position = [0, 1, 2].map(|i| position[i] - origin[i]);
+            }
+        }
+        DVec3::from_array(origin.map(f64::from))
     }
 }
 

@@ -19,6 +19,7 @@ pub mod reflect;
 pub mod rig;
 pub mod room;
 mod signature;
+pub mod situations;
 mod skip;
 pub mod tables;
 

@@ -1,6 +1,6 @@
 //! What ray marching makes of lights larger than any map's window, and of eyes inside occluders.
 
-use antumbra::scene::{Camera, Lens, Role, Scene, generate};
+use antumbra::scene::{Camera, Lens, Mesh, Role, Scene, generate};
 use antumbra_harness::{GBuffer, View};
 use antumbra_tests::device;
 use antumbra_tests::measure::{Setup, percent, settings};
@@ -47,11 +47,13 @@ fn a_light_larger_than_the_frustum_can_hold_is_seen_as_it_is() {
 /// What texels cut off an edge, in percentage points of all pixels.
 const ROOM: f64 = 0.05;
 
-/// A closed box around the eye, the light outside: everything that the eye sees is in umbra.
+/// A closed box around the eye, the light outside: everything that the eye sees is in umbra. It is double-sided, or the
+/// eye would look through its backs.
 fn boxed_in() -> Scene {
     let mut scene = generate::stage(generate::square_light(0.4).unwrap());
     let at = DMat4::from_translation(DVec3::new(0.0, 1.5, 0.0));
-    scene.add("box", generate::cuboid(DVec3::splat(2.0)), at, Role::Both);
+    let mesh = Mesh { double_sided: true, ..generate::cuboid(DVec3::splat(2.0)) };
+    scene.add("box", mesh, at, Role::Both);
     scene
 }
 
@@ -78,7 +80,12 @@ fn an_eye_inside_an_occluder_sees_its_umbra() {
             for normals in [None, Some(GBuffer::NORMALS)] {
                 let mut stage = setup.stage(&device, &words);
                 stage.configure_with(settings(&words), |d| d.normals = normals).unwrap();
-                let seen = setup.visibility(&mut stage);
+                // To the node it is a solid with an outside.
+                let mut solid = stage.instances().to_vec();
+                solid.iter_mut().for_each(|mesh| mesh.double_sided = false);
+                let plan = stage.plan_with(setup.light(), |frame| frame.meshes = &solid).unwrap();
+                stage.run(&plan).unwrap();
+                let seen = stage.visibility().unwrap();
                 let lit = seen.iter().filter(|v| **v > 0.0).count();
                 println!("{where_to}, {words}, {normals:?}: {lit} of {} see light", seen.len());
                 let in_corners = usize::from(normals.is_none());

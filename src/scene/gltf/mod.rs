@@ -50,6 +50,8 @@ const MAX_COORDINATE: f64 = 1e9;
 ///   the same: [`Scene::light`] is what refuses it.
 /// - The camera is that of the first node with one, perspective or orthographic; [`Scene::set_camera`] takes another.
 /// - Buffers come from the file itself, from data URIs, and from files in its folder or below.
+/// - A mesh whose vertices lie far from the origin of its own space is moved there, and its instances the other way
+///   ([`Mesh::move_to_origin`](super::Mesh::move_to_origin)).
 /// - Meshes that differ in name and material alone, and so look the same in a shadow, are one
 ///   [`Mesh`](super::Mesh).
 ///
@@ -114,12 +116,13 @@ fn parse(bytes: &[u8], folder: &Path) -> Result<Scene, Problem> {
         let Some(index) = node.mesh else { continue };
         let role = extras::role(&node.extras).map_err(|e| format!("{}: {e}", label()))?;
         for mesh in meshes.find(index, label)? {
-            within_reach(&placed.world, &meshes.boxes[mesh])
+            let world_from_mesh = placed.world * DMat4::from_translation(meshes.origins[mesh]);
+            within_reach(&world_from_mesh, &meshes.boxes[mesh])
                 .map_err(|e| format!("{}: {e}", label()))?;
             scene.instances.push(Instance {
                 name: nodes::name(&root, placed.node),
                 mesh,
-                world_from_mesh: placed.world,
+                world_from_mesh,
                 role,
             });
         }
@@ -149,6 +152,8 @@ struct Meshes<'a> {
     read: Vec<Mesh>,
     /// The box around each of the scene's meshes, in mesh space.
     boxes: Vec<Bounds>,
+    /// The way from the origin of each of the scene's meshes to where it was in the file.
+    origins: Vec<DVec3>,
     /// For each mesh of the file, the range of the scene's meshes that hold its triangles.
     of_index: Vec<Option<Range<usize>>>,
     of_shape: BTreeMap<triangles::Shape, Range<usize>>,
@@ -161,6 +166,7 @@ impl<'a> Meshes<'a> {
             reader: triangles::Reader::new(root, buffers),
             read: Vec::new(),
             boxes: Vec::new(),
+            origins: Vec::new(),
             of_index: vec![None; root.meshes.len()],
             of_shape: BTreeMap::new(),
         }
@@ -182,7 +188,8 @@ impl<'a> Meshes<'a> {
             Some(known) => known.clone(),
             None => {
                 let first = self.read.len();
-                for mesh in self.reader.read(index, &shape)? {
+                for mut mesh in self.reader.read(index, &shape)? {
+                    self.origins.push(mesh.move_to_origin());
                     let [min, max] = mesh.bounds().map(|c| DVec3::from_array(c.map(f64::from)));
                     self.boxes.push(Bounds { min, max });
                     self.read.push(mesh);

@@ -1,7 +1,7 @@
 //! Bounding boxes in a light's space.
 
 use crate::RectangleLight;
-use crate::lent::MeshBounds;
+use crate::lent::{Geometry, MeshBounds, MeshInstance, from_origin, origin_of};
 use glam::{DMat4, DVec3, DVec4};
 use smallvec::SmallVec;
 
@@ -71,7 +71,31 @@ pub(crate) struct LightBox {
     pub thin_axis: Option<usize>,
 }
 
+/// The largest sum whose rounding a corner's distance carries, where positions count from `origin`.
+fn summed([low, high]: &MeshBounds, light_from_mesh: &DMat4, origin: [f32; 3]) -> f64 {
+    let furthest = [0, 1, 2].map(|i| {
+        let [low, high] = [low[i], high[i]].map(|x| f64::from(x) - f64::from(origin[i]));
+        low.abs().max(high.abs())
+    });
+    let row = from_origin(light_from_mesh, origin).row(2).abs();
+    row.dot(DVec3::from_array(furthest).extend(1.0))
+}
+
 impl LightBox {
+    /// The box of a mesh in the space of `light_from_world`.
+    pub fn of(mesh: &MeshInstance, light_from_world: &DMat4) -> Self {
+        let light_from_mesh = *light_from_world * mesh.world_from_mesh;
+        let placed = Self::new(&mesh.bounds, &light_from_mesh);
+        match mesh.geometry {
+            Geometry::Buffers(_) => placed,
+            // The host's matrix is for positions as they are.
+            Geometry::HostDrawn(_) => {
+                let summed = summed(&mesh.bounds, &light_from_mesh, [0.0; 3]);
+                Self { summed, ..placed }
+            }
+        }
+    }
+
     /// The box of a mesh's bounds under a transform to light space.
     pub fn new(bounds: &MeshBounds, light_from_mesh: &DMat4) -> Self {
         let [low, high] = bounds.map(|p| DVec3::from_array(p.map(f64::from)));
@@ -87,13 +111,12 @@ impl LightBox {
         let high_face = low_face.map(|p| p + edges[2]);
         let [a, b, c, d] = low_face;
         let [e, f, g, h] = high_face;
-        let furthest = low.abs().max(high.abs());
         let flat = FLAT * size.max_element();
         Self {
             corners: [a, b, c, d, e, f, g, h],
             min: first + below,
             max: first + above,
-            summed: light_from_mesh.row(2).abs().dot(furthest.extend(1.0)),
+            summed: summed(bounds, light_from_mesh, origin_of(bounds)),
             thin_axis: size.to_array().iter().position(|&extent| extent <= flat),
         }
     }

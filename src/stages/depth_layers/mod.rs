@@ -49,12 +49,14 @@ pub const FORMAT: vk::Format = vk::Format::D32_SFLOAT;
 /// The format of layers that are copied from the host's images: compute shaders cannot write depth formats.
 const COPIED_FORMAT: vk::Format = vk::Format::R32_SFLOAT;
 
-/// The push constants of a mesh draw: a matrix by columns.
+/// The push constants of a mesh draw: a matrix by columns, and what is subtracted from positions before it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct DepthPush {
-    /// Mesh space to the map's clip space.
+    /// Mesh space, moved so that the origin is at 0, to the map's clip space.
     pub clip_from_mesh: [f32; 16],
+    /// The mesh's origin, and a 0.
+    pub origin: [f32; 4],
 }
 
 /// The push constants of `copy_map.comp`.

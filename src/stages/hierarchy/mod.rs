@@ -43,7 +43,7 @@ const CELLS: f64 = 1024.0;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct MeshPush {
-    /// Mesh space to the hierarchy's space: a plane for each of x, y and z.
+    /// Mesh space, moved so that the origin is at 0, to the hierarchy's space: a plane for each of x, y and z.
     pub rows: [[f32; 4]; 3],
     /// The least corner of the mesh's box, in mesh space.
     pub low: [f32; 4],
@@ -67,6 +67,8 @@ pub struct MeshPush {
     pub key: u32,
     /// How many bits of a key are its triangles'.
     pub key_bits: u32,
+    /// The mesh's origin.
+    pub origin: [f32; 3],
 }
 
 impl MeshPush {

@@ -121,6 +121,8 @@ pub(super) fn look(graph: &mut Graph, ctx: &LineContext, nth: u32) {
 pub struct Sample {
     /// The mesh's matrix to the line's clip space, by columns; each mesh has its own.
     pub line_from_mesh: [f32; 16],
+    /// The mesh's origin, which each mesh has too.
+    pub origin: [f32; 4],
     /// The least and largest u at the line's first end, then at its last.
     pub u_window: [f32; 4],
     /// The line's length, m.
@@ -147,6 +149,7 @@ fn drawn(
         uses,
         push: Push::new(&Sample {
             line_from_mesh: [0.0; 16],
+            origin: [0.0; 4],
             u_window: ctx.line.u_window(),
             line: ctx.line.length(),
             nth: sample.map_or(-1, |nth| nth as i32),
