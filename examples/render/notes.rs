@@ -2,10 +2,10 @@
 
 use crate::options::Options;
 use crate::report::Drawn;
+use antumbra::FramePlan;
 use antumbra::auto::{Budget, Choice};
 use antumbra::effects::{Effect, Outcome};
 use antumbra::scene::{AreaLight, Scene};
-use antumbra::FramePlan;
 
 /// One line each, for standard error.
 pub fn of(options: &Options, scene: &Scene, lights: &[Drawn]) -> Vec<String> {

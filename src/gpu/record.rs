@@ -232,11 +232,11 @@ impl Recorder<'_> {
     /// width and height.
     fn set_viewport(&self, frame: &FramePlan, made: &PassObjects, pass: &Pass) -> [f32; 2] {
         let shapes = pass.writes().map(|id| frame.plan.graph.resource(id).shape);
-        let size = shapes.into_iter().find_map(|shape| match shape {
+        let extent = |shape| match shape {
             Shape::Image { width, height, .. } => Some(vk::Extent2D { width, height }),
             Shape::Buffer { .. } => None,
-        });
-        let extent = size.unwrap_or(made.extent);
+        };
+        let extent = shapes.into_iter().find_map(extent).unwrap_or(made.extent);
         let [width, height] = [extent.width as f32, extent.height as f32];
         let viewport = vk::Viewport { width, height, max_depth: 1.0, ..Default::default() };
         let scissor = vk::Rect2D { extent, ..Default::default() };
