@@ -228,15 +228,13 @@ impl Recorder<'_> {
         }
     }
 
-    /// Sets viewport and scissor to the part of the attachments that the frame uses, and returns its share of their
-    /// width and height.
+    /// Sets viewport and scissor to the part of the attachments that the frame uses; returns its shares of both sides.
     fn set_viewport(&self, frame: &FramePlan, made: &PassObjects, pass: &Pass) -> [f32; 2] {
-        let shapes = pass.writes().map(|id| frame.plan.graph.resource(id).shape);
-        let extent = |shape| match shape {
+        let used = |id| match frame.plan.graph.resource(id).shape {
             Shape::Image { width, height, .. } => Some(vk::Extent2D { width, height }),
             Shape::Buffer { .. } => None,
         };
-        let extent = shapes.into_iter().find_map(extent).unwrap_or(made.extent);
+        let extent = pass.writes().find_map(used).unwrap_or(made.extent);
         let [width, height] = [extent.width as f32, extent.height as f32];
         let viewport = vk::Viewport { width, height, max_depth: 1.0, ..Default::default() };
         let scissor = vk::Rect2D { extent, ..Default::default() };
