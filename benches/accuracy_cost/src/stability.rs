@@ -217,7 +217,7 @@ impl Walk<'_> {
         let errors = Errors {
             summary: ErrorSummary::between(&truth, &image, None)?,
             seen_error: Some(seen_error(&truth, &image, &irradiance, None)?),
-            changes: Some(changes(&self.pairs, &images)),
+            changes: Some(Box::new(changes(&self.pairs, &images))),
             ..Errors::default()
         };
         Ok(Some((errors, times)))

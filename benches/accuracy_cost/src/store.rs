@@ -41,7 +41,7 @@ pub struct Errors {
     pub seen_error: Option<f64>,
     /// How still points stay, where a camera moves.
     #[serde(flatten, default)]
-    pub changes: Option<Changes>,
+    pub changes: Option<Box<Changes>>,
     /// Mean FLIP of the shaded images, 0..1; none where the pixels are no picture.
     pub flip: Option<f64>,
     /// The standard error of one penumbra pixel of the truth; 0 where it is exact.
@@ -348,6 +348,24 @@ pub(crate) mod tests {
         assert!(!store.has("a"));
         let earlier = std::fs::read(path.with_extension("earlier.jsonl")).unwrap();
         assert_eq!(Contents::read(&earlier).0.whole, ["a"]);
+    }
+
+    /// Rows of a walk are read as they were written, and so are those of runs that had neither seen errors nor walks.
+    #[test]
+    fn changes_are_kept_and_missed_by_no_older_row() {
+        let mut walked = row("one view", 1.0, 1.0, 0.1);
+        if let Outcome::Measured { errors, .. } = &mut walked.outcome {
+            let changes = Changes { pairs: 9, change_p999: 0.25, ..Changes::default() };
+            errors.changes = Some(Box::new(changes));
+        }
+        let read = |text: &str| serde_json::from_str::<Row>(text).unwrap();
+        let text = serde_json::to_string(&walked).unwrap();
+        assert_eq!(read(&text), walked);
+        let older = serde_json::to_string(&row("one", 1.0, 1.0, 0.1)).unwrap();
+        let older = older.replace("\"normals\":false,", "").replace("\"seen_error\":0.05,", "");
+        assert!(!older.contains("normals") && !older.contains("seen_error"), "{older}");
+        let (errors, _) = read(&older).measured().map(|(e, t)| (e.clone(), t.clone())).unwrap();
+        assert_eq!((errors.seen_error, errors.changes), (None, None));
     }
 
     #[test]

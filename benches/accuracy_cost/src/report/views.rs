@@ -63,7 +63,7 @@ fn chart(technique: &str, (label, of): Measure, rows: &[&Row], all: &[&Row]) -> 
 pub fn stability(report: &Report) -> Markup {
     let rows: Vec<(&Row, &Changes)> = report
         .study(STABILITY)
-        .filter_map(|row| Some((row, row.measured()?.0.changes.as_ref()?)))
+        .filter_map(|row| Some((row, row.measured()?.0.changes.as_deref()?)))
         .collect();
     let Some((_, first)) = rows.first() else { return html! { p { "Not measured." } } };
     html! {
@@ -141,7 +141,7 @@ mod tests {
         (row.study, row.technique) = (STABILITY.into(), technique.into());
         if let Outcome::Measured { errors, .. } = &mut row.outcome {
             let changes = Changes { pairs: 9, error_change_p999: change, ..Changes::default() };
-            errors.changes = Some(changes);
+            errors.changes = Some(Box::new(changes));
         }
         row
     }
