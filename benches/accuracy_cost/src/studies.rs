@@ -60,15 +60,18 @@ pub fn all(scale: &Scale, own: &[SceneSpec]) -> Vec<Group> {
         let entries = matrix_entries(scale, light != "small" && light != "large");
         Group::seen(MATRIX, spec, light, scale.view, entries)
     };
-    let standard = scenes::standard();
-    groups.extend(standard.iter().map(|spec| matrix(spec, "medium")));
-    let whole = scenes::whole();
-    let in_quick = |g: &Group| QUICK_WHOLE.contains(&(&g.scene, &g.light));
-    let of_whole = whole.iter().flat_map(|spec| of_whole(scale, spec));
-    groups.extend(of_whole.filter(|g| !scale.quick || in_quick(g)));
     groups.extend(own.iter().flat_map(|spec| own_groups(scale, spec)));
-    groups.extend(views::all(scale));
-    groups.extend(stability::all(scale));
+    let in_run =
+        |g: &Group| !scale.quick || QUICK_WHOLE.contains(&(g.scene.as_str(), g.light.as_str()));
+    let whole = scenes::whole();
+    let mut whole: Vec<_> = whole.iter().flat_map(|spec| of_whole(scale, spec)).collect();
+    whole.retain(in_run);
+    whole.extend(views::all(scale).into_iter().chain(stability::all(scale)));
+    let standard = scenes::standard();
+    let standard_groups = standard.iter().map(|spec| matrix(spec, "medium")).collect();
+    // On a busy machine the quick run ends early, and no kind of scene should be missing from it.
+    let in_order = if scale.quick { [whole, standard_groups] } else { [standard_groups, whole] };
+    groups.extend(in_order.into_iter().flatten());
     groups.extend(sweeps::all(scale));
     groups.extend(curtis::groups(scale));
     groups.push(sweeps::eisemann());
