@@ -63,38 +63,97 @@ impl ErrorSummary {
     /// [`Error::Frame`] where lengths differ, or a value under the mask is not finite, or a truth
     /// under the mask is outside 0..1.
     pub fn between(truth: &[f32], image: &[f32], mask: Option<&[bool]>) -> Result<Self, Error> {
-        let same_length = |what: &str, length: usize| {
-            if length == truth.len() {
-                return Ok(());
-            }
-            Err(Error::Frame(format!(
-                "{what} must have as many pixels as the truth ({length} against {})",
-                truth.len()
-            )))
-        };
-        same_length("the image", image.len())?;
-        if let Some(mask) = mask {
-            same_length("the mask", mask.len())?;
-        }
         let mut tally = Tally::default();
-        for (i, (&truth, &image)) in truth.iter().zip(image).enumerate() {
-            if mask.is_some_and(|mask| !mask[i]) {
-                continue;
-            }
-            if !(0.0..=1.0).contains(&truth) {
-                return Err(Error::Frame(format!(
-                    "the truth at pixel {i} must be from 0 to 1 (it is {truth})"
-                )));
-            }
-            if !image.is_finite() {
-                return Err(Error::Frame(format!(
-                    "the image at pixel {i} must be finite (it is {image})"
-                )));
-            }
-            tally.add(truth, image);
-        }
+        each(truth, image, mask, |_, truth, image| tally.add(truth, image))?;
         Ok(tally.summary())
     }
+}
+
+/// The mean |error| of an image as an eye sees it: each pixel weighs as much as the light would brighten it with nothing
+/// in between, Σ E · |image − truth| / Σ E.
+///
+/// The mean is over the pixels that [`ErrorSummary::mean_abs_error`] counts, those that the truth or the image puts in
+/// penumbra or umbra, where `mask` (if given) is true. `irradiance` is the unshadowed irradiance E of each pixel by this
+/// one light, in any unit: what its visible fraction is multiplied by. So an error counts little where the light
+/// grazes a surface or is far away, and not at all on a surface that is turned away from it. Where no light reaches a
+/// counted pixel the mean is 0.
+///
+/// # Errors
+/// [`Error::Frame`] as [`ErrorSummary::between`], and where an irradiance under the mask is below 0 or not finite.
+pub fn seen_error(
+    truth: &[f32],
+    image: &[f32],
+    irradiance: &[f64],
+    mask: Option<&[bool]>,
+) -> Result<f64, Error> {
+    same_length("the irradiance", irradiance.len(), truth.len())?;
+    let (mut errors, mut all) = (0.0, 0.0);
+    let mut wrong = None;
+    each(truth, image, mask, |i, truth, image| {
+        let weight = irradiance[i];
+        if !(weight.is_finite() && weight >= 0.0) {
+            wrong.get_or_insert(i);
+        }
+        if !(is_lit(truth) && is_lit(image)) {
+            errors += weight * (f64::from(image) - f64::from(truth)).abs();
+            all += weight;
+        }
+    })?;
+    match wrong {
+        Some(i) => Err(Error::Frame(format!(
+            "the irradiance at pixel {i} must be a finite number from 0 (it is {})",
+            irradiance[i]
+        ))),
+        None if all > 0.0 => Ok(errors / all),
+        None => Ok(0.0),
+    }
+}
+
+fn is_lit(v: f32) -> bool {
+    v >= 1.0 - FULL_TOLERANCE
+}
+
+fn is_umbra(v: f32) -> bool {
+    v <= FULL_TOLERANCE
+}
+
+fn same_length(what: &str, length: usize, truth: usize) -> Result<(), Error> {
+    if length == truth {
+        return Ok(());
+    }
+    Err(Error::Frame(format!(
+        "{what} must have as many pixels as the truth ({length} against {truth})"
+    )))
+}
+
+/// Gives `to` the index, truth and image of every pixel where the mask is true.
+fn each(
+    truth: &[f32],
+    image: &[f32],
+    mask: Option<&[bool]>,
+    mut to: impl FnMut(usize, f32, f32),
+) -> Result<(), Error> {
+    same_length("the image", image.len(), truth.len())?;
+    if let Some(mask) = mask {
+        same_length("the mask", mask.len(), truth.len())?;
+    }
+    for (i, (&truth, &image)) in truth.iter().zip(image).enumerate() {
+        if mask.is_some_and(|mask| !mask[i]) {
+            continue;
+        }
+        if !(0.0..=1.0).contains(&truth) {
+            return Err(Error::Frame(format!(
+                "the truth at pixel {i} must be from 0 to 1 (it is {truth})"
+            )));
+        }
+        if !image.is_finite() {
+            return Err(Error::Frame(format!(
+                "the image at pixel {i} must be finite (it is {image})"
+            )));
+        }
+        to(i, truth, image);
+    }
+    Ok(())
 }
 
 /// Sums on the way to a summary.
@@ -110,8 +169,6 @@ struct Tally {
 
 impl Tally {
     fn add(&mut self, truth: f32, image: f32) {
-        let is_lit = |v: f32| v >= 1.0 - FULL_TOLERANCE;
-        let is_umbra = |v: f32| v <= FULL_TOLERANCE;
         let error = f64::from(image) - f64::from(truth);
         if is_lit(truth) {
             self.lit.add(error.abs());

@@ -30,7 +30,8 @@
 //! - [`exact`]: whole scenes and any polygonal light, exact to rounding.
 //! - [`segment`]: the same of a line light: the share of its length.
 //! - [`trace`]: whole scenes under any light by stratified rays, with an estimate of its own noise.
-//! - [`metrics`]: the error of an image as Atty 2006 section 5.2.1 counts it, and what that hides.
+//! - [`metrics`]: the error of an image as Atty 2006 section 5.2.1 counts it, what that hides, and the error as an eye
+//!   sees it.
 //!
 //! Three conventions hold for all of these methods, so that they agree with each other and with what a
 //! rasterizing technique can reproduce:
@@ -54,7 +55,7 @@ mod union;
 
 pub use closed_form::{visible_fraction_of_polygon, visible_fraction_of_quad};
 pub use exact::Exact;
-pub use metrics::ErrorSummary;
+pub use metrics::{ErrorSummary, seen_error};
 pub use polygon_light::PolygonLight;
 pub use segment::ExactLine;
 pub use trace::{Estimate, Receiver, Sampling, Traced, Tracer};

@@ -4,7 +4,7 @@ use crate::Problem;
 use crate::scenes::{self, SceneSpec, Source};
 use antumbra::Technique;
 use antumbra::scene::{Camera, Instance, Role, Scene, generate};
-use antumbra_harness::{HeadlessDevice, Stage as Pixels, View};
+use antumbra_harness::{GBuffer, HeadlessDevice, Stage as Pixels, View};
 use glam::{DMat4, DVec3};
 
 /// The study of error against time.
@@ -14,7 +14,7 @@ pub const MATRIX: &str = "matrix";
 #[derive(Clone, Debug, PartialEq)]
 pub enum Stage {
     /// A scene under one of its lights, by a camera.
-    Seen(SceneSpec, &'static str),
+    Seen(SceneSpec, String),
     /// A made scene or model under a square light of this side, its object moved from its place by
     /// this much; pixels are a grid on the ground over |x|, |z| ≤ `half`.
     Moved {
@@ -32,6 +32,8 @@ pub enum Stage {
     },
     /// A sphere of about so many triangles in the bunny's place.
     Sphere(u32),
+    /// One of [`crate::places::ALL`] under one of its lights, by a camera that walks through it.
+    Walk { scene: &'static str, light: String, frames: usize },
 }
 
 /// What a group's images are compared with.
@@ -91,6 +93,8 @@ pub struct Ready {
     pub window: Option<[[f64; 2]; 2]>,
     /// Whether pixels see what only occludes.
     pub occluders_seen: bool,
+    /// Whether the node is lent the normals of triangles, as `render` lends them.
+    pub normals: bool,
 }
 
 impl Ready {
@@ -107,7 +111,11 @@ impl Ready {
         settings: Technique,
     ) -> Result<Pixels, Problem> {
         let keep = |i: &Instance| self.keeps(i);
-        Ok(Pixels::new(device, &self.scene, &self.view, extent, settings, keep)?)
+        let mut stage = Pixels::new(device, &self.scene, &self.view, extent, settings, keep)?;
+        if self.normals {
+            stage.configure_with(settings, |d| d.normals = Some(GBuffer::NORMALS))?;
+        }
+        Ok(stage)
     }
 }
 
@@ -116,7 +124,7 @@ impl Group {
     pub fn seen(
         study: &'static str,
         spec: &SceneSpec,
-        light: &'static str,
+        light: &str,
         extent: [u32; 2],
         entries: Vec<Entry>,
     ) -> Self {
@@ -125,7 +133,7 @@ impl Group {
             study,
             scene: spec.name.clone(),
             light: light.into(),
-            stage: Stage::Seen(spec.clone(), light),
+            stage: Stage::Seen(spec.clone(), light.into()),
             extent,
             against: if exact { Against::Card } else { Against::Traced },
             at: None,
@@ -148,20 +156,33 @@ impl Group {
                 let camera =
                     scene.camera.unwrap_or_else(|| Camera::framing(&scene, width / height));
                 let view = View::of(&camera, self.extent);
-                Ok(Ready { scene, view, window: None, occluders_seen: true })
+                // The others' errors are compared with those of earlier reports, and of the table of `auto`.
+                let normals = spec.is_whole();
+                Ok(Ready { scene, view, window: None, occluders_seen: true, normals })
             }
             Stage::Moved { model, light, by, half, reach } => {
                 let mut scene = scenes::made(model, scenes::square(*light)?)?;
                 scenes::move_blocks(&mut scene, DMat4::from_translation(*by));
                 let window = Some(window(&scene, *reach));
-                Ok(Ready { scene, view: ground(*half), window, occluders_seen: false })
+                Ok(Ready {
+                    scene,
+                    view: ground(*half),
+                    window,
+                    occluders_seen: false,
+                    normals: false,
+                })
+            }
+            Stage::Walk { scene: name, light, .. } => {
+                let spec = SceneSpec { name: (*name).into(), source: Source::Place(name) };
+                Group::seen(self.study, &spec, light, self.extent, Vec::new()).ready()
             }
             Stage::Sphere(rows) => {
                 let mut object = Scene::default();
                 let mesh = generate::uv_sphere(0.5, rows + 1, *rows);
                 object.add("sphere", mesh, DMat4::IDENTITY, Role::Occluder);
                 let scene = generate::normalized(&object, scenes::square(0.4)?)?;
-                Ok(Ready { scene, view: ground(2.2), window: None, occluders_seen: false })
+                let view = ground(2.2);
+                Ok(Ready { scene, view, window: None, occluders_seen: false, normals: false })
             }
         }
     }

@@ -1,18 +1,19 @@
 //! One group: its stages, its truth, its frames in turns, its errors.
 
 use crate::Problem;
-use crate::groups::{Entry, Group};
+use crate::groups::{Entry, Group, Ready, Stage as Place};
 use crate::options::Scale;
 use crate::picture::{self, Pictures};
 use crate::report::once;
 use crate::runner::Runner;
+use crate::stability;
 use crate::stats::{median, quartiles};
 use crate::store::{Errors, Outcome, Row, Times};
 use crate::techniques::{Method, method};
 use crate::truth::{self, mask};
-use antumbra::Technique;
 use antumbra::scene::AreaLight;
-use antumbra::truth::{ErrorSummary, Receiver, Traced, Tracer};
+use antumbra::truth::{ErrorSummary, Receiver, Traced, Tracer, seen_error};
+use antumbra::{Shape, Technique};
 use antumbra_harness::rays::RayTracer;
 use antumbra_harness::shade;
 use antumbra_harness::{FrameTimes, HeadlessDevice, Stage};
@@ -56,11 +57,13 @@ impl Bench<'_> {
     }
 
     fn try_measure(&self, group: &Group, say: &dyn Fn(&str)) -> Result<Vec<Row>, Problem> {
+        if matches!(group.stage, Place::Walk { .. }) {
+            return stability::measure(self, group, say);
+        }
         // Where nothing of it is there yet, nothing is loaded either.
         let methods: Vec<_> = group.entries.iter().map(|e| method(e.technique, &e.words)).collect();
         if methods.iter().all(|m| matches!(m, Ok(None))) {
-            let row = |e| blank(group, Some(e), 0, [0.0; 2], Outcome::NotThere);
-            return Ok(group.entries.iter().map(row).collect());
+            return Ok(group.entries.iter().map(|entry| blank(group).of(entry)).collect());
         }
         say("scene");
         let ready = group.ready()?;
@@ -87,13 +90,10 @@ impl Bench<'_> {
         let (against, rays) = (group.against, self.scale.rays);
         let truth = truth::truth(&ready.scene, &tracer, &receivers, against, rays)?;
         say("errors");
-        let seen = ready.occluders_seen.then(|| Seen::of(&pixels, &light)).transpose()?;
-        let sides = light.light.rectangle().half_extents().map(|h| 2.0 * h);
-        let triangles = ready.scene.triangles();
-        if let Some(seen) = &seen
-            && candidates.iter().any(|c| c.entry.shown)
-        {
-            self.paint(group, &candidates, &truth, seen, &mask(&receivers));
+        let seen = Seen::of(&pixels, &light, ready.occluders_seen)?;
+        let template = template(group, &ready, &light);
+        if seen.is_picture && candidates.iter().any(|c| c.entry.shown) {
+            self.paint(group, &candidates, &truth, &seen, &mask(&receivers));
         }
         let rows: Vec<_> = candidates.iter_mut().map(Candidate::result).collect();
         let compared = rows.into_par_iter().map(|(entry, result)| {
@@ -103,7 +103,7 @@ impl Bench<'_> {
                 Ok(Outcome::Measured { errors, times })
             });
             let outcome = outcome.unwrap_or_else(|problem| Outcome::Failed(problem.0));
-            blank(group, Some(entry), triangles, sides, outcome)
+            Row { outcome, ..template.of(entry) }
         });
         Ok(compared.collect())
     }
@@ -194,20 +194,22 @@ impl Candidate<'_> {
     }
 }
 
-/// What shading needs of a picture's pixels.
+/// What shading needs of the pixels.
 struct Seen {
     light: AreaLight,
     positions: Vec<[f32; 4]>,
     normals: Vec<[f32; 4]>,
+    /// The unshadowed irradiance of each pixel.
+    irradiance: Vec<f64>,
+    /// Whether the pixels are a picture of the scene.
+    is_picture: bool,
 }
 
 impl Seen {
-    fn of(stage: &Stage, light: &AreaLight) -> Result<Self, Problem> {
-        Ok(Self {
-            light: light.clone(),
-            positions: stage.gbuffer().positions()?,
-            normals: stage.gbuffer().normals()?,
-        })
+    fn of(stage: &Stage, light: &AreaLight, is_picture: bool) -> Result<Self, Problem> {
+        let (positions, normals) = (stage.gbuffer().positions()?, stage.gbuffer().normals()?);
+        let irradiance = shade::irradiances(&light.light, &positions, &normals);
+        Ok(Self { light: light.clone(), positions, normals, irradiance, is_picture })
     }
 
     /// Visibility × unshadowed irradiance, exposed alike for every image of these pixels.
@@ -220,44 +222,62 @@ fn errors(
     truth: &Traced,
     image: &[f32],
     receivers: &[Receiver],
-    seen: &Option<Seen>,
+    seen: &Seen,
     group: &Group,
 ) -> Result<Errors, Problem> {
     let mask = mask(receivers);
     let summary = ErrorSummary::between(&truth.visible, image, Some(&mask))?;
+    let seen_error = Some(seen_error(&truth.visible, image, &seen.irradiance, Some(&mask))?);
     // E|noise| of a normal error, in the penumbra alone, over all that is counted.
     let noise_floor =
         (2.0 / std::f64::consts::PI).sqrt() * truth.noise * summary.penumbra_pixels as f64
             / summary.pixels.max(1) as f64;
     let flip = seen
-        .as_ref()
-        .map(|seen| picture::flip(group.extent, &seen.shade(&truth.visible), &seen.shade(image)));
-    Ok(Errors { summary, flip, truth_noise: truth.noise, noise_floor })
+        .is_picture
+        .then(|| picture::flip(group.extent, &seen.shade(&truth.visible), &seen.shade(image)));
+    let truth_noise = truth.noise;
+    Ok(Errors { summary, seen_error, flip, truth_noise, noise_floor, ..Errors::default() })
 }
 
-fn blank(
-    group: &Group,
-    entry: Option<&Entry>,
-    triangles: usize,
-    light_m: [f64; 2],
-    outcome: Outcome,
-) -> Row {
+/// A row of a group without an entry, of which nothing is known but what was asked for.
+pub(crate) fn blank(group: &Group) -> Row {
     Row {
         study: group.study.into(),
         scene: group.scene.clone(),
         light: group.light.clone(),
-        light_m,
-        triangles,
         extent: group.extent,
-        technique: entry.map_or("all", |e| e.technique).into(),
-        curve: entry.map_or_else(String::new, |e| e.curve.clone()),
-        settings: entry.map_or_else(String::new, |e| e.words.clone()),
-        x: entry.map(|e| e.x).or(group.at).unwrap_or(0.0),
-        outcome,
+        technique: "all".into(),
+        x: group.at.unwrap_or(0.0),
+        ..Row::default()
+    }
+}
+
+/// A row without an entry, with what is known of the group's scene under its light.
+pub(crate) fn template(group: &Group, ready: &Ready, light: &AreaLight) -> Row {
+    let is_sun = matches!(light.light.shape(), Shape::Sun { .. });
+    let sides = light.light.rectangle().half_extents().map(|h| 2.0 * h);
+    Row {
+        light_m: if is_sun { [0.0; 2] } else { sides },
+        triangles: ready.scene.triangles(),
+        normals: ready.normals,
+        ..blank(group)
+    }
+}
+
+impl Row {
+    /// This row of an entry.
+    pub(crate) fn of(&self, entry: &Entry) -> Self {
+        Self {
+            technique: entry.technique.into(),
+            curve: entry.curve.clone(),
+            settings: entry.words.clone(),
+            x: entry.x,
+            ..self.clone()
+        }
     }
 }
 
 /// The row of a group that could not be measured at all.
 fn failed(group: &Group, problem: Problem) -> Row {
-    blank(group, None, 0, [0.0; 2], Outcome::Failed(problem.0))
+    Row { outcome: Outcome::Failed(problem.0), ..blank(group) }
 }

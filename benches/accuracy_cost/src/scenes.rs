@@ -1,10 +1,11 @@
-//! The scenes, each under three lights, and anyone's own.
+//! The scenes, each under three lights or under lights of its own, and anyone's own.
 
 use crate::Problem;
 use crate::hills::hills;
 use crate::options::Options;
+use crate::places;
 use antumbra::scene::generate::{self, GROUND_SIDE, cuboid};
-use antumbra::scene::{Camera, Role, Scene, from_gltf};
+use antumbra::scene::{AreaLight, Camera, Role, Scene, from_gltf};
 use antumbra::{RectangleLight, Shape};
 use antumbra_harness::ply::ply;
 use glam::{DMat4, DVec3};
@@ -37,9 +38,27 @@ pub enum Source {
     Made(&'static str),
     /// One of the project's own files, its light scaled to three sizes.
     Committed(&'static str),
-    /// Anyone's file, under its first light as it is.
+    /// Made in code with lights of its own, one of [`places::ALL`].
+    Place(&'static str),
+    /// One of the project's own files, its lights as they are.
+    Whole(&'static str),
+    /// Anyone's file, its lights as they are.
     File(PathBuf),
 }
+
+/// A light that a scene is measured under.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lit {
+    /// What the report calls it, one of a kind within its scene.
+    pub name: String,
+    pub is_sun: bool,
+}
+
+/// The project's own files of whole scenes.
+pub const WHOLE: [&str; 3] = ["kitchen", "yard", "hall"];
+
+/// What the one light of a file is called.
+const ITS_OWN: &str = "its own";
 
 /// A scene to be measured.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,6 +77,13 @@ pub fn standard() -> Vec<SceneSpec> {
         SceneSpec { name: name.into(), source }
     })
     .collect()
+}
+
+/// The scenes that have lights of their own, in the report's order.
+pub fn whole() -> Vec<SceneSpec> {
+    let made = places::ALL.iter().map(|made| (made.name, Source::Place(made.name)));
+    let files = WHOLE.into_iter().map(|name| (name, Source::Whole(name)));
+    made.chain(files).map(|(name, source)| SceneSpec { name: name.into(), source }).collect()
 }
 
 /// The glTF files of a folder, sorted by name.
@@ -83,11 +109,42 @@ pub fn own(folder: &Path) -> Result<Vec<SceneSpec>, Problem> {
 }
 
 impl SceneSpec {
-    /// The names of its lights.
-    pub fn lights(&self) -> Vec<&'static str> {
-        match self.source {
-            Source::File(_) => vec!["its own"],
-            _ => LIGHTS.iter().map(|l| l.0).collect(),
+    /// The lights that it is measured under, one at a time: of a file those that most of what is compared takes.
+    pub fn lights(&self) -> Vec<Lit> {
+        let three = || LIGHTS.iter().map(|l| Lit { name: l.0.into(), is_sun: false }).collect();
+        let scene = match &self.source {
+            Source::Made(_) | Source::Committed(_) => return three(),
+            Source::Place(_) | Source::Whole(_) => self.unlit(),
+            Source::File(path) => from_gltf(path).map_err(Problem::from),
+        };
+        let lights = scene.map(|scene| scene.lights).unwrap_or_default();
+        let named = named(&lights).into_iter().zip(&lights);
+        let taken: Vec<Lit> = named
+            .filter(|(_, light)| is_taken(light))
+            .map(|(name, light)| Lit {
+                name: if lights.len() == 1 { ITS_OWN.into() } else { name },
+                is_sun: matches!(light.light.shape(), Shape::Sun { .. }),
+            })
+            .collect();
+        // What cannot be measured is a row that says why.
+        if taken.is_empty() { vec![Lit { name: ITS_OWN.into(), is_sun: false }] } else { taken }
+    }
+
+    /// Whether its lights are its own.
+    pub fn is_whole(&self) -> bool {
+        !matches!(self.source, Source::Made(_) | Source::Committed(_))
+    }
+
+    /// A scene with lights of its own, all of them.
+    fn unlit(&self) -> Result<Scene, Problem> {
+        match &self.source {
+            Source::Place(name) => {
+                let made =
+                    places::made(name).ok_or_else(|| format!("no scene is called {name}"))?;
+                (made.make)()
+            }
+            Source::Whole(name) => committed(name),
+            _ => Err("its lights are the report's".into()),
         }
     }
 
@@ -110,12 +167,13 @@ impl SceneSpec {
                 light.light = scaled(light.light.rectangle(), SCALES[index])?.into();
                 Ok(scene)
             }
+            Source::Place(_) | Source::Whole(_) => Ok(under(self.unlit()?, light)),
             Source::File(path) => {
-                let scene = from_gltf(path)?;
+                let scene = under(from_gltf(path)?, light);
                 let problem = Problem::of(path.display());
                 let light = scene.light(None).map_err(Problem::of(path.display()))?;
                 let shape = light.light.shape();
-                if !matches!(shape, Shape::Rectangle | Shape::Line | Shape::Sun { .. }) {
+                if !is_taken(light) {
                     return Err(Problem::of(path.display())(format!(
                         "its light is a {}, which most of what is compared does not take; give it a rectangle",
                         shape.name()
@@ -130,6 +188,31 @@ impl SceneSpec {
             }
         }
     }
+}
+
+/// Whether most of what is compared takes a light.
+fn is_taken(light: &AreaLight) -> bool {
+    matches!(light.light.shape(), Shape::Rectangle | Shape::Line | Shape::Sun { .. })
+}
+
+/// The names of lights, with a number behind those that another has before.
+fn named(lights: &[AreaLight]) -> Vec<String> {
+    let name = |(i, light): (usize, &AreaLight)| match lights[..i]
+        .iter()
+        .filter(|before| before.name == light.name)
+        .count()
+    {
+        0 => light.name.clone(),
+        before => format!("{} ({})", light.name, before + 1),
+    };
+    lights.iter().enumerate().map(name).collect()
+}
+
+/// A scene under the one of its lights that [`named`] calls so, or the first.
+fn under(mut scene: Scene, light: &str) -> Scene {
+    let at = named(&scene.lights).iter().position(|name| name == light).unwrap_or(0);
+    scene.lights = scene.lights.into_iter().skip(at).take(1).collect();
+    scene
 }
 
 /// Moves what blocks light, after it was placed.
@@ -245,6 +328,23 @@ pub fn dragon(light: RectangleLight) -> Result<Scene, Problem> {
 mod tests {
     use super::*;
 
+    /// Each light of a scene with lights of its own is loaded by its name, and no two have the same.
+    #[test]
+    fn every_light_of_a_whole_scene_is_measured_by_itself() {
+        for spec in whole() {
+            let lights = spec.lights();
+            assert!(lights.len() >= 3, "{}: {lights:?}", spec.name);
+            for (i, light) in lights.iter().enumerate() {
+                assert!(lights[..i].iter().all(|other| other.name != light.name), "{light:?}");
+                let scene = spec.load(&light.name).unwrap();
+                assert!(scene.lights.len() == 1 && scene.lights[0].name == light.name, "{light:?}");
+                assert!(scene.instances.iter().all(|i| i.role == Role::Both), "{}", spec.name);
+            }
+        }
+        let suns = whole().iter().flat_map(SceneSpec::lights).filter(|light| light.is_sun).count();
+        assert_eq!(suns, 2, "the street's and the yard's");
+    }
+
     #[test]
     fn the_cubes_top_hides_less_than_half_of_the_light_from_below() {
         let scene = elongated_cube(square(1.0).unwrap());
@@ -263,9 +363,9 @@ mod tests {
         for spec in standard() {
             let mut last = 0.0;
             for light in spec.lights() {
-                let scene = spec.load(light).unwrap();
+                let scene = spec.load(&light.name).unwrap();
                 let [a, b] = scene.light(None).unwrap().light.rectangle().half_extents();
-                assert!(a * b > last, "{} {light}", spec.name);
+                assert!(a * b > last, "{} {}", spec.name, light.name);
                 last = a * b;
                 assert!(scene.instances.iter().any(|i| i.role.blocks()));
                 assert!(scene.instances.iter().any(|i| i.role.receives()));

@@ -35,12 +35,39 @@ pub struct Header {
 pub struct Errors {
     #[serde(flatten)]
     pub summary: ErrorSummary,
+    /// The mean of the same pixels' |error|, weighed by the light's unshadowed irradiance there; none in rows of runs
+    /// that did not measure it.
+    #[serde(default)]
+    pub seen_error: Option<f64>,
+    /// How still points stay, where a camera moves.
+    #[serde(flatten, default)]
+    pub changes: Option<Box<Changes>>,
     /// Mean FLIP of the shaded images, 0..1; none where the pixels are no picture.
     pub flip: Option<f64>,
     /// The standard error of one penumbra pixel of the truth; 0 where it is exact.
     pub truth_noise: f64,
     /// What the truth's noise alone would add up to in the summary's `mean_abs_error`.
     pub noise_floor: f64,
+}
+
+/// How much the visible fractions of still points change from a frame to the next, as `stability` defines them.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Changes {
+    /// How many pairs of a point in one frame and in the next there are.
+    pub pairs: usize,
+    pub change_mean: f64,
+    /// The 99th and the 99.9th percentile.
+    pub change_p99: f64,
+    pub change_p999: f64,
+    pub change_worst: f64,
+    pub truth_change_mean: f64,
+    pub truth_change_p99: f64,
+    pub truth_change_p999: f64,
+    pub truth_change_worst: f64,
+    pub error_change_mean: f64,
+    pub error_change_p99: f64,
+    pub error_change_p999: f64,
+    pub error_change_worst: f64,
 }
 
 /// The times of a frame.
@@ -81,11 +108,14 @@ pub struct Row {
     pub scene: String,
     /// The light's name: small, medium, large.
     pub light: String,
-    /// The light's width and height in metres.
+    /// The light's width and height in metres; 0 of a sun, which has an angle and no size.
     pub light_m: [f64; 2],
     pub triangles: usize,
     /// Width and height of the image.
     pub extent: [u32; 2],
+    /// Whether the node was lent the normals of triangles.
+    #[serde(default)]
+    pub normals: bool,
     /// The technique's name, as on a command line.
     pub technique: String,
     /// The curve that the row is a point of.
@@ -109,6 +139,11 @@ impl Row {
     /// Mean |error|, where it was measured.
     pub fn mean(&self) -> Option<f64> {
         Some(self.measured()?.0.summary.mean_abs_error)
+    }
+
+    /// Mean |error| weighed by unshadowed irradiance, where it was measured.
+    pub fn seen(&self) -> Option<f64> {
+        self.measured()?.0.seen_error
     }
 
     /// Median ms of a frame, where it was measured.
@@ -249,7 +284,7 @@ pub(crate) mod tests {
     pub(crate) fn row(curve: &str, x: f64, ms: f64, error: f64) -> Row {
         let summary =
             ErrorSummary { mean_abs_error: error, pixels: 100, ..ErrorSummary::default() };
-        let errors = Errors { summary, ..Errors::default() };
+        let errors = Errors { summary, seen_error: Some(0.5 * error), ..Errors::default() };
         let times = Times { frame_ms: [ms * 0.9, ms, ms * 1.2], frames: 3, ..Times::default() };
         Row {
             study: "matrix".into(),
@@ -258,6 +293,7 @@ pub(crate) mod tests {
             light_m: [0.4; 2],
             triangles: 4,
             extent: [64, 48],
+            normals: false,
             technique: "soft-shadow-map".into(),
             curve: curve.into(),
             settings: format!("map={x}"),
@@ -312,6 +348,24 @@ pub(crate) mod tests {
         assert!(!store.has("a"));
         let earlier = std::fs::read(path.with_extension("earlier.jsonl")).unwrap();
         assert_eq!(Contents::read(&earlier).0.whole, ["a"]);
+    }
+
+    /// Rows of a walk are read as they were written, and so are those of runs that had neither seen errors nor walks.
+    #[test]
+    fn changes_are_kept_and_missed_by_no_older_row() {
+        let mut walked = row("one view", 1.0, 1.0, 0.1);
+        if let Outcome::Measured { errors, .. } = &mut walked.outcome {
+            let changes = Changes { pairs: 9, change_p999: 0.25, ..Changes::default() };
+            errors.changes = Some(Box::new(changes));
+        }
+        let read = |text: &str| serde_json::from_str::<Row>(text).unwrap();
+        let text = serde_json::to_string(&walked).unwrap();
+        assert_eq!(read(&text), walked);
+        let older = serde_json::to_string(&row("one", 1.0, 1.0, 0.1)).unwrap();
+        let older = older.replace("\"normals\":false,", "").replace("\"seen_error\":0.05,", "");
+        assert!(!older.contains("normals") && !older.contains("seen_error"), "{older}");
+        let (errors, _) = read(&older).measured().map(|(e, t)| (e.clone(), t.clone())).unwrap();
+        assert_eq!((errors.seen_error, errors.changes), (None, None));
     }
 
     #[test]

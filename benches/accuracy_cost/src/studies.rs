@@ -4,42 +4,74 @@ use crate::Problem;
 use crate::curtis;
 use crate::groups::{Entry, Group, MATRIX};
 use crate::options::Scale;
-use crate::scenes::{self, SceneSpec, Source};
+use crate::places::{ROOM, STREET, SUN};
+use crate::scenes::{self, Lit, SceneSpec, Source};
+use crate::stability;
 use crate::sweeps;
-use crate::techniques::{CURVES, Curve, Step};
+use crate::techniques::{self, CURVES, Curve, Step};
+use crate::views;
 use antumbra::auto::{CANDIDATES, Candidate};
 
 /// The study of what `auto` chooses among.
 pub const CHOICES: &str = "choices";
 
-/// The entries of error against time; the picture strip is of one light of each scene.
+/// Of curves the steps that `measured` accepts; the picture strip is of one light of each scene.
+fn entries_of(
+    curves: impl Iterator<Item = &'static Curve>,
+    in_strip: bool,
+    measured: impl Fn(&Step) -> bool,
+) -> Vec<Entry> {
+    let mut entries = Vec::new();
+    for curve in curves {
+        for step in curve.steps().filter(&measured) {
+            let shown = in_strip && step.shown;
+            let entry = Entry::new(curve.technique, curve.label, step.words, step.x);
+            entries.push(Entry { shown, ..entry });
+        }
+    }
+    entries
+}
+
+/// The entries of error against time.
 fn matrix_entries(scale: &Scale, in_strip: bool) -> Vec<Entry> {
-    let step = |curve: &'static Curve, step: Step| Entry {
-        shown: in_strip && step.shown,
-        ..Entry::new(curve.technique, curve.label, step.words, step.x)
+    entries_of(CURVES.iter(), in_strip, |s| s.in_quick || !scale.quick)
+}
+
+/// The scenes with lights of their own that the quick run has, and the light of each.
+const QUICK_WHOLE: [(&str, &str); 3] = [(ROOM, "ceiling panel"), (STREET, SUN), ("hall", "light6")];
+
+/// Error against time in a scene with lights of its own: a group a light, each of fewer settings than elsewhere.
+fn of_whole<'a>(scale: &'a Scale, spec: &'a SceneSpec) -> impl Iterator<Item = Group> + 'a {
+    let light = |(nth, light): (usize, Lit)| {
+        let measured = |s: &Step| if scale.quick { s.shown } else { s.in_quick };
+        // The strip has one light of a scene.
+        let in_strip = nth == 0 || QUICK_WHOLE.contains(&(&spec.name, &light.name)) && scale.quick;
+        let entries = entries_of(techniques::of_whole(light.is_sun), in_strip, measured);
+        Group::seen(MATRIX, spec, &light.name, scale.view, entries)
     };
-    let measured = |s: &Step| s.in_quick || !scale.quick;
-    let of = |curve: &'static Curve| {
-        curve.steps().filter(measured).map(move |s| step(curve, s)).collect::<Vec<_>>()
-    };
-    CURVES.iter().flat_map(of).collect()
+    spec.lights().into_iter().enumerate().map(light)
 }
 
 /// Every group of a run: first whether the measuring can be trusted, then what a reader looks at
 /// first.
 pub fn all(scale: &Scale, own: &[SceneSpec]) -> Vec<Group> {
     let mut groups = vec![sweeps::wrong(scale)];
-    let matrix = |spec: &SceneSpec, light: &'static str| {
+    let matrix = |spec: &SceneSpec, light: &str| {
         let entries = matrix_entries(scale, light != "small" && light != "large");
         Group::seen(MATRIX, spec, light, scale.view, entries)
     };
+    groups.extend(own.iter().flat_map(|spec| own_groups(scale, spec)));
+    let in_run =
+        |g: &Group| !scale.quick || QUICK_WHOLE.contains(&(g.scene.as_str(), g.light.as_str()));
+    let whole = scenes::whole();
+    let mut whole: Vec<_> = whole.iter().flat_map(|spec| of_whole(scale, spec)).collect();
+    whole.retain(in_run);
+    whole.extend(views::all(scale).into_iter().chain(stability::all(scale)));
     let standard = scenes::standard();
-    groups.extend(standard.iter().map(|spec| matrix(spec, "medium")));
-    groups.extend(
-        own.iter()
-            .flat_map(|spec| spec.lights().into_iter().map(move |l| (spec, l)))
-            .map(|(spec, light)| matrix(spec, light)),
-    );
+    let standard_groups = standard.iter().map(|spec| matrix(spec, "medium")).collect();
+    // On a busy machine the quick run ends early, and no kind of scene should be missing from it.
+    let in_order = if scale.quick { [whole, standard_groups] } else { [standard_groups, whole] };
+    groups.extend(in_order.into_iter().flatten());
     groups.extend(sweeps::all(scale));
     groups.extend(curtis::groups(scale));
     groups.push(sweeps::eisemann());
@@ -47,6 +79,17 @@ pub fn all(scale: &Scale, own: &[SceneSpec]) -> Vec<Group> {
         groups.extend(standard.iter().map(|spec| matrix(spec, light)));
     }
     groups
+}
+
+/// Anyone's scene: everything under a light that it has alone, and a group a light where it has several.
+fn own_groups(scale: &Scale, spec: &SceneSpec) -> Vec<Group> {
+    match &spec.lights()[..] {
+        [light] if !light.is_sun => {
+            let entries = matrix_entries(scale, true);
+            vec![Group::seen(MATRIX, spec, &light.name, scale.view, entries)]
+        }
+        _ => of_whole(scale, spec).collect(),
+    }
 }
 
 /// The scenes that `auto` is made from beyond the report's: what touches, and what shadows itself.

@@ -65,6 +65,9 @@ const fn curve(
     Curve { technique, label, words, values, quick, shown }
 }
 
+/// The curve of PCSS as engines run it.
+pub const PCSS_FINE: &str = "PCSS, 1024² maps";
+
 const SSM: &str = "soft-shadow-map";
 const SIDES: &str = "64 128 256 512";
 const PROJECTED: &str = "receivers=map map={} receiver_map={}";
@@ -82,7 +85,9 @@ pub const CURVES: &[Curve] = &[
     curve([SSM, "soft shadow map 256, looser"], "tolerance={} map=256", "0.01 0.001 0", "", ""),
     curve([RAY_TRACER, "ray tracer on the CPU"], "rays={}", "1 4 16 64", "1 4 16", "4"),
     curve(["hard", "hard shadow map, 3×3"], "map={}", "256 512 1024", "512", "512"),
-    curve(["pcss", "PCSS"], "taps={}", "8 16 32", "8 16 32", "16"),
+    // Engines give it maps of 1024² or more, and 32 taps or more.
+    curve(["pcss", "PCSS"], "taps={}", "8 16 32 64", "16 32", "32"),
+    curve(["pcss", PCSS_FINE], "map=1024 taps={}", "16 32 64", "32", ""),
     curve(["many-lights", "many hard lights"], "samples={}", "1 4 16 64", "4 16", "16"),
     curve(["back-projection", "back-projection"], "map={}", SIDES, "128 256", "256"),
     curve(["ray-march", "ray march"], "rays={}", "1 4 16 64", "4 16", "16"),
@@ -93,6 +98,25 @@ pub const CURVES: &[Curve] = &[
     curve(["linear-light", "linear light"], "error={}", "0.05 0.02 0.01", "0.05 0.02", "0.02"),
     curve(["traced", "triangles, traced"], "samples={}", "64 256", "64 256", "64"),
 ];
+
+/// The curves that are measured in scenes with lights of their own, where a frame takes longer and there are many lights:
+/// one of each technique that takes rectangles and suns, and is no mere comparison. Those that the processor runs know no
+/// suns.
+pub fn of_whole(is_sun: bool) -> impl Iterator<Item = &'static Curve> {
+    const LABELS: [&str; 9] = [
+        "soft shadow map",
+        "ray tracer on the CPU",
+        "hard shadow map, 3×3",
+        "PCSS",
+        PCSS_FINE,
+        "many hard lights",
+        "ray march",
+        "occlusion textures",
+        "triangles, traced",
+    ];
+    let takes = move |c: &&Curve| !is_sun || c.technique != RAY_TRACER;
+    CURVES.iter().filter(|c| LABELS.contains(&c.label)).filter(takes)
+}
 
 /// How a visible fraction is to be computed.
 #[derive(Clone, Debug, PartialEq)]

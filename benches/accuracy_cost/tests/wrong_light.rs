@@ -37,7 +37,7 @@ fn a_light_10_percent_too_big_is_seen() {
 fn a_scene_that_fails_is_a_row_that_says_why() {
     let source = Source::File(PathBuf::from("no/such/scene.glb"));
     let spec = SceneSpec { name: "scene.glb".into(), source };
-    let group = Group { stage: Stage::Seen(spec, "its own"), ..sweeps::wrong(&SMALL) };
+    let group = Group { stage: Stage::Seen(spec, "its own".into()), ..sweeps::wrong(&SMALL) };
     let rows = measure(&group);
     assert_eq!(rows.len(), 1);
     let Outcome::Failed(why) = &rows[0].outcome else { panic!("{:?}", rows[0].outcome) };

@@ -103,3 +103,41 @@ fn unusable_input_is_refused_with_the_pixel_named() {
     assert!(refusal(&[1.0, f32::NAN], &[1.0, 1.0], None).contains("truth at pixel 1"));
     assert!(refusal(&[1.0, 1.5], &[1.0, 1.0], None).contains("truth at pixel 1"));
 }
+
+/// Σ E |e| / Σ E over the pixels that count: those of index 1, 3 to 7 (see `every_number_is_what_a_hand_gets`).
+#[test]
+fn the_seen_error_weighs_each_counted_pixel_by_its_light() {
+    let image = [1.0, 0.5, 1.0, 1.0, 0.5, 0.0, 0.25, 0.0];
+    let seen = |irradiance: &[f64], mask| seen_error(&TRUTH, &image, irradiance, mask);
+    // Errors: 0.5 of weight 2, 0.25 of weight 4 and 0 of weight 10; what is lit in both has none, however bright.
+    let light = [99.0, 2.0, 99.0, 4.0, 5.0, 0.0, 0.0, 5.0];
+    assert_eq!(seen(&light, None).unwrap(), (2.0 * 0.5 + 4.0 * 0.25) / 16.0);
+    // Another unit changes nothing, and neither does a mask but for what it hides.
+    assert_eq!(seen(&light.map(|e| 8.0 * e), None).unwrap(), 2.0 / 16.0);
+    let mut mask = [true; 8];
+    mask[1] = false;
+    assert_eq!(seen(&light, Some(&mask)).unwrap(), 1.0 / 14.0);
+    // Even light makes it the plain mean, and no light none.
+    assert_eq!(seen(&[3.0; 8], None).unwrap(), between(&image).mean_abs_error);
+    assert_eq!(seen(&[0.0; 8], None).unwrap(), 0.0);
+    // An error where the light is bright is seen more than the same where it is dim.
+    let [bright, dim] =
+        [[1.0, 9.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0], [9.0, 1.0, 9.0, 9.0, 9.0, 9.0, 9.0, 9.0]];
+    let lit = |irradiance: &[f64]| {
+        seen_error(&TRUTH, &[1.0, 0.5, 1.0, 0.75, 0.5, 0.25, 0.0, 0.0], irradiance, None)
+    };
+    assert!(lit(&bright).unwrap() > 3.0 * lit(&dim).unwrap());
+}
+
+#[test]
+fn a_seen_error_of_no_light_is_refused_in_a_sentence() {
+    let refused =
+        |irradiance: &[f64]| seen_error(&TRUTH, &TRUTH, irradiance, None).unwrap_err().to_string();
+    assert!(refused(&[1.0; 7]).contains("as many pixels as the truth (7 against 8)"));
+    for wrong in [-1.0, f64::NAN, f64::INFINITY] {
+        let mut irradiance = [1.0; 8];
+        irradiance[2] = wrong;
+        let sentence = refused(&irradiance);
+        assert!(sentence.contains("the irradiance at pixel 2"), "{sentence}");
+    }
+}

@@ -37,6 +37,9 @@ pub struct Row {
     pub why: String,
     /// The mean error over the pixels in shadow or penumbra.
     pub mean: f64,
+    /// The same, weighed by the light's unshadowed irradiance.
+    #[serde(default)]
+    pub seen: f64,
     /// The worst pixel's error.
     pub worst: f64,
     /// How far the worst pixel is out of what it may be; not above 0 where none is.
@@ -69,13 +72,14 @@ fn near_penumbra(ranges: &[Range], spread: usize) -> Vec<bool> {
     (0..ranges.len()).map(near).collect()
 }
 
-/// Judges the image of a technique, which `by` made for it.
+/// Judges the image of a technique, which `by` made for it; `irradiance` is that of each pixel without shadows.
 pub fn judge(
     case: &HardCase,
     held: &'static Held,
     by: &Held,
     noise: Option<&Noise>,
     ranges: &[Range],
+    irradiance: &[f64],
     image: &[f32],
 ) -> Row {
     let between = near_penumbra(ranges, by.spread);
@@ -90,13 +94,14 @@ pub fn judge(
         worst_bound: 0.0,
         why: noise.map_or(by.why, |n| n.why).into(),
         mean: 0.0,
+        seen: 0.0,
         worst: 0.0,
         outside: f64::NEG_INFINITY,
         not_fractions: 0,
         verdict: Verdict::Held,
     };
-    let mut counted = 0.0;
-    for ((range, &v), &between) in ranges.iter().zip(image).zip(&between) {
+    let (mut counted, mut light) = (0.0, 0.0);
+    for (((range, &v), &between), &e) in ranges.iter().zip(image).zip(&between).zip(irradiance) {
         let v = f64::from(v);
         row.expected = [row.expected[0].min(range.truth), row.expected[1].max(range.truth)];
         if !(0.0..=1.0).contains(&v) {
@@ -115,6 +120,8 @@ pub fn judge(
         if v < 1.0 || range.truth < 1.0 {
             counted += 1.0;
             row.mean += error;
+            light += e;
+            row.seen += e * error;
             let outline = (range.truth - range.least).max(range.most - range.truth);
             let noise = if between { mean_noise } else { 0.0 };
             row.mean_bound += (outline + by.sums + mean_solid + noise).min(1.0);
@@ -123,6 +130,9 @@ pub fn judge(
     if counted > 0.0 {
         row.mean /= counted;
         row.mean_bound /= counted;
+    }
+    if light > 0.0 {
+        row.seen /= light;
     }
     // A row is held whole: no pixel out of its range, and the mean within its own bound.
     let good = row.not_fractions == 0 && row.outside <= 0.0 && row.mean <= row.mean_bound;
@@ -151,13 +161,19 @@ mod tests {
         (0..side * side).map(range).collect()
     }
 
+    /// The left half is twice as bright.
+    fn irradiance() -> Vec<f64> {
+        let side = SIDE as usize;
+        (0..side * side).map(|i| if i % side < side / 2 { 2.0 } else { 1.0 }).collect()
+    }
+
     fn judged(of: usize, change: impl Fn(&mut [f32])) -> Row {
         let case = &cases::all()[0];
         let held = &techniques::ALL[of];
         let ranges = ranges();
         let mut image: Vec<f32> = ranges.iter().map(|range| range.truth as f32).collect();
         change(&mut image);
-        judge(case, held, held, None, &ranges, &image)
+        judge(case, held, held, None, &ranges, &irradiance(), &image)
     }
 
     #[test]
@@ -177,6 +193,17 @@ mod tests {
             let row = judged(0, move |image| image[0] = none);
             assert_eq!((row.not_fractions, row.verdict), (1, Verdict::Broken), "{none}");
         }
+    }
+
+    /// The left half and the column of penumbra count: side²/2 pixels of weight 2, and side of weight 1.
+    #[test]
+    fn errors_are_weighed_by_the_light() {
+        let side = f64::from(SIDE);
+        let [dark, between] = [0, SIDE as usize / 2].map(|at| judged(0, |image| image[at] += 0.25));
+        let weight = side * side + side;
+        assert!((dark.seen - 2.0 * 0.25 / weight).abs() < 1e-12, "{dark:?}");
+        assert!((between.seen - 0.25 / weight).abs() < 1e-12, "{between:?}");
+        assert!((dark.mean - between.mean).abs() < 1e-12);
     }
 
     /// Noise is spread by a filter, and no further; and each pixel may be noisy while all of them are not.

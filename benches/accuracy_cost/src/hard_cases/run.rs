@@ -8,7 +8,7 @@ use crate::Problem;
 use crate::scenes::scaled;
 use antumbra::scene::{Instance, Role, Scene};
 use antumbra::{FramePlan, Technique};
-use antumbra_harness::{HeadlessDevice, Stage, View, technique_of};
+use antumbra_harness::{HeadlessDevice, Stage, View, shade, technique_of};
 use std::collections::BTreeMap;
 
 /// How large a point is beside the light that it stands for.
@@ -119,7 +119,18 @@ impl<'a> Prepared<'a> {
         // Where penumbrae are narrower than a pixel, a hard shadow is all that the node makes.
         let by = if runs(&plan, "hard.visibility") { &techniques::HARD } else { held };
         let noise = case.noise_of(held);
-        Ok(judge(case, held, by, noise, self.ranges_of(by)?, &image))
+        let irradiance = self.irradiance();
+        Ok(judge(case, held, by, noise, self.ranges_of(by)?, &irradiance, &image))
+    }
+
+    /// The light that each pixel gets without shadows; what faces away and the background get none.
+    fn irradiance(&self) -> Vec<f64> {
+        let position = |seen: &pixels::Seen| seen.position.as_vec3().extend(1.0).to_array();
+        let normal = |seen: &pixels::Seen| seen.normal.as_vec3().extend(0.0).to_array();
+        let of = |to: &dyn Fn(&pixels::Seen) -> [f32; 4]| -> Vec<[f32; 4]> {
+            self.pixels.iter().map(|seen| seen.as_ref().map_or([0.0; 4], to)).collect()
+        };
+        shade::irradiances(&self.case.set.light.into(), &of(&position), &of(&normal))
     }
 
     fn ranges_of(&mut self, held: &Held) -> Result<&[Range], Problem> {

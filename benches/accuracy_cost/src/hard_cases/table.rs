@@ -107,7 +107,7 @@ pub fn html(rows: &[Row], driver: &str) -> Markup {
     html! {
         p { (driver) ": " (counts(rows)) "." }
         table.n {
-            (head_of(["case", "technique", "truth", "mean", "≤", "worst", "≤", "verdict", "why"]))
+            (head_of(["case", "technique", "truth", "mean", "≤", "seen", "worst", "≤", "verdict", "why"]))
             @for row in rows {
                 @let (class, verdict, why) = match &row.verdict {
                     Verdict::Held => ("yes", "held", &row.why),
@@ -118,7 +118,7 @@ pub fn html(rows: &[Row], driver: &str) -> Markup {
                 tr {
                     td { (row.limit) ": " (row.case) } td { (row.technique) }
                     td { (digits(row.expected[0])) " to " (digits(row.expected[1])) }
-                    @for error in [row.mean, row.mean_bound, row.worst, row.worst_bound] { td { (digits(error)) } }
+                    @for error in [row.mean, row.mean_bound, row.seen, row.worst, row.worst_bound] { td { (digits(error)) } }
                     td { span class=(class) { (verdict) } } td { (why) }
                 }
             }
@@ -141,6 +141,7 @@ mod tests {
             worst_bound: 0.25,
             why: "because".into(),
             mean: 0.05,
+            seen: 0.04,
             worst: 0.0004,
             outside: 0.0,
             not_fractions: 0,

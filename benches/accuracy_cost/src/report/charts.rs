@@ -10,10 +10,10 @@ use crate::sweeps;
 use crate::techniques::CURVES;
 use maud::{Markup, html};
 
-const MS: &str = "time of a frame, ms";
+pub(super) const MS: &str = "time of a frame, ms";
 /// Errors below this, in percent, are drawn here: nobody sees them, and they would squeeze the rest.
 const LEAST_SHOWN: f64 = 0.1;
-const ERROR: &str = "mean |error|, % of the light";
+pub(super) const ERROR: &str = "mean |error|, % of the light";
 
 /// Dash and mark of a technique's first, second … curve.
 const VARIANTS: [(&str, u8); 6] =
@@ -36,8 +36,9 @@ pub fn style(label: &str) -> Style {
 fn swept_style(label: &str) -> Style {
     match label {
         "one side" => Style { color: PALETTE[5], dash: "6 3", mark: 1 },
-        "N = 64" => Style { color: PALETTE[4], dash: "2 3", mark: 2 },
-        "N = 256" => Style { color: PALETTE[3], dash: "8 3 2 3", mark: 3 },
+        "N = 64" | "512²" => Style { color: PALETTE[4], dash: "2 3", mark: 2 },
+        "N = 256" | "1024²" => Style { color: PALETTE[3], dash: "8 3 2 3", mark: 3 },
+        "256²" => Style { color: PALETTE[5], dash: "6 3", mark: 1 },
         _ => Style { color: PALETTE[0], dash: "", mark: 0 },
     }
 }
@@ -45,8 +46,10 @@ fn swept_style(label: &str) -> Style {
 /// What a pointer over a row's point shows.
 fn tip(row: &Row) -> String {
     let Some((e, t)) = row.measured() else { return String::new() };
+    let seen =
+        e.seen_error.map_or_else(String::new, |seen| format!(", seen {:.2} %", 100.0 * seen));
     format!(
-        "{} {}: {:.2} % in {} ms (quartiles {} to {})",
+        "{} {}: {:.2} %{seen} in {} ms (quartiles {} to {})",
         row.technique,
         row.settings,
         100.0 * e.summary.mean_abs_error,
@@ -57,7 +60,7 @@ fn tip(row: &Row) -> String {
 }
 
 /// Rows joined into curves by their name.
-fn series<'a>(
+pub(super) fn series<'a>(
     rows: &[&'a Row],
     point: impl Fn(&'a Row) -> Option<(f64, f64)>,
     spread: bool,
@@ -81,6 +84,14 @@ fn series<'a>(
     curves.filter(|s| !s.points.is_empty()).collect()
 }
 
+/// The sides of the light of some rows, in brackets; nothing of a sun.
+fn sides(rows: &[&Row]) -> String {
+    match rows.first().map_or([0.0; 2], |row| row.light_m) {
+        [0.0, 0.0] => String::new(),
+        [width, height] => format!(" ({width:.2} × {height:.2} m)"),
+    }
+}
+
 /// Error against time, for each scene a chart a light; all on the same axes, so that they compare.
 pub fn matrix(report: &Report) -> Vec<Vec<Markup>> {
     let measured: Vec<&Row> = report.matrix().collect();
@@ -94,11 +105,10 @@ pub fn matrix(report: &Report) -> Vec<Vec<Markup>> {
         let mut points: Vec<&mut Point> = series.iter_mut().flat_map(|s| &mut s.points).collect();
         let costs: Vec<_> = points.iter().map(|p| pareto::Point { ms: p.x, error: p.y }).collect();
         front(&costs).into_iter().for_each(|i| points[i].front = true);
-        let [width, height] = rows.first().map_or([0.0; 2], |r| r.light_m);
         let floor =
             rows.iter().filter_map(|r| Some(r.measured()?.0.noise_floor)).fold(0.0, f64::max);
         Chart {
-            title: format!("{scene}, {light} light ({width:.2} × {height:.2} m)"),
+            title: format!("{scene}, {light} light{}", sides(&rows)),
             x: x.clone(),
             y: y.clone(),
             series,
@@ -219,7 +229,10 @@ mod tests {
             }
         }
         let swept = ["one side", "two sides", "N = 64", "N = 256"].map(style);
-        assert!((0..4).all(|i| (0..i).all(|j| swept[i] != swept[j])));
+        let maps = crate::views::SIDES.map(|side| style(&crate::views::curve(side)));
+        for curves in [swept, maps] {
+            assert!((0..4).all(|i| (0..i).all(|j| curves[i] != curves[j])));
+        }
     }
 
     #[test]

@@ -7,9 +7,12 @@ use serde_json::{Map, Value, json};
 
 /// The columns of accuracy_cost.csv but for the last, the passes' times.
 const COLUMNS: &str = "study scene light light_width_m light_height_m technique curve settings x status reason \
-                       mean_abs_error rmse p99 worst bias pixels penumbra_pixels penumbra_mean false_umbra false_light \
-                       lit_pixels lit_error flip truth_noise noise_floor frame_ms frame_ms_q1 frame_ms_q3 frames \
-                       record_us gpu_bytes triangles width height driver commit";
+                       mean_abs_error seen_error rmse p99 worst bias pixels penumbra_pixels penumbra_mean false_umbra false_light \
+                       lit_pixels lit_error flip truth_noise noise_floor pairs change_mean change_p99 \
+                       change_p999 change_worst truth_change_mean truth_change_p99 truth_change_p999 \
+                       truth_change_worst error_change_mean error_change_p99 error_change_p999 \
+                       error_change_worst frame_ms frame_ms_q1 frame_ms_q3 frames \
+                       record_us gpu_bytes triangles normals width height driver commit";
 
 /// One row's values by their columns, null where nothing was measured.
 fn values(report: &Report, row: &Row) -> Map<String, Value> {
@@ -106,7 +109,7 @@ mod tests {
     fn the_csv_has_the_columns_that_programs_rely_on_and_as_many_cells_in_each_row() {
         let text = with(&rows(), csv).unwrap();
         let head = text.lines().next().unwrap();
-        let columns = "scene technique settings mean_abs_error rmse p99 worst bias frame_ms driver";
+        let columns = "scene technique settings mean_abs_error seen_error rmse p99 worst bias frame_ms driver";
         for column in columns.split(' ') {
             assert!(head.split(',').any(|c| c == column), "{column}");
         }

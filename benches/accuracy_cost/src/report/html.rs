@@ -1,6 +1,6 @@
 //! The page: everything in one file.
 
-use super::{Report, charts, curtis, strip, tables};
+use super::{Report, charts, curtis, strip, tables, views};
 use crate::hard_cases;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -52,12 +52,17 @@ pub fn page(report: &Report) -> String {
                 } }
                 (tables::in_short(report))
                 h2 { "What it looks like" }
-                p { "Medium lights. Under each picture where it is wrong, and its mean error and time." }
+                p { "Medium lights, or a scene's own. Under each picture where it is wrong, and its mean error, that as an eye \
+                     sees it, and its time." }
                 (strip::strip(report))
                 (matrix(report))
                 h2 { "Milliseconds for 5 / 3 / 2 % mean error" }
                 p { "By the fastest of the settings that were measured; the fastest technique in bold." }
                 (tables::headline(report))
+                h2 { "Views and maps" }
+                (views::charts(report))
+                h2 { "How still shadows stay" }
+                (views::stability(report))
                 h2 { "Soft shadow maps against Atty 2006" }
                 p {
                     "The set-up is the paper's: an object of 1 m at a height of 2 m (the tall box on the ground), \
@@ -109,7 +114,9 @@ fn matrix(report: &Report) -> Markup {
     html! {
         h2 { "Error against time" }
         p {
-            "Down and left is better. Each curve is a technique whose quality sweeps (a pointer over a point shows \
+            "Scenes with lights of their own are measured under one light at a time, and there the node is lent the \
+             triangles' normals, as " code { "render" } " does; elsewhere it finds them from depth. Down and left is \
+             better. Each curve is a technique whose quality sweeps (a pointer over a point shows \
              its settings); bars are the quartiles of the time. Errors under 0.1 % are drawn as 0.1 %."
         }
         @if report.matrix().next().is_none() {
@@ -129,7 +136,10 @@ fn method() -> Markup {
         p {
             "The " b { "visible fraction" } " of the light, by each technique and by the truth, at the same pixels of \
              one G-buffer. " b { "Mean error" } ": mean |error| over the pixels that either puts in shadow or \
-             penumbra (Atty 2006 section 5.2.1), in percent of the light. " b { "FLIP" } ": mean over the whole \
+             penumbra (Atty 2006 section 5.2.1), in percent of the light; what both see lit is no part of it, and what \
+             is in umbra in both is. " b { "Seen error" } ": the mean over the same pixels, each weighed by the \
+             irradiance that the light alone would give it with nothing in between: an error where the light grazes \
+             a surface or is far away is hardly seen. " b { "FLIP" } ": mean over the whole \
              shaded image, visibility × unshadowed irradiance. The card's truth is its closed form; the others' is \
              traced, by another tracer than the one that is measured. The dotted line is what the truth's own noise \
              adds up to in a mean error."

@@ -8,6 +8,7 @@ mod headline;
 mod html;
 mod strip;
 mod tables;
+mod views;
 
 use crate::Problem;
 use crate::groups::MATRIX;

@@ -54,6 +54,7 @@ pub fn strip(report: &Report) -> Markup {
                                     }
                                     small {
                                         (format!("{:.1}", 100.0 * row.mean().unwrap_or_default())) " %, "
+                                        @if let Some(seen) = row.seen() { (format!("seen {:.1} %, ", 100.0 * seen)) }
                                         (ms(row.ms().unwrap_or_default())) " ms"
                                     }
                                 }

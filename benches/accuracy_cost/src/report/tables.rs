@@ -112,7 +112,7 @@ pub fn wrong(report: &Report) -> Markup {
     }
 }
 
-fn percent(fraction: f64) -> String {
+pub(super) fn percent(fraction: f64) -> String {
     format!("{:.2}", 100.0 * fraction)
 }
 
@@ -177,7 +177,7 @@ pub fn gaps(report: &Report) -> Markup {
 }
 
 /// The columns of [`all`].
-const COLUMNS: &str = "scene|light|technique|settings|mean %|RMSE %|p99 %|worst %|bias %|false umbra %|false light %|\
+const COLUMNS: &str = "scene|light|technique|settings|mean %|seen %|RMSE %|p99 %|worst %|bias %|false umbra %|false light %|\
                        on lit %|FLIP|noise of truth %|ms|q1–q3|passes, ms";
 
 /// Every measured row of error against time.
@@ -191,8 +191,10 @@ pub fn all(report: &Report) -> Markup {
                         tr {
                             @for name in [&row.scene, &row.light, &row.technique, &row.settings] { td { (name) } }
                             @let s = &e.summary;
+                            td { (percent(s.mean_abs_error)) }
+                            td { @if let Some(seen) = e.seen_error { (percent(seen)) } }
                             @for error in [
-                                s.mean_abs_error, s.rmse, s.p99, s.worst, s.bias, s.false_umbra, s.false_light, s.lit_error,
+                                s.rmse, s.p99, s.worst, s.bias, s.false_umbra, s.false_light, s.lit_error,
                             ] { td { (percent(error)) } }
                             td { @if let Some(flip) = e.flip { (format!("{flip:.4}")) } }
                             td { (percent(e.truth_noise)) }

@@ -4,6 +4,7 @@ mod lights;
 mod numbers;
 mod occluders;
 mod receivers;
+mod scenes;
 
 use super::set::{Block, Floor, Pixels, Place, Set, Shape};
 use super::techniques::Held;
@@ -29,6 +30,8 @@ pub enum Limit {
     Receiver,
     /// The size of its numbers, and the sides of its maps.
     Numbers,
+    /// Many things together, as in rooms, streets and halls.
+    Scene,
 }
 
 impl fmt::Display for Limit {
@@ -148,7 +151,8 @@ const SKINS: &str = "a skin ends at the receiver beside the occluder's edge; rec
 /// All of them.
 pub fn all() -> Vec<HardCase> {
     let easy = vec![HardCase::new(Limit::Light, "nothing hard", base())];
-    [easy, lights::all(), occluders::all(), receivers::all(), numbers::all()].concat()
+    let limits = [lights::all(), occluders::all(), receivers::all(), numbers::all(), scenes::all()];
+    [easy, limits.concat()].concat()
 }
 
 /// A rectangle that shines down, width along x and depth along z.
