@@ -89,8 +89,7 @@ fn hold(name: &str, situation: &Situation, rows: &[Row]) {
         for (figure, (found, most)) in
             [Error, Dark, Leak].into_iter().zip(found.into_iter().zip(row.most))
         {
-            // Written so that NaN is beyond, too.
-            if !(found <= most) {
+            if !(0.0..=most).contains(&found) {
                 wrong.push(format!("{}: {figure:?} is {found:.2}, beyond {most}", row.words));
             }
             let fault = row.faults.iter().find(|(of, ..)| *of == figure);
