@@ -80,6 +80,10 @@ fn the_back_of_a_single_sided_face_is_not_seen() {
 #[test]
 fn a_face_that_is_not_seen_blocks_light() {
     let device = device();
+    // The ground is so near to the room that the raster's grid decides which of them is above the other.
+    if device.leaves_to_others("light through the backs of faces") {
+        return;
+    }
     let mut scene = hollow(DMat4::IDENTITY, false);
     // The ground beside it is seen through no wall, and no light comes through one.
     scene.add(
