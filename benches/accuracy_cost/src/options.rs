@@ -36,7 +36,7 @@ pub struct Options {
     /// named
     #[arg(long)]
     pub quick: bool,
-    /// A folder of glTF scenes of one's own, measured beside the project's, under their first light
+    /// A folder of glTF scenes of one's own, measured beside the project's, under one of their lights at a time
     #[arg(long, value_name = "DIR")]
     pub scenes: Option<PathBuf>,
     /// Where index.html, accuracy_cost.json, accuracy_cost.csv and headline.md go; what was measured
