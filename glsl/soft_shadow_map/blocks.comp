@@ -133,8 +133,9 @@ void main()
         columns[x] = vec4(0.0);
         slopes[x] = vec3(0.0);
     }
-    // With both sides, maps of more than 1408 texels have more blocks than there is room for their sums: a storage buffer
-    // of more than 128 MB is not guaranteed.
+    // A storage buffer of more than 128 MB is not guaranteed. With both sides, patches of maps of more than 2880 texels are in
+    // part parallel to the light, and maps of more than 1408 texels have more blocks than there is room for their sums.
+    bool sloped = push.slopes + (index + 1) * BLOCK_TEXELS <= texels.length();
     bool room = push.sums + 2 * (index + 1) * BLOCK_TEXELS <= nodes.length();
     for (int y = 0; y < BLOCK; ++y) {
         vec4 row = vec4(0.0);
@@ -144,8 +145,10 @@ void main()
             float d = w[i] - mean;
             row += w[i] > 0.0 ? vec4(1.0, d, d * d, d * d * d) : vec4(0.0);
             columns[x] += row;
-            uint stored = w[i] > 0.0 ? packed_slope(slope_at(block * BLOCK + ivec2(x, y), side)) : 0u;
-            texels[push.slopes + index * BLOCK_TEXELS + i] = stored;
+            uint stored = sloped && w[i] > 0.0 ? packed_slope(slope_at(block * BLOCK + ivec2(x, y), side)) : 0u;
+            if (sloped) {
+                texels[push.slopes + index * BLOCK_TEXELS + i] = stored;
+            }
             vec2 slope = unpacked_slope(stored);
             slope_row += vec3(dot(vec2(x, y) + 0.5, slope), slope);
             slopes[x] += slope_row;

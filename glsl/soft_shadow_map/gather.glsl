@@ -51,7 +51,8 @@ Tile tile_of(Receivers r)
 vec2 slope_of(int texel, Map map)
 {
 #ifdef SLOPED
-    return unpacked_slope(texels[map.slopes + texel]);
+    int at = map.slopes + texel;
+    return at < texels.length() ? unpacked_slope(texels[at]) : vec2(0.0);
 #else
     return vec2(0.0);
 #endif

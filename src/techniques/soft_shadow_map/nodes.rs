@@ -91,7 +91,11 @@ pub(super) fn declare_nodes(
     let texels_a_block = u64::from(BLOCK * BLOCK);
     let families = count(superblock_row) * FAMILY * node_bytes;
     let nodes = Nodes {
-        texels: graph.buffer("soft_shadow_map.texels", count(block_row) * texels_a_block * 8),
+        texels: graph.buffer(
+            "soft_shadow_map.texels",
+            // From N = 2,881 on it would be larger with two sides; blocks beyond have no slopes.
+            (count(block_row) * texels_a_block * 8).min(STORAGE_BYTES),
+        ),
         blocks: graph.buffer("soft_shadow_map.blocks", count(block_row) * node_bytes),
         families: graph.buffer(
             "soft_shadow_map.families",
