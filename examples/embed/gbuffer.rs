@@ -268,8 +268,9 @@ fn make_pipeline(
     let viewport =
         vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
     let raster = vk::PipelineRasterizationStateCreateInfo::default()
-        // Open sheets are seen from both sides.
-        .cull_mode(vk::CullModeFlags::NONE)
+        // Models of glTF are single-sided unless they say otherwise, which those here do not.
+        .cull_mode(vk::CullModeFlags::BACK)
+        .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
         .line_width(1.0);
     let samples = vk::PipelineMultisampleStateCreateInfo::default()
         .rasterization_samples(vk::SampleCountFlags::TYPE_1);

@@ -207,5 +207,5 @@ fn mistake_12_a_knob_that_does_not_exist() {
 #[test]
 fn mistake_13_a_value_out_of_its_range() {
     let sentence = Technique::default().set("map", "9999").unwrap_err().to_string();
-    says(&sentence, &["map", "9999", "1 to 4096"]);
+    says(&sentence, &["map", "9999", "0 to 4096"]);
 }

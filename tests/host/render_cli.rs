@@ -336,22 +336,23 @@ fn wrong_scenes_are_one_sentence() {
 #[test]
 fn lights_of_every_shape_are_rendered_or_one_sentence() {
     let there = folder("shapes");
+    const TRIED: [&str; 4] = ["auto", "soft-shadow-map", "many-lights", "linear-light"];
     let good = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
     for (extras, shape, renders) in [
-        (json!({ "area_light": "disk", "radius": 0.5 }), "disc", "many-lights"),
-        (json!({ "area_light": "sphere", "radius": 0.5 }), "sphere", ""),
-        (json!({ "area_light": "capsule", "radius": 0.5, "length": 1 }), "capsule", ""),
-        (json!({ "area_light": "rectangle", "width": 0, "height": 0 }), "point", ""),
-        (json!({ "area_light": "sun", "angular_size": 0.01 }), "sun", "soft-shadow-map"),
+        (json!({ "area_light": "disk", "radius": 0.5 }), "disc", &["auto", "many-lights"][..]),
+        (json!({ "area_light": "sphere", "radius": 0.5 }), "sphere", &[]),
+        (json!({ "area_light": "capsule", "radius": 0.5, "length": 1 }), "capsule", &[]),
+        (json!({ "area_light": "rectangle", "width": 0, "height": 0 }), "point", &TRIED),
+        (json!({ "area_light": "sun", "angular_size": 0.01 }), "sun", &TRIED),
     ] {
         let lamp = json!({
             "name": "lamp", "translation": [0, 3, 0],
             "rotation": [-0.707_106_77, 0, 0, 0.707_106_77], "extras": extras,
         });
         let scene = write(&there, &triangle(&json!([{ "name": "floor", "mesh": 0 }, lamp])), good);
-        for technique in ["auto", "soft-shadow-map", "many-lights", "linear-light"] {
+        for technique in TRIED {
             let options = ["--size", "32x32", "--technique", technique];
-            if shape == "sun" || technique == renders {
+            if renders.contains(&technique) {
                 let out = folder("shape");
                 let output = run(&scene, &out, &options);
                 assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

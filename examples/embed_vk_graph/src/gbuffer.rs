@@ -43,8 +43,10 @@ impl GBufferPass {
     pub fn new(gpu: &Gpu) -> Outcome<Self> {
         let vertex = Shader::new_vertex(include_bytes!("shaders/gbuffer.vert.spv").as_slice());
         let fragment = Shader::new_fragment(include_bytes!("shaders/gbuffer.frag.spv").as_slice());
-        // Whatever is drawn is drawn from both sides, as the other hosts do it.
-        let info = GraphicsPipelineInfo::builder().cull_mode(vk::CullModeFlags::NONE);
+        // Models of glTF are single-sided unless they say otherwise, which those here do not.
+        let info = GraphicsPipelineInfo::builder()
+            .cull_mode(vk::CullModeFlags::BACK)
+            .front_face(vk::FrontFace::COUNTER_CLOCKWISE);
         Ok(Self(GraphicsPipeline::create(&gpu.device, info, [vertex, fragment])?))
     }
 

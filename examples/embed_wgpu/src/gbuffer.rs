@@ -63,7 +63,11 @@ impl GBufferPass {
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
                 buffers: &[Some(vertex_layout(2))],
             },
-            primitive: wgpu::PrimitiveState::default(),
+            // Models of glTF are single-sided unless they say otherwise, which those here do not.
+            primitive: wgpu::PrimitiveState {
+                cull_mode: Some(wgpu::Face::Back),
+                ..wgpu::PrimitiveState::default()
+            },
             depth_stencil: Some(wgpu::DepthStencilState {
                 format: DEPTH,
                 depth_write_enabled: Some(true),

@@ -6,7 +6,7 @@ use super::{folder, fs, refuse, report, root, run};
 fn wrong_options_are_one_sentence() {
     let bunny = root().join("scenes/bunny.glb");
     refuse("key", &bunny, &["--set", "maps=3"], "maps");
-    refuse("range", &bunny, &["--set", "map=5000"], "1 to 4096");
+    refuse("range", &bunny, &["--set", "map=5000"], "0 to 4096");
     refuse("form", &bunny, &["--set", "map"], "KEY=VALUE");
     refuse("agree", &bunny, &["--set", "accumulate=blend"], "receivers=map");
     refuse("technique", &bunny, &["--technique", "magic"], "soft-shadow-map");
