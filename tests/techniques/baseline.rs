@@ -62,8 +62,8 @@ const TABLE: &[Row] = &[
     ("technique=many-lights samples=256", [0.38, 0.52, 1.42]),
     ("technique=many-lights samples=1024 map=512", [0.23, 0.31, 1.09]),
     // Beside them, the node's own.
-    ("technique=soft-shadow-map map=128", [0.20, 1.00, 2.79]),
-    ("technique=soft-shadow-map map=256", [0.20, 0.69, 2.56]),
+    ("technique=soft-shadow-map map=128", [0.20, 0.76, 2.16]),
+    ("technique=soft-shadow-map map=256", [0.20, 0.46, 1.74]),
     ("technique=ray-march", [0.49, 1.44, 2.03]),
     ("technique=ray-march rays=64", [0.30, 0.88, 1.62]),
     ("technique=ray-march rays=256", [0.23, 0.60, 1.48]),
