@@ -181,7 +181,7 @@ impl Settings {
 
     /// Whether the prefiltered slices of a map of `map` texels a side fit an image that every device has: 4096 texels
     /// a side for summed-area tables, 256 layers for levels, and the memory limit.
-    fn fits(&self, map: u32) -> bool {
+    pub(super) fn fits(&self, map: u32) -> bool {
         let tiles = u64::from(self.tiles());
         let texels = u64::from(map) * u64::from(map) * tiles;
         if self.prefilter == Prefilter::Sat {
