@@ -141,7 +141,7 @@ impl Room for Settings {
 
     fn maps(&self) -> Maps {
         let usual = Maps::by_views(self.map, 256, self.views);
-        // Maps of a side that nobody asked for are no larger than what they may have.
+        // Maps whose side is left open are no larger than what they may have.
         let several =
             if self.map > 0 || self.fits(usual.several) { usual.several } else { usual.side };
         Maps {
