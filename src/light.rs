@@ -148,7 +148,7 @@ impl RectangleLight {
 
     /// A point light, which shines into the half space about `emission`, of any length: its shadows have no penumbra.
     ///
-    /// Its width and height are 0. [`Light::point`] makes one that shines to all sides.
+    /// The light has no width and no height. [`Light::point`] makes one that shines to all sides.
     ///
     /// # Errors
     /// [`Error::Light`] for values that are not finite, or no emission.

@@ -52,7 +52,8 @@ pub(super) fn frame_inputs<'a>(
     let (host_maps, receivers) = (fit.host_maps, fit.receiver_view);
     let served = &fit.served[..];
     let views = if is_soft { fit.views() } else { &Views::Centre };
-    // A hard shadow in the technique's place has one view, but that of a point, which is no smaller matter than others.
+    // A hard shadow stands in for penumbrae that are too narrow to matter, and has one view. A point has no others, so that
+    // its hard shadow is seen through the technique's views.
     let occluders = match served.is_empty() || !(is_soft || needs.hard.is_yes() && fit.is_point()) {
         true => slice::from_ref(&fit.alone),
         false => served,

@@ -33,7 +33,8 @@ pub struct HostDraw {
     pub mesh: u64,
     /// The layer that is drawn.
     pub layer: Layer,
-    /// The matrix from mesh space to the layer's clip space, column-major.
+    /// The matrix from mesh space to clip space, column-major, for a viewport as large as the layer; a frame may use a
+    /// corner of it.
     pub clip_from_mesh: [f32; 16],
     /// The winding of front faces in that clip space, as in the node's own draws.
     pub faces: Faces,

@@ -9,7 +9,8 @@ pub struct LayerPass {
     /// The render pass: one depth attachment of [`depth_layers::FORMAT`], no color, one sample. It
     /// stays compatible over every resize and reconfiguration.
     pub render_pass: vk::RenderPass,
-    /// The layer's size in texels: use it as viewport and scissor.
+    /// The layer's size in texels: use it as viewport and scissor. Where a frame uses a corner of the layer,
+    /// `HostDraw::clip_from_mesh` leads there.
     pub extent: vk::Extent2D,
     /// The cull mode, clear value and depth comparison; the pipeline tests and writes depth.
     pub raster: depth_layers::Raster,

@@ -29,7 +29,7 @@ pub(super) fn histogram_side(inputs: &PassInputs) -> u32 {
     inputs.occluders.side.min(HISTOGRAM_MAP)
 }
 
-/// Those layers.
+/// The layers from which the histogram is made.
 pub(super) fn histogram_layers(settings: &Settings) -> Wanted {
     Wanted { back: settings.is_fitted(), inner: false, receiver_map: None }
 }

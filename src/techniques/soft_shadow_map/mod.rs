@@ -31,8 +31,9 @@
 //! behind δ³. With |δ| ≤ q < 1 the rest is at most f(q) = Σ_{j≥4} (j+1) q^j = (5q⁴ − 4q⁵)/(1 − q)² of
 //! a node's n r². Each 1/(1 + δ)² is at least 1/(1 + q)², so that is at most g(q) = f(q) (1 + q)² of
 //! what the node hides. All nodes together are wrong by at most g(q) of the occlusion, which is
-//! g(q)/(1 − g(q)) of the visible fraction at most. [`spread_of`] inverts g. The float sums add
-//! 2e-6 at most to that, whatever the tolerance (measured; `docs/rounding.md` derives a bound).
+//! g(q)/(1 − g(q)) of the visible fraction at most. [`spread_of`] inverts g. That is of patches parallel to the light: the
+//! slopes of sloped ones are kept to the first order alone, which adds 3e-4 with the default tolerance (measured on
+//! spheres). The float sums add 2e-6 at most to that, whatever the tolerance (measured; `docs/rounding.md` derives a bound).
 //!
 //! **Sloped patches.** A patch parallel to the light stands for a surface that leans, and the patches of a leaning surface
 //! overlap or leave gaps (eq. 3): an edge-on one, which hides nothing, still counts all of its treads. Where we depart, at
@@ -64,7 +65,7 @@
 //! (a thing that stands on it) is stood in for by the front face of the same texel, receiver by receiver;
 //! where the front is flat there is no e to cancel, and the back is left out; and what either side hides
 //! wholly is umbra, since a depth step inside a silhouette leaves a gap in one side alone. Mean errors
-//! against those of the maximum, N = 256, L = 0.4 and 1, windows fitted: spheres 0.8 and 1.0 % for 2.0
+//! against those of the maximum, of patches parallel to the light, N = 256, L = 0.4 and 1, windows fitted: spheres 0.8 and 1.0 % for 2.0
 //! and 2.9, bunny 1.3 and 1.8 for 2.3 and 2.7, Suzanne 1.0 and 1.5 for 1.6 and 2.5, tall box 0.6 and 3.4
 //! for 1.3 and 4.1, stacked cards 1.3 and 2.3 for 1.5 and 2.4.
 //!

@@ -67,7 +67,7 @@ pub struct Settings {
     /// How micro-patches are added up.
     pub accumulate: Accumulate,
     /// The most that the gather's series may add to the error of the visible fraction, 0 to 0.1;
-    /// 1e-4 by default. 0 uses the series only where it is exact.
+    /// 1e-4 by default. 0 uses the series only where it is exact. At the pixels the patches' slopes add some times as much.
     pub tolerance: f32,
     /// Whether tiles of pixels that no occluder can shadow are skipped, at the pixels; on by default.
     pub classify: bool,
@@ -127,8 +127,8 @@ impl Knobs for Settings {
             "tolerance",
             "visible fraction",
             [0.0, 0.1],
-            "most that the gather's shortcut for far texels may add to the error; 0 uses the shortcut only where it is \
-             exact",
+            "most that the gather's shortcut for far texels may add to the error, and some times as much by the slopes of \
+             patches at the pixels; 0 uses the shortcut only where it is exact",
             |s| s.tolerance,
             |s, tolerance| s.tolerance = tolerance,
         ),
