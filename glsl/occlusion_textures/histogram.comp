@@ -14,13 +14,14 @@ layout(set = 0, binding = 2, std430) buffer Histogram { uint histogram[]; };
 
 layout(push_constant) uniform Push {
     int map;    // the layers' side in texels
+    int step;   // the distance in texels of those that are counted
     float near; // distance of the near plane from the projection point, m
     float span; // distance of the furthest occluder from the nearest, m
 } push;
 
 void main()
 {
-    ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 p = ivec2(gl_GlobalInvocationID.xy) * push.step;
     if (p.x >= push.map || p.y >= push.map) {
         return;
     }

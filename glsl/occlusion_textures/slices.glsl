@@ -161,12 +161,15 @@ layout(push_constant) uniform Push {
     vec2 half_light;    // half the light's width and height, m; tangents for a sun
     float eye;          // how far behind the light the projection point is, m
     int map;            // the map's side in texels
-    int flags;          // bits 0 to 7: slices; from bit 8 on how slices are combined; bit 11: mip
+    int flags;          // bits 0 to 7: slices; from bit 8 on how slices are combined; bit 11: mip; bit 12: near
+    float top;          // the w of the map's near plane
+    float snap;         // how far a raster moves a vertex, in texels
 } push;
 
 int slices() { return push.flags & 255; }
 uint all_slices() { return 0xffffffffu >> (32 - slices()); } // a bit for each slice
 int combination() { return push.flags >> 8 & 7; }
+bool looks_near() { return (push.flags & 1 << 12) != 0; } // at the nearest faces, for what slices leave out
 int level_kind() { return (push.flags & 1 << 11) != 0 ? 2 : 0; } // MIP, N_BUFFER
 
 MapWindow map_window()

@@ -43,6 +43,20 @@ bool is_below(vec4 planes, Tile tile)
     return is_parallel() ? planes.x >= -tile.w.x : planes.x * tile.w.x >= 1.0;
 }
 
+// A rectangle that holds all kernels of a tile's points in which a slice is looked at. What lies near a point is looked
+// for between it and the slice above its own; only slices that do not count in full for all of the points hold any.
+vec4 kernel_in(MapWindow m, Tile tile, int slice, vec4 planes)
+{
+    vec4 kernel = tile_kernel(m, tile, planes.z, push.half_light);
+    float furthest = is_parallel() ? -tile.w.x : 1.0 / tile.w.x;
+    if (!looks_near() || 2.0 * planes.y - planes.x < furthest) {
+        return kernel;
+    }
+    vec4 upper = tile_kernel(m, tile, planes_of(max(slice - 1, 0)).x, push.half_light);
+    vec4 lower = tile_kernel(m, tile, furthest, push.half_light);
+    return vec4(min(kernel.xy, min(upper.xy, lower.xy)), max(kernel.zw, max(upper.zw, lower.zw)));
+}
+
 // The slices in which a tile may meet an occluder, with a bit each.
 #ifdef LEVELS
 // Means from levels read windows larger than the kernels, and those beside them, so the squares of the mask are tested.
@@ -60,7 +74,7 @@ uint met_by(Tile tile)
         if (is_below(planes, tile)) {
             break;
         }
-        vec4 kernel = tile_kernel(m, tile, planes.z, push.half_light);
+        vec4 kernel = kernel_in(m, tile, slice, planes);
         vec2 reach = tile_reach(m, tile, planes.z, push.half_light);
         float more = level_reach(2.0 * min(reach.x, reach.y));
         all = vec4(min(all.xy, kernel.xy - more), max(all.zw, kernel.zw + more));
@@ -91,7 +105,7 @@ uint met_by(Tile tile)
         if (is_below(planes, tile)) {
             break;
         }
-        vec4 kernel = tile_kernel(m, tile, planes.z, push.half_light);
+        vec4 kernel = kernel_in(m, tile, slice, planes);
         ivec2 a = ivec2(clamp(floor(kernel.xy), 0.0, float(push.map)));
         ivec2 b = ivec2(clamp(ceil(kernel.zw), 0.0, float(push.map)));
         uvec3 sum = inside(sum_at(slice, a), sum_at(slice, ivec2(b.x, a.y)), sum_at(slice, ivec2(a.x, b.y)),

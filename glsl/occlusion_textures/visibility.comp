@@ -29,6 +29,12 @@ layout(set = 0, binding = 6, std430) readonly buffer Tiles { uint count; uint ti
 layout(set = 0, binding = 7, std430) readonly buffer Met { uint met[]; }; // slices, a bit each, tile by tile
 #endif
 
+#ifdef CORRELATED
+layout(set = 0, binding = 8) uniform texture2D front_depth;
+
+#include "occlusion_textures/near.glsl"
+#endif
+
 #ifdef LEVELS
 layout(set = 0, binding = 3) uniform texture2DArray filtered;
 layout(set = 0, binding = 5) uniform utexture2D mask;
@@ -103,6 +109,12 @@ float hidden_at(Receiver r, uint left)
         hidden = hidden_with(combination(), hidden, weight * window.x);
 #endif
     }
+#ifdef CORRELATED
+    // A texel's nearest face has no slice above it, so that what is near hides another part of the light.
+    if (looks_near() && r.blocks && hidden < OPAQUE) {
+        hidden = min(hidden + hidden_near(r, m), 1.0);
+    }
+#endif
     return hidden;
 }
 

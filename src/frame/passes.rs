@@ -262,6 +262,7 @@ pub(super) fn build(
         occluders: &frame.occluders[0].map,
         deepest: frame.occluders[0].deepest,
         view: 0,
+        served: count as u32,
         receivers: &frame.receivers,
         views: frame.views,
         layers: &layers,

@@ -99,9 +99,17 @@ impl Plan {
             .and(" in this frame")
     }
 
-    /// Every pass that does not run, and why.
+    /// Every kind of pass of which one does not run, and why; once for each of its reasons.
     pub fn reasons(&self) -> impl Iterator<Item = (&Pass, Why)> {
-        self.skipped.iter().map(|s| (&self.graph.passes()[s.pass], self.why_skipped(s)))
+        let kind = |skipped: &Skipped| self.graph.kind_of(skipped.pass);
+        let new = move |(nth, skipped): (usize, &Skipped)| {
+            let why = self.why_skipped(skipped);
+            let is_told =
+                |other: &Skipped| kind(other) == kind(skipped) && self.why_skipped(other) == why;
+            (!self.skipped[..nth].iter().any(is_told))
+                .then(|| (&self.graph.passes()[skipped.pass], why))
+        };
+        self.skipped.iter().enumerate().filter_map(new)
     }
 }
 

@@ -31,8 +31,8 @@ impl Plan {
         runs
     }
 
-    /// The plan as a table: a line for each kind of pass that runs, with how often and why, then one for each pass that
-    /// does not, with why not.
+    /// The plan as a table: a line for each kind of pass that runs, with how often and why, then one for each kind of
+    /// which one does not, with why not.
     pub fn table(&self) -> String {
         let mut text = String::new();
         let width = self.graph.kinds().map(|p| p.name.len()).max().unwrap_or(0);

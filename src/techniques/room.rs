@@ -231,6 +231,8 @@ pub struct PassInputs<'a> {
     pub deepest: f64,
     /// The number of that view, of those that share the pixels.
     pub view: u32,
+    /// How many views share the pixels.
+    pub served: u32,
     /// The receiver map's view.
     pub receivers: &'a MapView,
     /// The technique's own views.

@@ -111,7 +111,7 @@ pub use slices::{Histogram, Mask, Place};
 
 use self::pixels::{PrefilteredSlices, declare_pixels};
 use self::prefilter::{declare_levels, declare_sums};
-use self::slices::{declare_mask, declare_placement, histogram_layers, histogram_side};
+use self::slices::{declare_mask, declare_placement, histogram_layers, layers_side};
 use super::room::{HostDraws, Maps, PassInputs, Room, Shows, Takes};
 use crate::Error;
 use crate::graph::{Graph, ResourceId};
@@ -140,16 +140,12 @@ impl Room for Settings {
     }
 
     fn maps(&self) -> Maps {
-        let usual = Maps::by_views(self.map, 256, self.views);
-        // Maps whose side is left open are no larger than what they may have.
-        let several =
-            if self.map > 0 || self.fits(usual.several) { usual.several } else { usual.side };
         Maps {
-            several,
+            several: self.sizes(self.views).map,
             layers: histogram_layers(self),
             eye: Projection::Behind,
             front_is_whole: false,
-            ..usual
+            ..Maps::front(self.sizes(1).map)
         }
     }
 
@@ -159,8 +155,9 @@ impl Room for Settings {
 
     fn declare(&self, graph: &mut Graph, inputs: &PassInputs) -> Option<ResourceId> {
         let wanted = self.maps().layers;
-        let side = histogram_side(inputs);
-        let layers = self.is_fitted().then(|| inputs.depth_layers(graph, wanted, side));
+        let side = layers_side(self, inputs);
+        let draws = self.is_fitted() || self.is_correlated();
+        let layers = draws.then(|| inputs.depth_layers(graph, wanted, side));
         declare(graph, layers.as_ref(), self, inputs);
         None
     }
@@ -174,14 +171,16 @@ impl Room for Settings {
     }
 }
 
-/// Adds the passes that turn meshes into the visible fraction; `layers` where slices are fitted to them.
+/// Adds the passes that turn meshes into the visible fraction; `layers` where slices are fitted to them or leave out what is
+/// near a pixel.
 fn declare(
     graph: &mut Graph,
     layers: Option<&DepthLayers>,
     settings: &Settings,
     inputs: &PassInputs,
 ) {
-    let placement = declare_placement(graph, layers, settings, inputs);
+    let fitted = layers.filter(|_| settings.is_fitted());
+    let placement = declare_placement(graph, fitted, settings, inputs);
     let mask = declare_mask(graph, placement, settings, inputs);
     let sums = settings.prefilter == Prefilter::Sat;
     let means = if sums {
@@ -189,6 +188,7 @@ fn declare(
     } else {
         declare_levels(graph, mask, settings, inputs)
     };
-    let slices = PrefilteredSlices { placement, mask, means };
+    let front = layers.filter(|_| settings.is_correlated()).map(|layers| layers.front);
+    let slices = PrefilteredSlices { placement, mask, means, front };
     declare_pixels(graph, &slices, settings, inputs);
 }

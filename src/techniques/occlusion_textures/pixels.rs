@@ -1,6 +1,7 @@
 //! The passes over the pixels: at all of them, or at those of tiles that may meet an occluder.
 
 use super::settings::{Combine, Prefilter, Settings};
+use super::slices::looks_near;
 use crate::graph::{Access, Graph, Owner, Pass, Push, ResourceId, Use, Uses};
 use crate::shaders::module;
 use crate::stages::nearest::nodes_a_row;
@@ -21,6 +22,8 @@ pub(super) struct PrefilteredSlices {
     pub mask: ResourceId,
     /// The slices' summed-area tables, or levels of means.
     pub means: ResourceId,
+    /// The nearest faces, where correlated slices may leave out what is near a pixel.
+    pub front: Option<ResourceId>,
 }
 
 /// Adds the passes that write the visible fraction from the prefiltered slices.
@@ -43,6 +46,7 @@ pub(super) fn declare_pixels(
     if !sums {
         uses.push(Use::bound(5, slices.mask, Access::SampledCompute));
     }
+    uses.extend(slices.front.map(|front| Use::bound(8, front, Access::SampledCompute)));
     if !settings.classify {
         let shader = match (sums, settings.is_correlated()) {
             (true, false) => module!("occlusion_textures/visibility_sat.comp"),
@@ -130,6 +134,10 @@ pub struct Visibility {
     pub map: i32,
     /// The number of slices and what is switched on, see `slices.glsl`.
     pub flags: i32,
+    /// The w of the map's near plane, 1/m.
+    pub top: f32,
+    /// How far a raster moves a vertex, in texels.
+    pub snap: f32,
 }
 
 fn pixel_push(settings: &Settings, inputs: &PassInputs) -> Visibility {
@@ -145,8 +153,11 @@ fn pixel_push(settings: &Settings, inputs: &PassInputs) -> Visibility {
         half_light: light.half_extents().map(|x| x as f32),
         eye: inputs.occluders.behind() as f32,
         map: view.side as i32,
-        flags: settings.slices as i32
+        flags: settings.sizes(inputs.served).slices as i32
             | combine << 8
-            | i32::from(settings.prefilter == Prefilter::Mip) << 11,
+            | i32::from(settings.prefilter == Prefilter::Mip) << 11
+            | i32::from(looks_near(settings, inputs)) << 12,
+        top: view.top() as f32,
+        snap: inputs.snap,
     }
 }

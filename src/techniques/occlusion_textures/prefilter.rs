@@ -35,7 +35,7 @@ pub(super) fn declare_sums(
     inputs: &PassInputs,
 ) -> ResourceId {
     let side = inputs.occluders.side;
-    let tiles = settings.tiles();
+    let tiles = settings.tiles(settings.sizes(inputs.served).slices);
     let (values, format) = (tiles * side * side, vk::Format::R32G32B32A32_UINT);
     let extent = [IMAGE_WIDTH.min(values), values.div_ceil(IMAGE_WIDTH)];
     let sums = graph.image("occlusion_textures.filtered", format, extent, Owner::Transient);
@@ -92,7 +92,7 @@ pub(super) fn declare_levels(
     inputs: &PassInputs,
 ) -> ResourceId {
     let side = inputs.occluders.side;
-    let tiles = settings.tiles();
+    let tiles = settings.tiles(settings.sizes(inputs.served).slices);
     let levels = Levels { map: side, kind: settings.level_kind() };
     let format = vk::Format::R16G16B16A16_SFLOAT;
     let name = "occlusion_textures.filtered";

@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::knob::{Field, Knobs, MAP_OF_256, choice, choices};
 use crate::stages::nbuffer::{self, Levels};
-use crate::techniques::room::Room as _;
+use crate::techniques::room::Maps;
 
 /// The prefilter that gives means of rectangles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -54,7 +54,7 @@ pub struct Settings {
     pub map: u32,
     /// The most views of a light, 1 to 8; 6 by default.
     pub views: u32,
-    /// The number of slices, 4 to 32; 16 by default.
+    /// The number of slices, 1 to 32; 0, the default, for 16 where one view serves a light and 32 where several do.
     pub slices: u32,
     /// The placement of the slices.
     pub placement: Placement,
@@ -73,7 +73,7 @@ impl Default for Settings {
         Self {
             map: 0,
             views: 6,
-            slices: 16,
+            slices: 0,
             placement: Placement::default(),
             prefilter: Prefilter::default(),
             combine: Combine::default(),
@@ -85,6 +85,9 @@ impl Default for Settings {
 
 /// The width of the image of prefiltered tiles: the largest that every device has (maxImageDimension2D).
 pub(super) const IMAGE_WIDTH: u32 = 4096;
+
+/// The map's side where one view serves a light, unless `map` says it.
+const USUAL_MAP: u32 = 256;
 
 /// The layers of an image that every device has (maxImageArrayLayers).
 const MOST_LAYERS: u64 = 256;
@@ -101,8 +104,9 @@ impl Knobs for Settings {
         Field::whole(
             "slices",
             "slices",
-            [4, 32],
-            "parts of the occluders, from the light on, that are each flattened into a texture; any whole number",
+            [0, 32],
+            "parts of the occluders, from the light on, that are each flattened into a texture; any whole number. 0 is \
+             16 where one view serves a light and 32 where several do, or 16 where 32 do not fit",
             |s| s.slices,
             |s, slices| s.slices = slices,
         ),
@@ -136,22 +140,57 @@ impl Knobs for Settings {
     ];
 }
 
+/// The slices of one view, unless `slices` says how many.
+const USUAL_SLICES: u32 = 16;
+
+/// The most slices: a bit each of the mask's 32. They are what several views have, which show occluders that lie as far
+/// apart as a room is high.
+const MOST_SLICES: u32 = 32;
+
+/// The sizes of what a view is seen through.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Sizes {
+    /// The map's side, texels.
+    pub map: u32,
+    /// The number of slices.
+    pub slices: u32,
+}
+
 impl Settings {
     /// Checks the knobs that must agree with each other.
     pub(super) fn check_together(&self) -> Result<(), Error> {
-        let map = self.maps().largest();
-        if self.fits(map) {
+        let Sizes { map, slices } = self.sizes(1);
+        if self.fits(Sizes { map, slices }) {
             return Ok(());
         }
-        let most = (1..map).rev().find(|&m| self.fits(m)).unwrap_or(1);
+        let most = (1..map).rev().find(|&map| self.fits(Sizes { map, slices })).unwrap_or(1);
         Err(Error::Setting {
             key: "map".into(),
             problem: format!(
-                "{} slices of {} texels a side, filtered, take more than the 256 MiB that they may have; \
-                 set map={most}, prefilter=mip or fewer slices",
-                self.slices, map
+                "{slices} slices of {map} texels a side, filtered, take more than the 256 MiB that they may have; \
+                 set map={most}, prefilter=mip or fewer slices"
             ),
         })
+    }
+
+    /// The sizes of the views of a frame of which `served` share the receivers. What is left open is no larger than what
+    /// prefiltered slices may have.
+    pub(super) fn sizes(&self, served: u32) -> Sizes {
+        let usual = Maps::by_views(self.map, USUAL_MAP, self.views);
+        let slices = |open| if self.slices > 0 { self.slices } else { open };
+        let one = Sizes { map: usual.side, slices: slices(USUAL_SLICES) };
+        if served < 2 {
+            return one;
+        }
+        let several = [usual.several, usual.side].into_iter().flat_map(|map| {
+            [MOST_SLICES, USUAL_SLICES].map(|open| Sizes { map, slices: slices(open) })
+        });
+        several.into_iter().find(|&sizes| self.fits(sizes)).unwrap_or(one)
+    }
+
+    /// The most slices of any frame.
+    pub(super) fn most_slices(&self) -> u32 {
+        self.sizes(self.views).slices.max(self.sizes(1).slices)
     }
 
     /// Whether slices are combined by their measured overlap.
@@ -160,13 +199,13 @@ impl Settings {
     }
 
     /// The number of tiles to prefilter: four slices in each; of correlated slices two, or one for levels.
-    pub fn tiles(&self) -> u32 {
+    pub(super) fn tiles(&self, slices: u32) -> u32 {
         let each = match (self.is_correlated(), self.prefilter) {
             (false, _) => 4,
             (true, Prefilter::Sat) => 2,
             (true, Prefilter::Mip | Prefilter::NBuffer) => 1,
         };
-        self.slices.div_ceil(each)
+        slices.div_ceil(each)
     }
 
     /// Whether slices are placed by a histogram of the faces.
@@ -179,10 +218,10 @@ impl Settings {
         if self.prefilter == Prefilter::Mip { nbuffer::Kind::Mip } else { nbuffer::Kind::NBuffer }
     }
 
-    /// Whether the prefiltered slices of a map of `map` texels a side fit an image that every device has: 4096 texels
-    /// a side for summed-area tables, 256 layers for levels, and the memory limit.
-    pub(super) fn fits(&self, map: u32) -> bool {
-        let tiles = u64::from(self.tiles());
+    /// Whether prefiltered slices fit an image that every device has: 4096 texels a side for summed-area tables, 256
+    /// layers for levels, and the memory limit.
+    fn fits(&self, Sizes { map, slices }: Sizes) -> bool {
+        let tiles = u64::from(self.tiles(slices));
         let texels = u64::from(map) * u64::from(map) * tiles;
         if self.prefilter == Prefilter::Sat {
             return texels <= u64::from(IMAGE_WIDTH).pow(2);

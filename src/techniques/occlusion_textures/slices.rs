@@ -2,7 +2,8 @@
 
 use super::settings::Settings;
 use crate::graph::{
-    Access, COLOR_ATTACHMENTS, Draw, Graph, Layer, Owner, Pass, Push, ResourceId, Target, Use, Work,
+    Access, COLOR_ATTACHMENTS, Draw, Graph, Layer, Need, Owner, Pass, Push, ResourceId, Target,
+    Use, Work,
 };
 use crate::shaders::{self, module};
 use crate::stages::depth_layers::{self, DepthLayers, Eye, Wanted};
@@ -18,15 +19,22 @@ const BINS: u32 = 960;
 /// The size of the placement's image: bins and planes of slices in one row of texels.
 const PLACEMENT: [u32; 2] = [1024, 1];
 
-/// The most texels a side of the layers from which the histogram is made.
+/// The most texels a side of the layers of which the histogram is made.
 const HISTOGRAM_MAP: u32 = 128;
 
 /// The number of slices that one draw counts.
 const SLICES_A_DRAW: u32 = 4 * COLOR_ATTACHMENTS as u32;
 
-/// The side of the layers from which the histogram is made; few texels are enough.
-pub(super) fn histogram_side(inputs: &PassInputs) -> u32 {
-    inputs.occluders.side.min(HISTOGRAM_MAP)
+/// Whether the nearest faces tell what hides the light near a pixel, which slices leave out: where several views serve
+/// the receivers. One view shows a scene whose parts lie next to each other.
+pub(super) fn looks_near(settings: &Settings, inputs: &PassInputs) -> bool {
+    settings.is_correlated() && inputs.served > 1
+}
+
+/// The side of the layers of nearest and furthest faces, texels; for the histogram alone few are enough.
+pub(super) fn layers_side(settings: &Settings, inputs: &PassInputs) -> u32 {
+    let side = inputs.occluders.side;
+    if looks_near(settings, inputs) { side } else { side.min(HISTOGRAM_MAP) }
 }
 
 /// The layers from which the histogram is made.
@@ -74,13 +82,13 @@ pub(super) fn declare_placement(
         eye: eye as f32,
         // The published place is the bottom; in the middle the error is smaller.
         plane: if settings.is_correlated() { 0.5 } else { 1.0 },
-        slices: settings.slices as i32,
+        slices: settings.sizes(inputs.served).slices as i32,
         span: span as f32,
     });
     let mut uses = smallvec![Use::bound(0, placement, Access::ImageWrite)];
     let (name, shader, groups) = match layers {
         Some(layers) => {
-            let histogram = declare_histogram(graph, layers, inputs);
+            let histogram = declare_histogram(graph, layers, settings, inputs);
             uses.push(Use::bound(1, histogram, Access::BufferReadCompute));
             ("occlusion_textures.place_fitted", module!("occlusion_textures/place_fitted.comp"), 1)
         }
@@ -109,13 +117,20 @@ fn spanned(inputs: &PassInputs) -> f64 {
 pub struct Histogram {
     /// The layers' side in texels.
     pub map: i32,
+    /// The distance in texels of those that are counted.
+    pub step: i32,
     /// Distance of the near plane from the projection point, m.
     pub near: f32,
     /// The distance of the furthest occluder from the nearest, m.
     pub span: f32,
 }
 
-fn declare_histogram(graph: &mut Graph, layers: &DepthLayers, inputs: &PassInputs) -> ResourceId {
+fn declare_histogram(
+    graph: &mut Graph,
+    layers: &DepthLayers,
+    settings: &Settings,
+    inputs: &PassInputs,
+) -> ResourceId {
     let histogram = graph.buffer("occlusion_textures.histogram", 4 * u64::from(BINS));
     graph.push(Pass::compute(
         "occlusion_textures.histogram_start",
@@ -125,13 +140,15 @@ fn declare_histogram(graph: &mut Graph, layers: &DepthLayers, inputs: &PassInput
         smallvec![Use::bound(0, histogram, Access::BufferWriteCompute)],
         inputs.need,
     ));
-    let map = histogram_side(inputs);
+    let map = layers_side(settings, inputs);
+    let step = map.div_ceil(HISTOGRAM_MAP);
     graph.push(Pass::compute(
         "occlusion_textures.histogram",
         module!("occlusion_textures/histogram.comp"),
-        grid([map; 2]),
+        grid([map.div_ceil(step); 2]),
         Push::new(&Histogram {
             map: map as i32,
+            step: step as i32,
             near: match inputs.occluders.eye {
                 Eye::Behind(_) => inputs.occluders.near as f32,
                 Eye::Infinity => 0.0,
@@ -203,7 +220,7 @@ const BACKS: Drawn = Drawn {
 /// The images that faces are drawn into: four slices each.
 type Slabs = SmallVec<[ResourceId; 8]>;
 
-/// Adds the passes that count faces; four slices an image.
+/// Adds the passes that count faces, and returns the images that they fill; four slices an image.
 fn draw(
     graph: &mut Graph,
     drawn: &Drawn,
@@ -211,10 +228,18 @@ fn draw(
     settings: &Settings,
     inputs: &PassInputs,
 ) -> Slabs {
-    let draws = settings.slices.div_ceil(SLICES_A_DRAW) as usize;
+    let draws = |slices: u32| slices.div_ceil(SLICES_A_DRAW) as usize;
+    let (of_frame, of_any) =
+        (draws(settings.sizes(inputs.served).slices), draws(settings.most_slices()));
+    let rest = match *inputs.need {
+        Need::Yes(_) if of_frame < of_any => {
+            Need::No(graph.because("one view serves every receiver, and has fewer slices"))
+        }
+        need => need,
+    };
     let raster = depth_layers::raster_of(drawn.layer);
     let mut images = Slabs::new();
-    for nth in 0..draws {
+    for nth in 0..of_any {
         let targets: Slabs = drawn.images[COLOR_ATTACHMENTS * nth..][..COLOR_ATTACHMENTS]
             .iter()
             .map(|name| {
@@ -240,9 +265,11 @@ fn draw(
                 target: Target::Add,
                 draw: Draw::Layer { layer: drawn.layer, view: inputs.view },
             },
-            need: *inputs.need,
+            need: if nth < of_frame { *inputs.need } else { rest },
         });
-        images.extend(targets);
+        if nth < of_frame {
+            images.extend(targets);
+        }
     }
     images
 }
@@ -294,7 +321,7 @@ pub(super) fn declare_mask(
         grid([side; 2]),
         Push::new(&Mask {
             map: side as i32,
-            slices: settings.slices as i32,
+            slices: settings.sizes(inputs.served).slices as i32,
             solid: i32::from(settings.is_correlated()),
             fill: i32::from(settings.fill),
         }),
