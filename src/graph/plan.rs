@@ -1,6 +1,6 @@
 //! Compiles a graph into the plan of one frame.
 
-use super::{Access, Barrier, Graph, Owner, Pass, ResourceId, Scope, State, Why};
+use super::{Access, Barrier, Graph, Owner, ResourceId, Scope, State, Why};
 use crate::Error;
 use ash::vk;
 use smallvec::SmallVec;
@@ -97,19 +97,6 @@ impl Plan {
                 _ => why.and(" or ").and(name),
             })
             .and(" in this frame")
-    }
-
-    /// Every kind of pass of which one does not run, and why; once for each of its reasons.
-    pub fn reasons(&self) -> impl Iterator<Item = (&Pass, Why)> {
-        let kind = |skipped: &Skipped| self.graph.kind_of(skipped.pass);
-        let new = move |(nth, skipped): (usize, &Skipped)| {
-            let why = self.why_skipped(skipped);
-            let is_told =
-                |other: &Skipped| kind(other) == kind(skipped) && self.why_skipped(other) == why;
-            (!self.skipped[..nth].iter().any(is_told))
-                .then(|| (&self.graph.passes()[skipped.pass], why))
-        };
-        self.skipped.iter().enumerate().filter_map(new)
     }
 }
 

@@ -1,6 +1,6 @@
 //! A plan as text: a table to read, and a graph in Graphviz's language.
 
-use super::{Graph, Owner, Pass, Plan, Shape, Work};
+use super::{Graph, Owner, Pass, Plan, Shape, Skipped, Why, Work};
 use std::fmt::Write as _;
 
 /// All steps of one kind of pass, as one line of a plan's table.
@@ -29,6 +29,17 @@ impl Plan {
             runs[at].barriers += step.barriers.len();
         }
         runs
+    }
+
+    /// Every kind of pass of which one does not run, and why; once for each of its reasons.
+    pub fn reasons(&self) -> impl Iterator<Item = (&Pass, Why)> {
+        let told = |s: &Skipped| (self.graph.kind_of(s.pass), self.why_skipped(s));
+        let new = move |nth: &usize| {
+            let one = told(&self.skipped[*nth]);
+            self.skipped[..*nth].iter().all(|other| told(other) != one)
+        };
+        let skipped = (0..self.skipped.len()).filter(new).map(|nth| &self.skipped[nth]);
+        skipped.map(|s| (&self.graph.passes()[s.pass], self.why_skipped(s)))
     }
 
     /// The plan as a table: a line for each kind of pass that runs, with how often and why, then one for each kind of

@@ -46,10 +46,10 @@ pub fn sun() -> Light {
 }
 
 const TECHNIQUES: [&str; 4] = [
-    "technique=soft-shadow-map",
-    "technique=ray-march",
-    "technique=occlusion-textures",
-    "technique=pcss",
+    "technique=soft-shadow-map views=1",
+    "technique=ray-march views=1",
+    "technique=occlusion-textures views=1",
+    "technique=pcss views=1",
 ];
 
 /// A scene as a camera sees it, occluders too.

@@ -144,7 +144,7 @@ fn a_board_through_the_floor_casts_the_same_shadow() {
             row("traced", [1.4, 0.05, 0.5]),
             faulty("ray-march", [5.2, 0.1, 24.0], &[(Leak, 5.0, ENDS_BELOW)]),
             row("soft-shadow-map", [6.3, 0.1, 5.0]),
-            faulty("occlusion-textures", [4.2, 0.1, 18.0], &[(Leak, 4.0, ENDS_BELOW)]),
+            row("occlusion-textures", [2.5, 0.1, 1.5]),
             row("pcss", [8.0, 0.1, 10.0]),
         ],
     );

@@ -70,10 +70,10 @@ fn looking(eye: DVec3, target: DVec3) -> Camera {
 
 /// Settings; the mean error in percent that was measured in the room with four views, and in the yard.
 const ERRORS: &[(&str, [f64; 2])] = &[
-    ("technique=ray-march", [4.0, 9.0]),
-    ("technique=soft-shadow-map map=256", [4.0, 12.0]),
-    ("technique=occlusion-textures", [12.0, 14.0]),
-    ("technique=pcss", [7.0, 12.0]),
+    ("technique=ray-march", [2.0, 6.0]),
+    ("technique=soft-shadow-map map=256", [3.2, 10.0]),
+    ("technique=occlusion-textures", [2.6, 5.6]),
+    ("technique=pcss", [4.8, 6.0]),
     ("technique=hard", [12.0, 18.0]),
 ];
 

@@ -65,7 +65,11 @@
 //! shadows too little or not at all, so creases and contacts of an occluder with itself are too light. The part of the
 //! light below the pixel's own plane is a closed form, as for the other techniques here. Where we depart (`correlated`
 //! only): pixels that receive and do not block, as a ground does, are in no slice, and everything nearer the light
-//! counts (which the authors suggest in section 4.1).
+//! counts (which the authors suggest in section 4.1). And where several views serve a light, as in rooms, the map's
+//! nearest faces are compared with the pixel's plane over its kernel, and a face before it counts for the share that
+//! its slice does not (`hidden_near` of `visibility.comp`; with summed-area tables alone): light that grazes a wall meets nothing but what lies in the wall's own slice.
+//! Mean error with and without: kitchen 2.6 and 3.2, yard 4.2 and 7.8, three lamps of the hall 3.3 and 8.5. One
+//! view shows a scene whose parts lie next to each other; there it changed no mean error by more than 0.2.
 //!
 //! **Tiles.** A tile whose pixels' kernels touch nothing in any slice that counts for them is lit. With summed-area
 //! tables one rectangle a slice that holds the kernels of all its pixels decides. With levels squares of the mask
@@ -75,6 +79,9 @@
 //!
 //! **A sun**'s light is parallel: slices are at heights, between the highest occluder over what a view serves and its
 //! lowest receiver, and a kernel is as wide as the sun's angle makes it at the point's depth below the slice.
+//!
+//! **Slices by views.** A light that one view serves has 16 slices by default, and one that several serve has 32: their
+//! second draw of the faces is skipped in frames with one view.
 //!
 //! **Measured** (lavapipe, 256² maps, 16 slices; mean error in percent over shadow and penumbra, published,
 //! filled, ours): tall box 5.3, 10.3, 0.5; bunny 8.2, 17.0, 1.0; Suzanne 8.8, 21.3, 0.6; stacked cards 3.8,
@@ -156,7 +163,7 @@ impl Room for Settings {
     fn declare(&self, graph: &mut Graph, inputs: &PassInputs) -> Option<ResourceId> {
         let wanted = self.maps().layers;
         let side = layers_side(self, inputs);
-        let draws = self.is_fitted() || self.is_correlated();
+        let draws = self.is_fitted() || self.can_look_near();
         let layers = draws.then(|| inputs.depth_layers(graph, wanted, side));
         declare(graph, layers.as_ref(), self, inputs);
         None
@@ -188,7 +195,7 @@ fn declare(
     } else {
         declare_levels(graph, mask, settings, inputs)
     };
-    let front = layers.filter(|_| settings.is_correlated()).map(|layers| layers.front);
+    let front = layers.filter(|_| settings.can_look_near()).map(|layers| layers.front);
     let slices = PrefilteredSlices { placement, mask, means, front };
     declare_pixels(graph, &slices, settings, inputs);
 }

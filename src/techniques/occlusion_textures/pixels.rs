@@ -1,7 +1,6 @@
 //! The passes over the pixels: at all of them, or at those of tiles that may meet an occluder.
 
 use super::settings::{Combine, Prefilter, Settings};
-use super::slices::looks_near;
 use crate::graph::{Access, Graph, Owner, Pass, Push, ResourceId, Use, Uses};
 use crate::shaders::module;
 use crate::stages::nearest::nodes_a_row;
@@ -22,7 +21,7 @@ pub(super) struct PrefilteredSlices {
     pub mask: ResourceId,
     /// The slices' summed-area tables, or levels of means.
     pub means: ResourceId,
-    /// The nearest faces, where correlated slices may leave out what is near a pixel.
+    /// The nearest faces, where frames may look for what slices leave out near a pixel.
     pub front: Option<ResourceId>,
 }
 
@@ -156,7 +155,7 @@ fn pixel_push(settings: &Settings, inputs: &PassInputs) -> Visibility {
         flags: settings.sizes(inputs.served).slices as i32
             | combine << 8
             | i32::from(settings.prefilter == Prefilter::Mip) << 11
-            | i32::from(looks_near(settings, inputs)) << 12,
+            | i32::from(settings.looks_near(inputs.served)) << 12,
         top: view.top() as f32,
         snap: inputs.snap,
     }

@@ -54,7 +54,7 @@ pub struct Settings {
     pub map: u32,
     /// The most views of a light, 1 to 8; 6 by default.
     pub views: u32,
-    /// The number of slices, 1 to 32; 0, the default, for 16 where one view serves a light and 32 where several do.
+    /// The number of slices, 4 to 32; 0, the default, for 16 where one view serves a light and 32 where several do.
     pub slices: u32,
     /// The placement of the slices.
     pub placement: Placement,
@@ -105,8 +105,8 @@ impl Knobs for Settings {
             "slices",
             "slices",
             [0, 32],
-            "parts of the occluders, from the light on, that are each flattened into a texture; any whole number. 0 is \
-             16 where one view serves a light and 32 where several do, or 16 where 32 do not fit",
+            "parts of the occluders, from the light on, that are each flattened into a texture: 4 to 32, and 0 for 16 \
+             where one view serves a light and 32, or 16 where these do not fit, where several do",
             |s| s.slices,
             |s, slices| s.slices = slices,
         ),
@@ -143,6 +143,9 @@ impl Knobs for Settings {
 /// The slices of one view, unless `slices` says how many.
 const USUAL_SLICES: u32 = 16;
 
+/// The least slices of one's own: what one draw counts in an image.
+const LEAST_SLICES: u32 = 4;
+
 /// The most slices: a bit each of the mask's 32. They are what several views have, which show occluders that lie as far
 /// apart as a room is high.
 const MOST_SLICES: u32 = 32;
@@ -160,6 +163,14 @@ impl Settings {
     /// Checks the knobs that must agree with each other.
     pub(super) fn check_together(&self) -> Result<(), Error> {
         let Sizes { map, slices } = self.sizes(1);
+        if slices < LEAST_SLICES {
+            return Err(Error::Setting {
+                key: "slices".into(),
+                problem: format!(
+                    "{slices} is outside its range; give {LEAST_SLICES} to {MOST_SLICES} (slices), or 0 for the usual number"
+                ),
+            });
+        }
         if self.fits(Sizes { map, slices }) {
             return Ok(());
         }
@@ -196,6 +207,17 @@ impl Settings {
     /// Whether slices are combined by their measured overlap.
     pub fn is_correlated(&self) -> bool {
         self.combine == Combine::Correlated
+    }
+
+    /// Whether frames may look for what slices leave out near a pixel: with correlated slices in summed-area tables.
+    pub(super) fn can_look_near(&self) -> bool {
+        self.is_correlated() && self.prefilter == Prefilter::Sat
+    }
+
+    /// Whether the nearest faces tell what hides the light near a pixel, which slices leave out: where several views share
+    /// the receivers. One view shows a scene whose parts lie next to each other.
+    pub(super) fn looks_near(&self, served: u32) -> bool {
+        self.can_look_near() && served > 1
     }
 
     /// The number of tiles to prefilter: four slices in each; of correlated slices two, or one for levels.

@@ -25,16 +25,10 @@ const HISTOGRAM_MAP: u32 = 128;
 /// The number of slices that one draw counts.
 const SLICES_A_DRAW: u32 = 4 * COLOR_ATTACHMENTS as u32;
 
-/// Whether the nearest faces tell what hides the light near a pixel, which slices leave out: where several views serve
-/// the receivers. One view shows a scene whose parts lie next to each other.
-pub(super) fn looks_near(settings: &Settings, inputs: &PassInputs) -> bool {
-    settings.is_correlated() && inputs.served > 1
-}
-
 /// The side of the layers of nearest and furthest faces, texels; for the histogram alone few are enough.
 pub(super) fn layers_side(settings: &Settings, inputs: &PassInputs) -> u32 {
     let side = inputs.occluders.side;
-    if looks_near(settings, inputs) { side } else { side.min(HISTOGRAM_MAP) }
+    if settings.looks_near(inputs.served) { side } else { side.min(HISTOGRAM_MAP) }
 }
 
 /// The layers from which the histogram is made.
