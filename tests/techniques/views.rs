@@ -121,6 +121,30 @@ fn many_lights_see_a_yard_through_views() {
     assert!(errors[1] < 9.0 && errors[1] < 0.4 * errors[0], "{errors:?}");
 }
 
+/// Tiles that no occluder can shadow are skipped, which changes nothing, whichever view serves them.
+#[test]
+fn tiles_change_nothing() {
+    let device = device();
+    let (yard, eye) = yard();
+    let room = closed_room();
+    for (scene, camera) in [(&room, room::camera()), (&yard, eye)] {
+        let setup = setup(scene, &camera);
+        for words in [
+            "technique=soft-shadow-map map=64",
+            "technique=pcss",
+            "technique=occlusion-textures",
+            "technique=occlusion-textures map=128 combine=product prefilter=mip",
+        ] {
+            let [with, without] = ["on", "off"].map(|classify| {
+                let words = format!("{words} views=4 classify={classify}");
+                setup.visibility(&mut stage(&device, &setup, &words))
+            });
+            let apart = with.iter().zip(&without).filter(|(a, b)| a.to_bits() != b.to_bits());
+            assert_eq!(apart.count(), 0, "{words}");
+        }
+    }
+}
+
 /// What the image held before does not show: each pixel is written through one view.
 #[test]
 fn every_pixel_is_served() {
