@@ -225,12 +225,8 @@ fn draw(
     let draws = |slices: u32| slices.div_ceil(SLICES_A_DRAW) as usize;
     let (of_frame, of_any) =
         (draws(settings.sizes(inputs.served).slices), draws(settings.most_slices()));
-    let rest = match *inputs.need {
-        Need::Yes(_) if of_frame < of_any => {
-            Need::No(graph.because("one view serves every receiver, and has fewer slices"))
-        }
-        need => need,
-    };
+    let fewer = graph.because("one view serves every receiver, and has fewer slices");
+    let rest = if inputs.need.is_yes() { Need::No(fewer) } else { *inputs.need };
     let raster = depth_layers::raster_of(drawn.layer);
     let mut images = Slabs::new();
     for nth in 0..of_any {
