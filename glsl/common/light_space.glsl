@@ -125,6 +125,10 @@ struct GBuffer {
     int flags;              // bit 0: masked; bits 1 to 3: how normals are lent; bit 4: see is_parallel; from bit 8 on: see
                             // is_served
     mat3 light_from_normal; // turns lent normals, where some are lent
+    vec4 own_at;            // the region of the passes' view: see is_within
+    vec4 own_slope;
+    vec4 finer_at;          // that of the next finer view
+    vec4 finer_slope;
 };
 // A storage buffer, since lavapipe compiles a shader again whenever a uniform buffer that its branches test is bound. In a
 // fragment shader whose derivatives follow from them they are uniforms: llvmpipe's helper invocations read no buffers.
@@ -134,11 +138,11 @@ layout(set = 0, binding = 19, std140) uniform Constants {
 layout(set = 0, binding = 19, std430) readonly buffer Constants {
 #endif
     GBuffer lent_gbuffer;
-    vec4 regions[16]; // two numbers of a view: see is_within
 #ifndef FORWARD
-    // The w of the nearest occluder before the receivers of a view from the light's centre. It is below 0 where it does
-    // not matter, as the view holds every ray between its receivers and the light.
-    float nearest_before[8];
+    // The w of the nearest occluder before the receivers of a view from the light's centre, of a view with an even number
+    // and of one with an odd number. It is below 0 where it does not matter, as the view holds every ray between its
+    // receivers and the light.
+    vec2 nearest_before;
 #endif
 };
 // Read once: some drivers check the bounds of the buffer at each reading.
@@ -285,17 +289,12 @@ const float WIDE = 5.0;
 // a view from the light's centre is its window, less what rays spread up to the nearest occluder. A wide view keeps half
 // of its window for what is so near to the light that more would be lost: the next wider view would have texels too large
 // for all else, and the centre sees what is so near otherwise than the light's rim anyway.
-bool is_within(int view, vec3 position)
+bool is_within(vec4 at, vec4 slope, float nearest, vec3 position)
 {
-    vec4 at = regions[2 * view];
-    vec4 slope = regions[2 * view + 1];
-    vec4 rim = at + slope * position.z;
-    float nearest = nearest_before[view];
-    if (nearest >= 0.0) {
-        vec4 half_window = 0.5 * abs(slope) / max(abs(at), 1.0e-30);
-        vec4 most = mix(vec4(3.0e38), half_window, greaterThanEqual(abs(slope), vec4(WIDE)));
-        rim = slope * position.z - at * max(min(vec4(nearest), most) * position.z - 1.0, 0.0);
-    }
+    vec4 half_window = 0.5 * abs(slope) / max(abs(at), 1.0e-30);
+    vec4 most = mix(vec4(3.0e38), half_window, greaterThanEqual(abs(slope), vec4(WIDE)));
+    vec4 spread = max(min(vec4(nearest), most) * position.z - 1.0, 0.0);
+    vec4 rim = slope * position.z + at * mix(-spread, vec4(1.0), bvec4(nearest < 0.0));
     return all(greaterThanEqual(position.xy, rim.xy)) && all(lessThanEqual(position.xy, rim.zw));
 }
 
@@ -305,27 +304,15 @@ bool is_widest_view()
     return (gbuffer.flags >> 8 & 15) == (gbuffer.flags >> 12 & 15);
 }
 
-// Whether the passes' view serves a point. Under a sun the finest view does whose region holds it, and the last view all
-// others. Before a lamp regions lie within each other, and the finest view does of those which, with all wider ones, hold
-// it: what lies before a finer view's receivers is known only once the next wider view's map is drawn.
+// Whether the passes' view serves a point: its region holds the point, and that of the next finer view does not. A lamp's
+// regions lie within each other. Under a sun a view may serve a point of a finer one that is not the next; the finer
+// view's passes come later, and write that point anew.
 bool is_served(vec3 position)
 {
     int view = gbuffer.flags >> 8 & 15;
-    int last = gbuffer.flags >> 12 & 15;
-    if (is_parallel()) {
-        for (int finer = 0; finer < view; ++finer) {
-            if (is_within(finer, position)) {
-                return false;
-            }
-        }
-        return view == last || is_within(view, position);
-    }
-    for (int wider = view; wider < last; ++wider) {
-        if (!is_within(wider, position)) {
-            return false;
-        }
-    }
-    return view == 0 || !is_within(view - 1, position);
+    vec2 nearest = (view & 1) == 0 ? nearest_before : nearest_before.yx;
+    return is_within(gbuffer.own_at, gbuffer.own_slope, nearest.x, position) &&
+           !is_within(gbuffer.finer_at, gbuffer.finer_slope, view == 0 ? -1.0 : nearest.y, position);
 }
 
 // The receiver that a pixel shows, without its normal.

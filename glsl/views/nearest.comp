@@ -3,7 +3,9 @@
 #extension GL_GOOGLE_include_directive : require
 #include "common/nearest.glsl"
 
-// Writes the largest w of all nodes among the constants of the passes over the pixels.
+// Writes the largest w of all nodes among the constants of the passes over the pixels: the nearest occluder before the
+// finer view's receivers. It is no less than what keeps the finer view's region within that of the map's own view, whose
+// own nearest occluder is there already; below 0 it is none.
 
 layout(local_size_x = 64) in;
 
@@ -13,6 +15,9 @@ layout(set = 0, binding = 1, std430) buffer Constants { float constants[]; };
 layout(push_constant) uniform Push {
     int map; // the map's side in texels
     int at;  // where the number is among the constants of the passes over the pixels
+    int own; // where that of the map's own view is
+    float most;  // the largest of the own view that counts, 1/m
+    float slack; // how much nearer than the finer view's the own view's may be
 } push;
 
 shared float largest[64];
@@ -31,6 +36,7 @@ void main()
         for (int i = 1; i < 64; ++i) {
             most = max(most, largest[i]);
         }
-        constants[push.at] = most;
+        float own = constants[push.own];
+        constants[push.at] = own < 0.0 ? most : max(most, min(own, push.most) - push.slack);
     }
 }

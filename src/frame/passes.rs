@@ -236,10 +236,6 @@ pub(super) fn build(
     let count = frame.occluders.len();
     let side = frame.occluders[0].map.side;
     let one = graph.because("one view serves every receiver");
-    if room.most_served() > 1 {
-        let several = if count > 1 { *shadowed } else { Need::No(one) };
-        Constants::write_regions(graph, constants, frame.occluders, &several);
-    }
     let layers = LightLayers {
         occluders: match (front, &frame.host_maps) {
             (Some(front), Some(camera)) => depth_layers::Occluders::Maps { front, back, camera },
@@ -288,6 +284,7 @@ pub(super) fn build(
         let map = &frame.occluders[view].map;
         let normals = frame.normals.as_ref().filter(|_| nth == 0);
         frame.constants.for_view(view, count).write(normals, graph, constants, shadowed);
+        Constants::write_regions(graph, constants, (view, frame.occluders), shadowed);
         if nth > 0 {
             graph.again(declared);
         }
@@ -298,7 +295,9 @@ pub(super) fn build(
             // A frame without a finer view declares the passes once, for the plan to name them.
             inner: nodes.filter(|_| finer.is_some() || nth == 0).map(|nodes| Inner {
                 view: finer.unwrap_or(0) as u32,
-                tangent: finer.map_or(0.0, |finer| frame.occluders[finer].region.tangent()),
+                tangents: finer.map_or([0.0; 2], |finer| {
+                    [finer, view].map(|one| frame.occluders[one].region.tangent())
+                }),
                 map,
                 half: frame.light.half_extents(),
                 nodes,

@@ -12,6 +12,9 @@ use crate::stages::visibility::{self, grid};
 use bytemuck::{Pod, Zeroable};
 use smallvec::smallvec;
 
+/// The tangents from which on a view keeps half of its window at least (`light_space.glsl`).
+const WIDE: f64 = 5.0;
+
 /// The push constants of `views/nodes.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -38,6 +41,12 @@ pub struct Nearest {
     pub map: i32,
     /// Where the number is among the constants, in floats.
     pub at: i32,
+    /// Where that of the map's own view is.
+    pub own: i32,
+    /// The largest of the own view that counts, 1/m.
+    pub most: f32,
+    /// How much nearer than the finer view's the own view's may be, 1/m.
+    pub slack: f32,
 }
 
 /// The next finer view than the one that a map is drawn for.
@@ -45,8 +54,8 @@ pub struct Nearest {
 pub(crate) struct Inner<'a> {
     /// The finer view's number.
     pub view: u32,
-    /// The largest u and v of the finer view's window.
-    pub tangent: f64,
+    /// The largest u and v of the finer view's window, and of the map's own view.
+    pub tangents: [f64; 2],
     /// The view of the map.
     pub map: &'a MapView,
     /// Half the light's width and height, m.
@@ -68,6 +77,11 @@ pub(crate) fn declare(graph: &mut Graph, side: u32) -> ResourceId {
 impl Inner<'_> {
     /// Adds the passes that find the nearest occluder before the receivers of the finer view from the map `front`.
     pub fn find(&self, graph: &mut Graph, front: ResourceId) {
+        // The finer view's rim, at a slope of `finer − half · nearest`, is nowhere beyond the own view's.
+        let [finer, own] = self.tangents;
+        let half = self.half[0].max(self.half[1]).max(1e-30);
+        let most = if own >= WIDE { 0.5 * own / half } else { f64::from(f32::MAX) };
+        let slack = (own - finer) / half;
         let map = self.map.side;
         let row = nodes_a_row(map);
         let nodes = self.nodes;
@@ -79,7 +93,7 @@ impl Inner<'_> {
                 texels_per_uv: self.map.texels_per_uv().map(|x| x as f32),
                 first: self.map.first().map(|x| x as f32),
                 half_light: self.half.map(|x| x as f32),
-                tangent: self.tangent as f32,
+                tangent: self.tangents[0] as f32,
                 inv_near: self.map.top() as f32,
                 map: map as i32,
             }),
@@ -93,7 +107,13 @@ impl Inner<'_> {
             "views.nearest",
             module!("views/nearest.comp"),
             [1, 1, 1],
-            Push::new(&Nearest { map: map as i32, at: visibility::nearest_at(self.view) as i32 }),
+            Push::new(&Nearest {
+                map: map as i32,
+                at: visibility::nearest_at(self.view) as i32,
+                own: visibility::nearest_at(self.view + 1) as i32,
+                most: most as f32,
+                slack: slack as f32,
+            }),
             smallvec![
                 Use::bound(0, nodes, Access::BufferReadCompute),
                 Use::bound(1, self.constants, Access::BufferUpdate),

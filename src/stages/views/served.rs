@@ -61,6 +61,12 @@ impl Region {
         slope: [0.0; 4],
     };
 
+    /// Nothing.
+    pub(crate) const NONE: Self = Self {
+        at: [f32::INFINITY, f32::INFINITY, f32::NEG_INFINITY, f32::NEG_INFINITY],
+        slope: [0.0; 4],
+    };
+
     /// The largest tangent to which it opens.
     pub(crate) fn tangent(&self) -> f64 {
         f64::from(self.slope[2])

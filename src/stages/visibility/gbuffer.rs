@@ -1,7 +1,6 @@
 //! The host's G-buffer as passes over its pixels read it.
 
 use crate::graph::{Access, Graph, Need, Pass, ResourceId, Use};
-use crate::knob::MOST_VIEWS;
 use crate::stages::views::{Region, Served};
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat4, DVec3};
@@ -11,15 +10,16 @@ const NORMAL_AT: u8 = 18;
 /// The binding of the constants.
 const CONSTANTS_AT: u8 = 19;
 
-/// Where the regions of the views begin in the buffer of constants, in bytes.
+/// Where the regions of the view and of the next finer one begin in the buffer of constants, in bytes.
 const REGIONS_AT: u64 = (size_of::<Constants>() + size_of::<NormalConstants>()) as u64;
 
-/// Where the nearest occluders before the views' receivers begin in it, in bytes.
-const NEAREST_AT: u64 = REGIONS_AT + (size_of::<Region>() * MOST_VIEWS as usize) as u64;
+/// Where the nearest occluders before the receivers of both begin in it, in bytes.
+const NEAREST_AT: u64 = REGIONS_AT + size_of::<[Region; 2]>() as u64;
 
-/// Where the nearest occluder before a view's receivers is in the buffer of constants, in floats.
+/// Where the nearest occluder before a view's receivers is in the buffer of constants, in floats. Passes read that of
+/// their own view and of the next finer one, so that every other view has the same place.
 pub(crate) fn nearest_at(view: u32) -> u32 {
-    (NEAREST_AT / 4) as u32 + view
+    (NEAREST_AT / 4) as u32 + view % 2
 }
 
 /// The host's G-buffer, as resources of the graph.
@@ -65,10 +65,15 @@ pub struct NormalConstants {
     pub light_from_normal: [[f32; 4]; 3],
 }
 
-/// The numbers behind [`NormalConstants`]: the regions of four views that share the pixels.
+/// The numbers behind [`NormalConstants`] as a frame's first view has them.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct RegionConstants([Region; 4]);
+struct RegionConstants {
+    /// The regions of the view and of the next finer one.
+    regions: [Region; 2],
+    /// Nothing is known yet of the nearest occluders before the receivers of both.
+    nearest: [f32; 2],
+}
 
 /// A plane (a, b, c, d) of the image, which holds what a column + b row + c depth + d is 0 of, to x, y and z of its
 /// normal in light space, on the viewer's side: the inverse's transpose, as for all planes, of which a normal takes
@@ -97,7 +102,7 @@ pub(crate) fn plane_to_normal(
 impl Constants {
     /// Adds the buffer that holds the constants.
     pub(crate) fn declare(graph: &mut Graph) -> ResourceId {
-        graph.buffer("gbuffer.constants", NEAREST_AT + 4 * u64::from(MOST_VIEWS))
+        graph.buffer("gbuffer.constants", NEAREST_AT + 8)
     }
 
     /// The constants for one of the views that share the pixels.
@@ -121,22 +126,22 @@ impl Constants {
         }
     }
 
-    /// Adds the passes that write the regions of several views that share the pixels.
+    /// Adds the pass that writes the regions of one of the views that share the pixels, the finest first, and of the next
+    /// finer one. The last view has all that others leave, and its passes are the first.
     pub(crate) fn write_regions(
         graph: &mut Graph,
         buffer: ResourceId,
-        views: &[Served],
+        (view, views): (usize, &[Served]),
         need: &Need,
     ) {
-        for (nth, four) in views.chunks(4).enumerate() {
-            let mut regions = RegionConstants([Region::ALL; 4]);
-            regions.0.iter_mut().zip(four).for_each(|(to, from)| *to = from.region);
-            let at = REGIONS_AT + (nth * size_of::<RegionConstants>()) as u64;
-            graph.push(Pass::constants("gbuffer.regions", buffer, at, &regions, need));
+        let name = "gbuffer.regions";
+        let finer = view.checked_sub(1).map_or(Region::NONE, |finer| views[finer].region);
+        if view + 1 < views.len() {
+            let regions = [views[view].region, finer];
+            return graph.push(Pass::constants(name, buffer, REGIONS_AT, &regions, need));
         }
-        // The nearest occluders are found on the device, where views from the light's centre want them.
-        let none = [-1.0f32; MOST_VIEWS as usize];
-        graph.push(Pass::constants("gbuffer.nearest", buffer, NEAREST_AT, &none, need));
+        let first = RegionConstants { regions: [Region::ALL, finer], nearest: [-1.0; 2] };
+        graph.push(Pass::constants(name, buffer, REGIONS_AT, &first, need));
     }
 }
 
