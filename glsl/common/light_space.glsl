@@ -304,15 +304,16 @@ bool is_widest_view()
     return (gbuffer.flags >> 8 & 15) == (gbuffer.flags >> 12 & 15);
 }
 
-// Whether the passes' view serves a point: its region holds the point, and that of the next finer view does not. A lamp's
+// Whether the passes' view serves a point: it is the only one, or its region holds the point, and that of the next finer view does not. A lamp's
 // regions lie within each other. Under a sun a view may serve a point of a finer one that is not the next; the finer
 // view's passes come later, and write that point anew.
 bool is_served(vec3 position)
 {
     int view = gbuffer.flags >> 8 & 15;
+    bool alone = (gbuffer.flags >> 12 & 15) == 0;
     vec2 nearest = (view & 1) == 0 ? nearest_before : nearest_before.yx;
-    return is_within(gbuffer.own_at, gbuffer.own_slope, nearest.x, position) &&
-           !is_within(gbuffer.finer_at, gbuffer.finer_slope, view == 0 ? -1.0 : nearest.y, position);
+    return alone || is_within(gbuffer.own_at, gbuffer.own_slope, nearest.x, position) &&
+                        !is_within(gbuffer.finer_at, gbuffer.finer_slope, view == 0 ? -1.0 : nearest.y, position);
 }
 
 // The receiver that a pixel shows, without its normal.

@@ -236,6 +236,7 @@ pub(super) fn build(
     let count = frame.occluders.len();
     let side = frame.occluders[0].map.side;
     let one = graph.because("one view serves every receiver");
+    let several = if count > 1 { *shadowed } else { Need::No(one) };
     let layers = LightLayers {
         occluders: match (front, &frame.host_maps) {
             (Some(front), Some(camera)) => depth_layers::Occluders::Maps { front, back, camera },
@@ -284,7 +285,9 @@ pub(super) fn build(
         let map = &frame.occluders[view].map;
         let normals = frame.normals.as_ref().filter(|_| nth == 0);
         frame.constants.for_view(view, count).write(normals, graph, constants, shadowed);
-        Constants::write_regions(graph, constants, (view, frame.occluders), shadowed);
+        if room.most_served() > 1 {
+            Constants::write_regions(graph, constants, (view, frame.occluders), &several);
+        }
         if nth > 0 {
             graph.again(declared);
         }

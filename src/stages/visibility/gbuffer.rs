@@ -65,15 +65,10 @@ pub struct NormalConstants {
     pub light_from_normal: [[f32; 4]; 3],
 }
 
-/// The numbers behind [`NormalConstants`] as a frame's first view has them.
+/// The numbers behind [`NormalConstants`]: the regions of the view and of the next finer one.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct RegionConstants {
-    /// The regions of the view and of the next finer one.
-    regions: [Region; 2],
-    /// Nothing is known yet of the nearest occluders before the receivers of both.
-    nearest: [f32; 2],
-}
+struct RegionConstants([Region; 2]);
 
 /// A plane (a, b, c, d) of the image, which holds what a column + b row + c depth + d is 0 of, to x, y and z of its
 /// normal in light space, on the viewer's side: the inverse's transpose, as for all planes, of which a normal takes
@@ -126,22 +121,23 @@ impl Constants {
         }
     }
 
-    /// Adds the pass that writes the regions of one of the views that share the pixels, the finest first, and of the next
-    /// finer one. The last view has all that others leave, and its passes are the first.
+    /// Adds the passes that write the regions of one of several views that share the pixels, the finest first, and of the
+    /// next finer one. The last view has all that others leave, and its passes are the first.
     pub(crate) fn write_regions(
         graph: &mut Graph,
         buffer: ResourceId,
         (view, views): (usize, &[Served]),
         need: &Need,
     ) {
-        let name = "gbuffer.regions";
+        let is_last = view + 1 == views.len();
+        let own = if is_last { Region::ALL } else { views[view].region };
         let finer = view.checked_sub(1).map_or(Region::NONE, |finer| views[finer].region);
-        if view + 1 < views.len() {
-            let regions = [views[view].region, finer];
-            return graph.push(Pass::constants(name, buffer, REGIONS_AT, &regions, need));
+        let regions = RegionConstants([own, finer]);
+        graph.push(Pass::constants("gbuffer.regions", buffer, REGIONS_AT, &regions, need));
+        if is_last {
+            // The nearest occluders are found on the device, where views from the light's centre want them.
+            graph.push(Pass::constants("gbuffer.nearest", buffer, NEAREST_AT, &[-1.0f32; 2], need));
         }
-        let first = RegionConstants { regions: [Region::ALL, finer], nearest: [-1.0; 2] };
-        graph.push(Pass::constants(name, buffer, REGIONS_AT, &first, need));
     }
 }
 
