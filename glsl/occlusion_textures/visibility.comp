@@ -83,8 +83,9 @@ bool is_lit(MapWindow m, vec3 position)
 // (`slice_weight`), or it would shadow itself. So the nearest faces are compared with the surface's plane, and those that
 // lie before it count for the share that their slice does not.
 
-// Taps a side of the kernel, which is a texel or two wide so close to the point that it is cast from.
-const int TAPS = 4;
+// Texels a side of the kernel that are looked at. So close to the point that it is cast from it is a texel or two wide, and
+// all of its texels count by their share of it, so that nothing jumps; of a wider one so many of its texels count alike.
+const int MOST_TEXELS = 5;
 
 // The slice of a face or point, from the depth that the map's projection stores for it.
 int slice_of(float stored)
@@ -98,29 +99,39 @@ vec4 planes_of(int slice)
     return texelFetch(placement, ivec2(BINS + slice, 0), 0);
 }
 
-// The part of the light that faces near a receiver hide. The kernel lies halfway to where the slice above its own begins.
+// The part of the light that faces near a receiver hide. The kernel lies halfway to where what the slices leave out begins:
+// that moves evenly from the begin of the slice above the receiver's own to that of its own, so that nothing jumps.
 float hidden_near(Receiver r, MapWindow m)
 {
     vec3 from_eye = r.position + vec3(0.0, 0.0, is_parallel() ? 0.0 : push.eye);
     float w = w_of(from_eye);
     MapPlane plane = map_plane_at(uv_of(from_eye, w), w, r.normal.xy, n_0_of(r.normal, from_eye),
                                   c_of(r.normal, from_eye), true, push.texels_per_uv, push.first, push.snap, 0.0);
-    float above = planes_of(max(slice_of(w / push.top) - 1, 0)).x;
+    int own = slice_of(w / push.top);
+    vec4 planes = planes_of(own);
+    float into = clamp((r.position.z - planes.x) / (planes.y - planes.x), 0.0, 1.0);
+    float above = mix(planes_of(max(own - 1, 0)).x, planes.x, into);
     vec4 kernel = kernel_of(m, r.position, mix(r.position.z, above, 0.5), push.half_light);
+    ivec2 first = ivec2(floor(kernel.xy));
+    ivec2 texels = ivec2(ceil(kernel.zw)) - first;
+    ivec2 count = min(texels, ivec2(MOST_TEXELS));
+    vec2 size = kernel.zw - kernel.xy;
     float hidden = 0.0;
-    for (int i = 0; i < TAPS * TAPS; ++i) {
-        vec2 share = (vec2(i % TAPS, i / TAPS) + 0.5) / float(TAPS);
-        ivec2 texel = ivec2(floor(mix(kernel.xy, kernel.zw, share)));
+    for (int i = 0; i < count.x * count.y; ++i) {
+        ivec2 nth = ivec2(i % count.x, i / count.x);
+        ivec2 texel = first + (2 * nth + 1) * texels / (2 * count);
         if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(push.map)))) {
             continue;
         }
         float stored = texelFetch(front_depth, texel, 0).x;
         if (in_front_of_filter(plane, vec2(texel) + 0.5, stored * push.top)) {
-            vec4 planes = planes_of(slice_of(stored));
-            hidden += 1.0 - slice_weight(r.position.z, planes.x, planes.y, true);
+            planes = planes_of(slice_of(stored));
+            vec2 within = min(kernel.zw, vec2(texel + 1)) - max(kernel.xy, vec2(texel));
+            vec2 share = mix(1.0 / vec2(count), within / size, equal(count, texels));
+            hidden += share.x * share.y * (1.0 - slice_weight(r.position.z, planes.x, planes.y, true));
         }
     }
-    return hidden / float(TAPS * TAPS);
+    return hidden;
 }
 #endif
 

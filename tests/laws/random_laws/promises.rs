@@ -2,7 +2,7 @@
 
 use antumbra::Technique;
 use antumbra::stages::depth_layers::Projection;
-use antumbra::techniques::occlusion_textures::{Combine, Placement};
+use antumbra::techniques::occlusion_textures::{Combine, Placement, Prefilter};
 use antumbra::techniques::soft_shadow_map::Accumulate;
 
 /// What is continuous changes by less when its inputs are rounded otherwise. A position 5 m away is rounded to
@@ -10,14 +10,21 @@ use antumbra::techniques::soft_shadow_map::Accumulate;
 pub const SMOOTH: f64 = 1.0 / 4096.0;
 
 /// The same of slices that are put where faces are: these are counted in 960 bins of the distance, and where a face's
-/// rounding takes it to the next one, planes of slices move by a bin or two, and with them the rims of all kernels.
+/// rounding takes it to the next one, planes of slices move by a bin or two, and with them the rims of all kernels. So it
+/// is where several views look at what is near: a face counts for the share that the slice of its bin does not.
 pub const A_BIN: f64 = 1.0 / 128.0;
 
 /// How much is rounding; where a gather may be off by its tolerance, it may be so on either side, as other texels
 /// make a node.
 pub fn smooth(settings: &Technique) -> f64 {
     match settings {
-        Technique::OcclusionTextures(s) if s.placement == Placement::Fitted => A_BIN,
+        Technique::OcclusionTextures(s)
+            if s.placement == Placement::Fitted
+                || (s.combine, s.prefilter) == (Combine::Correlated, Prefilter::Sat)
+                    && s.views > 1 =>
+        {
+            A_BIN
+        }
         Technique::SoftShadowMap(s) => SMOOTH + 2.0 * f64::from(s.tolerance),
         // A sample at the very edge of a triangle is seen or hidden.
         Technique::Traced(s) => 2.0 / f64::from(s.rays.min(s.samples.side().pow(2))),
