@@ -4,6 +4,7 @@ mod far;
 mod features;
 mod lights;
 mod models;
+mod posed;
 mod refusals;
 mod round_lights;
 mod sizes;

@@ -8,7 +8,9 @@ use super::json::{self, Root, at};
 /// part says nothing: nothing else bounds the count.
 const MAX_ZEROS: u64 = 1 << 16;
 
+const I8: u32 = 5120;
 const U8: u32 = 5121;
+const I16: u32 = 5122;
 const U16: u32 = 5123;
 const U32: u32 = 5125;
 const F32: u32 = 5126;
@@ -221,39 +223,79 @@ fn overlay<'a>(
     Ok(overlay)
 }
 
-/// Three 32-bit floats an element: positions or normals.
-pub(super) struct Vectors<'a>(View<'a>);
+/// What a number of a vector is written as.
+#[derive(Clone, Copy)]
+struct Component {
+    kind: u32,
+    size: usize,
+    /// Whether the largest integer stands for 1.
+    normalized: bool,
+}
 
-impl<'a> Vectors<'a> {
-    /// Opens `accessors[index]`; `owner` names the user in errors, as in `the POSITION of mesh "bunny"`.
+impl Component {
+    /// The number in the first of these bytes; 0 where there are none.
+    fn number(self, bytes: &[u8]) -> f32 {
+        let (number, most) = match (self.kind, bytes) {
+            (F32, &[a, b, c, d, ..]) => return f32::from_le_bytes([a, b, c, d]),
+            (I8, &[a, ..]) => (f32::from(a.cast_signed()), f32::from(i8::MAX)),
+            (U8, &[a, ..]) => (f32::from(a), f32::from(u8::MAX)),
+            (I16, &[a, b, ..]) => (f32::from(i16::from_le_bytes([a, b])), f32::from(i16::MAX)),
+            (U16, &[a, b, ..]) => (f32::from(u16::from_le_bytes([a, b])), f32::from(u16::MAX)),
+            _ => return 0.0,
+        };
+        // The least integer is one further from 0 than the largest, and means the same as its neighbour.
+        if self.normalized { (number / most).max(-1.0) } else { number }
+    }
+}
+
+/// `N` numbers an element: positions, normals, how instances stand, or with 16 numbers, matrices. They are 32-bit floats, or as an extension allows,
+/// integers of one or two bytes.
+pub(super) struct Vectors<'a, const N: usize> {
+    view: View<'a>,
+    component: Component,
+}
+
+impl<'a, const N: usize> Vectors<'a, N> {
+    /// Opens `accessors[index]`, whose numbers may be `integers` too; `owner` names the user in errors, as in
+    /// `the POSITION of mesh "bunny"`.
     pub fn open(
         root: &Root,
         buffers: &'a Buffers<'_>,
         index: usize,
+        integers: bool,
         owner: &dyn Fn() -> String,
     ) -> Result<Self, Problem> {
         let accessor = at(&root.accessors, index, "accessors", owner)?;
-        if (accessor.component_type, accessor.kind.as_str()) != (F32, "VEC3") {
+        let kind = accessor.component_type;
+        let size = match kind {
+            F32 => Some(4),
+            I8 | U8 if integers => Some(1),
+            I16 | U16 if integers => Some(2),
+            _ => None,
+        };
+        let form = if N == 16 { "MAT4".to_string() } else { format!("VEC{N}") };
+        let Some(size) = size.filter(|_| accessor.kind == form) else {
             return Err(format!(
-                "{} is in accessors[{index}], which holds {} of componentType {}; it must hold \
-                 VEC3 of 5126 (32-bit floats)",
+                "{} is in accessors[{index}], which holds {} of componentType {kind}; it must hold \
+                 {form} of 5126 (32-bit floats){}",
                 owner(),
                 crate::error::quoted(&accessor.kind),
-                accessor.component_type
+                if integers { ", or of 5120 to 5123 (integers)" } else { "" }
             ));
-        }
-        View::open(accessor, 12, buffers, &named(index, owner)).map(Self)
+        };
+        let component = Component { kind, size, normalized: accessor.normalized };
+        let view = View::open(accessor, N * size, buffers, &named(index, owner))?;
+        Ok(Self { view, component })
     }
 
     pub fn len(&self) -> usize {
-        self.0.count
+        self.view.count
     }
 
-    pub fn get(&self, i: u32) -> Option<[f32; 3]> {
-        let bytes = self.0.get(i as usize)?;
-        let component =
-            |k: usize| bytes.get(4 * k..)?.first_chunk().map(|b: &[u8; 4]| f32::from_le_bytes(*b));
-        Some([0, 1, 2].map(|k| component(k).unwrap_or(0.0)))
+    pub fn get(&self, i: usize) -> Option<[f32; N]> {
+        let bytes = self.view.get(i)?;
+        let at = |k: usize| bytes.get(self.component.size * k..).unwrap_or_default();
+        Some(std::array::from_fn(|k| self.component.number(at(k))))
     }
 }
 

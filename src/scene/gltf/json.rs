@@ -28,11 +28,15 @@ struct Asset {
 pub(super) struct Root {
     pub scene: Option<usize>,
     #[serde(default)]
+    pub extensions_used: Vec<String>,
+    #[serde(default)]
     pub scenes: Vec<SceneRoots>,
     #[serde(default)]
     pub nodes: Vec<Node>,
     #[serde(default)]
     pub meshes: Vec<Mesh>,
+    #[serde(default)]
+    pub skins: Vec<Skin>,
     #[serde(default)]
     pub cameras: Vec<Camera>,
     #[serde(default)]
@@ -62,9 +66,47 @@ pub(super) struct Node {
     pub rotation: Option<Box<[f64; 4]>>,
     pub scale: Option<Box<[f64; 3]>>,
     pub mesh: Option<usize>,
+    pub skin: Option<usize>,
+    /// How far each morph target of its mesh goes, instead of what the mesh says.
+    pub weights: Option<Box<[f64]>>,
     pub camera: Option<usize>,
+    pub extensions: Option<Box<NodeExtensions>>,
     #[serde(default)]
     pub extras: Value,
+}
+
+/// The extensions of a node that change what stands where.
+#[derive(Debug, Deserialize)]
+pub(super) struct NodeExtensions {
+    #[serde(rename = "KHR_node_visibility")]
+    pub visibility: Option<Visibility>,
+    #[serde(rename = "EXT_mesh_gpu_instancing")]
+    pub instancing: Option<Instancing>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Visibility {
+    #[serde(default = "yes")]
+    pub visible: bool,
+}
+
+fn yes() -> bool {
+    true
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Instancing {
+    #[serde(default)]
+    pub attributes: InstanceAttributes,
+}
+
+/// The accessors of how instances stand within their node.
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "UPPERCASE")]
+pub(super) struct InstanceAttributes {
+    pub translation: Option<usize>,
+    pub rotation: Option<usize>,
+    pub scale: Option<usize>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -72,6 +114,16 @@ pub(super) struct Mesh {
     pub name: Option<String>,
     #[serde(default)]
     pub primitives: Vec<Primitive>,
+    /// How far each morph target goes.
+    #[serde(default)]
+    pub weights: Vec<f64>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Skin {
+    pub inverse_bind_matrices: Option<usize>,
+    pub joints: Vec<usize>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -80,6 +132,8 @@ pub(super) struct Primitive {
     pub indices: Option<usize>,
     pub material: Option<usize>,
     pub mode: Option<u64>,
+    #[serde(default)]
+    pub targets: Vec<Target>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -87,6 +141,22 @@ pub(super) struct Attributes {
     #[serde(rename = "POSITION")]
     pub position: Option<usize>,
     #[serde(rename = "NORMAL")]
+    pub normal: Option<usize>,
+    #[serde(rename = "JOINTS_0")]
+    pub joints_0: Option<usize>,
+    #[serde(rename = "WEIGHTS_0")]
+    pub weights_0: Option<usize>,
+    #[serde(rename = "JOINTS_1")]
+    pub joints_1: Option<usize>,
+    #[serde(rename = "WEIGHTS_1")]
+    pub weights_1: Option<usize>,
+}
+
+/// What a morph target adds.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord)]
+#[serde(rename_all = "UPPERCASE")]
+pub(super) struct Target {
+    pub position: Option<usize>,
     pub normal: Option<usize>,
 }
 
@@ -133,6 +203,8 @@ pub(super) struct Accessor {
     #[serde(default)]
     pub byte_offset: u64,
     pub component_type: u32,
+    #[serde(default)]
+    pub normalized: bool,
     pub count: u64,
     #[serde(rename = "type")]
     pub kind: String,
@@ -183,6 +255,19 @@ pub(super) struct Buffer {
     pub byte_length: u64,
 }
 
+/// The extension by which positions and normals may be integers.
+const QUANTIZATION: &str = "KHR_mesh_quantization";
+
+/// The extensions that a file may require because they are read.
+const READ: [&str; 3] = [QUANTIZATION, "KHR_node_visibility", "EXT_mesh_gpu_instancing"];
+
+impl Root {
+    /// Whether positions and normals may be integers.
+    pub fn is_quantized(&self) -> bool {
+        self.extensions_used.iter().any(|name| name == QUANTIZATION)
+    }
+}
+
 /// The first letters of the extensions that a file may require because they change neither triangles nor transforms.
 const HARMLESS: [&str; 5] =
     ["KHR_lights_punctual", "KHR_materials_", "KHR_technique", "KHR_texture_", "EXT_texture_"];
@@ -197,14 +282,19 @@ pub(super) fn parse(text: &[u8]) -> Result<Root, Problem> {
         let version = crate::error::quoted(version);
         return Err(format!("its asset.version is {version}; only glTF 2.0 is read"));
     }
-    let unknown = |name: &&String| !HARMLESS.iter().any(|known| name.starts_with(known));
+    let unknown = |name: &&String| {
+        !READ.contains(&name.as_str()) && !HARMLESS.iter().any(|known| name.starts_with(known))
+    };
     if let Some(name) = head.extensions_required.iter().find(unknown) {
         return Err(format!(
             "it requires the extension {}, which is not supported; export it without",
             crate::error::quoted(name)
         ));
     }
-    from_json(text)
+    let mut root: Root = from_json(text)?;
+    // What is required is used, whether or not the file says so.
+    root.extensions_used.extend(head.extensions_required);
+    Ok(root)
 }
 
 fn from_json<'a, T: Deserialize<'a>>(text: &'a [u8]) -> Result<T, Problem> {

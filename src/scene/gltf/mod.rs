@@ -13,16 +13,20 @@
 mod accessor;
 mod buffers;
 mod extras;
+mod instances;
 mod json;
 mod nodes;
+mod pose;
 mod triangles;
 
+use self::pose::Pose;
 use super::{Bounds, Instance, Mesh, Scene};
 use crate::Error;
 use glam::{DMat4, DVec3};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::Path;
+use std::rc::Rc;
 
 /// A problem with a file, as a sentence that is shown after the file's name.
 type Problem = String;
@@ -38,8 +42,12 @@ const MAX_COORDINATE: f64 = 1e9;
 ///   A mesh that mixes single- and double-sided materials becomes two instances of one name.
 /// - Textures are not read. A mesh of whose materials one is not opaque (`alphaMode`) is marked
 ///   [`Mesh::cut_out`](super::Mesh::cut_out), and its triangles count whole.
+/// - Positions and normals may be integers (KHR_mesh_quantization). A node may place its mesh many times
+///   (EXT_mesh_gpu_instancing); all are instances of the node's name. Nodes that are not visible, and what is below them,
+///   have neither triangles nor lights (KHR_node_visibility).
 /// - Missing normals are flat, as glTF has it. Vertices that no triangle uses are left out.
-/// - Skinned and morphed meshes stand at rest, as their vertices say.
+/// - Morph targets go as far as the weights of the node or the mesh say. Skinned meshes stand where the joints do, of
+///   which a vertex has up to eight; their own nodes' transforms do not matter.
 /// - Area lights and roles come from the nodes' extras: `"area_light": "rectangle"` with `"width"`,
 ///   `"height"` (metres, before the node's scale; a height of 0 is a line along the node's X, a width of 0
 ///   one along its Y, and both shine along its −Z), `"area_light": "polygon"` with `"corners"` (3 to 16 of
@@ -101,10 +109,11 @@ fn parse(bytes: &[u8], folder: &Path) -> Result<Scene, Problem> {
     let (text, chunk) = buffers::split(bytes)?;
     let root = json::parse(text)?;
     let buffers = buffers::Buffers::new(&root, bytes.len(), chunk, folder);
-    let mut meshes = Meshes::new(&root, &buffers);
+    let (all_placed, worlds) = nodes::placed(&root)?;
+    let mut meshes = Meshes::new(&root, &buffers, &worlds);
+    let mut places = instances::Places::new(&root, &buffers);
     let mut scene = Scene::default();
 
-    let all_placed = nodes::placed(&root)?;
     for placed in &all_placed {
         let label = || nodes::label(&root, placed.node);
         let node = json::at(&root.nodes, placed.node, "nodes", label)?;
@@ -113,18 +122,20 @@ fn parse(bytes: &[u8], folder: &Path) -> Result<Scene, Problem> {
             scene.cameras.push((nodes::name(&root, placed.node), camera));
             scene.camera.get_or_insert(camera);
         }
-        let Some(index) = node.mesh else { continue };
+        let Some(index) = node.mesh.filter(|_| !placed.hidden) else { continue };
         let role = extras::role(&node.extras).map_err(|e| format!("{}: {e}", label()))?;
-        for mesh in meshes.find(index, label)? {
-            let world_from_mesh = placed.world * DMat4::from_translation(meshes.origins[mesh]);
+        let (found, skin) = meshes.find(index, placed.node)?;
+        // A skin's joints place its mesh, and its node does not (glTF 2.0 §3.7.3.3).
+        let worlds = match skin {
+            Some(origin) => vec![DMat4::from_translation(origin)],
+            None => places.of(placed)?,
+        };
+        let name = nodes::name_of_instances(&root, placed.node, worlds.len());
+        for (world, mesh) in worlds.iter().flat_map(|w| found.clone().map(move |mesh| (w, mesh))) {
+            let world_from_mesh = *world * DMat4::from_translation(meshes.origins[mesh]);
             within_reach(&world_from_mesh, &meshes.boxes[mesh])
                 .map_err(|e| format!("{}: {e}", label()))?;
-            scene.instances.push(Instance {
-                name: nodes::name(&root, placed.node),
-                mesh,
-                world_from_mesh,
-                role,
-            });
+            scene.instances.push(Instance { name: name.clone(), mesh, world_from_mesh, role });
         }
     }
     if scene.instances.is_empty() {
@@ -134,7 +145,7 @@ fn parse(bytes: &[u8], folder: &Path) -> Result<Scene, Problem> {
     let all = meshes.around(&scene.instances, |i| i.role.blocks());
     let all = all.or_else(|| meshes.around(&scene.instances, |_| true));
     let all = all.unwrap_or(Bounds { min: DVec3::ZERO, max: DVec3::ZERO });
-    for placed in &all_placed {
+    for placed in all_placed.iter().filter(|placed| !placed.hidden) {
         let node =
             json::at(&root.nodes, placed.node, "nodes", || nodes::label(&root, placed.node))?;
         let light = extras::light(&root, placed.node, &node.extras, &placed.world, &all)?;
@@ -157,10 +168,14 @@ struct Meshes<'a> {
     /// For each mesh of the file, the range of the scene's meshes that hold its triangles.
     of_index: Vec<Option<Range<usize>>>,
     of_shape: BTreeMap<triangles::Shape, Range<usize>>,
+    buffers: &'a buffers::Buffers<'a>,
+    /// The transforms of all nodes to the world, where there are skins.
+    worlds: &'a [DMat4],
+    skins: BTreeMap<usize, Rc<pose::Skin>>,
 }
 
 impl<'a> Meshes<'a> {
-    fn new(root: &'a json::Root, buffers: &'a buffers::Buffers<'a>) -> Self {
+    fn new(root: &'a json::Root, buffers: &'a buffers::Buffers<'a>, worlds: &'a [DMat4]) -> Self {
         Self {
             root,
             reader: triangles::Reader::new(root, buffers),
@@ -169,26 +184,36 @@ impl<'a> Meshes<'a> {
             origins: Vec::new(),
             of_index: vec![None; root.meshes.len()],
             of_shape: BTreeMap::new(),
+            buffers,
+            worlds,
+            skins: BTreeMap::new(),
         }
     }
 
-    /// The range of the scene's meshes that hold the triangles of `meshes[index]`; `owner` is the node that places it,
-    /// which errors name.
+    /// The range of the scene's meshes that hold the triangles of `meshes[index]` as `node` poses them, and where a skin
+    /// has placed them.
     fn find(
         &mut self,
         index: usize,
-        owner: impl FnOnce() -> String,
-    ) -> Result<Range<usize>, Problem> {
+        node: usize,
+    ) -> Result<(Range<usize>, Option<DVec3>), Problem> {
+        let owner = || nodes::label(self.root, node);
         json::at(&self.root.meshes, index, "meshes", owner)?;
-        if let Some(known) = &self.of_index[index] {
-            return Ok(known.clone());
+        let pose = Pose::of(self.root, node, index)?;
+        let skin = match pose.skin {
+            Some(skin) => Some(self.skin(skin, node)?),
+            None => None,
+        };
+        let origin = skin.as_ref().map(|skin| skin.origin);
+        if let Some(known) = self.of_index[index].as_ref().filter(|_| pose.is_at_rest()) {
+            return Ok((known.clone(), None));
         }
-        let shape = self.reader.shape(index)?;
+        let shape = self.reader.shape(index, &pose)?;
         let found = match self.of_shape.get(&shape) {
             Some(known) => known.clone(),
             None => {
                 let first = self.read.len();
-                for mut mesh in self.reader.read(index, &shape)? {
+                for mut mesh in self.reader.read(index, &shape, skin.as_ref())? {
                     self.origins.push(mesh.move_to_origin());
                     let [min, max] = mesh.bounds().map(|c| DVec3::from_array(c.map(f64::from)));
                     self.boxes.push(Bounds { min, max });
@@ -198,8 +223,22 @@ impl<'a> Meshes<'a> {
                 first..self.read.len()
             }
         };
-        self.of_index[index] = Some(found.clone());
-        Ok(found)
+        if pose.is_at_rest() {
+            self.of_index[index] = Some(found.clone());
+        }
+        Ok((found, origin))
+    }
+
+    /// `skins[index]`, which a node refers to; each is read once.
+    fn skin(&mut self, index: usize, node: usize) -> Result<Rc<pose::Skin>, Problem> {
+        if let Some(known) = self.skins.get(&index) {
+            return Ok(Rc::clone(known));
+        }
+        let owner = || nodes::label(self.root, node);
+        let skin = pose::Skin::read(self.root, self.buffers, self.worlds, index, &owner)?;
+        let skin = Rc::new(skin);
+        self.skins.insert(index, Rc::clone(&skin));
+        Ok(skin)
     }
 
     /// A box around the instances that `keep` accepts, in the world: around their meshes' boxes, for a

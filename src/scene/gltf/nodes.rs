@@ -13,6 +13,8 @@ pub(super) struct Placed {
     pub node: usize,
     /// The finite transform from the node's space to the world.
     pub world: DMat4,
+    /// Whether its meshes and lights are not to be seen, for its own sake or that of a node above.
+    pub hidden: bool,
 }
 
 /// The largest difference of a matrix's last row from 0, 0, 0, 1, for files that write it as f32.
@@ -26,6 +28,18 @@ pub(super) fn name(root: &Root, node: usize) -> String {
     }
 }
 
+/// The most characters of a name that more than one instance has: each keeps a copy.
+const SHARED_NAME: usize = 64;
+
+/// The name of a node's instances, of which there are `count`.
+pub(super) fn name_of_instances(root: &Root, node: usize, count: usize) -> String {
+    let name = name(root, node);
+    match name.char_indices().nth(SHARED_NAME) {
+        Some((end, _)) if count > 1 => format!("{}…", name.get(..end).unwrap_or_default()),
+        _ => name,
+    }
+}
+
 /// The node as a sentence names it: `node "lamp"`, or `node 3`.
 pub(super) fn label(root: &Root, node: usize) -> String {
     match root.nodes.get(node).and_then(|n| n.name.as_deref()) {
@@ -34,12 +48,14 @@ pub(super) fn label(root: &Root, node: usize) -> String {
     }
 }
 
-/// The nodes of the default scene that something stands at, with their transforms, in the order of the
-/// file.
-pub(super) fn placed(root: &Root) -> Result<Vec<Placed>, Problem> {
-    // The transforms of what has children. They wait in a list, not on the call stack, which a deep file
+/// The nodes of the default scene that something stands at, with their transforms, in the order of the file; and where
+/// there are skins, the transforms of all nodes to the world, which are 1 for those outside the scene.
+pub(super) fn placed(root: &Root) -> Result<(Vec<Placed>, Vec<DMat4>), Problem> {
+    let skinned = if root.skins.is_empty() { 0 } else { root.nodes.len() };
+    let mut worlds = vec![DMat4::IDENTITY; skinned];
+    // The transforms of what has children, and whether it is hidden. They wait in a list, not on the call stack, which a deep file
     // could exhaust.
-    let mut parents = vec![DMat4::IDENTITY];
+    let mut parents = vec![(DMat4::IDENTITY, false)];
     let mut waiting: Vec<(usize, usize)> = roots(root)?.into_iter().map(|node| (node, 0)).collect();
     let mut seen = vec![false; root.nodes.len()];
     let mut placed = Vec::new();
@@ -53,23 +69,29 @@ pub(super) fn placed(root: &Root) -> Result<Vec<Placed>, Problem> {
             ));
         }
         let local = local(root, index).map_err(|e| format!("{}: {e}", label(root, index)))?;
-        let world = parents[parent] * local;
+        let (above, hidden) = parents[parent];
+        let world = above * local;
+        let visibility = node.extensions.as_deref().and_then(|e| e.visibility.as_ref());
+        let hidden = hidden || visibility.is_some_and(|v| !v.visible);
         if !world.is_finite() {
             return Err(format!("{}: its transform is not finite", label(root, index)));
+        }
+        if let Some(of_node) = worlds.get_mut(index) {
+            *of_node = world;
         }
         for child in &node.children {
             at(&root.nodes, *child, "nodes", || label(root, index))?;
             waiting.push((*child, parents.len()));
         }
         if !node.children.is_empty() {
-            parents.push(world);
+            parents.push((world, hidden));
         }
         if node.mesh.is_some() || node.camera.is_some() || !node.extras.is_null() {
-            placed.push(Placed { node: index, world });
+            placed.push(Placed { node: index, world, hidden });
         }
     }
     placed.sort_by_key(|p| p.node);
-    Ok(placed)
+    Ok((placed, worlds))
 }
 
 fn roots(root: &Root) -> Result<Vec<usize>, Problem> {

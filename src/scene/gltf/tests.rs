@@ -3,6 +3,7 @@
 
 use super::buffers::Buffers;
 use super::json::Root;
+use super::pose::Pose;
 use super::triangles::Reader;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -36,8 +37,8 @@ fn triangles_beyond_the_limit_are_refused_before_they_are_made() {
     let buffers = Buffers::new(&root, 5 * most, Some(&bytes), Path::new("."));
     let read = |limit| {
         let mut reader = Reader::with_limit(&root, &buffers, limit);
-        let shape = reader.shape(0).unwrap();
-        reader.read(0, &shape)
+        let shape = reader.shape(0, &Pose::default()).unwrap();
+        reader.read(0, &shape, None)
     };
     let found = read(4 * most).unwrap_err();
     assert!(found.starts_with("mesh \"shape\", primitive 4: its triangles exceed"), "{found}");

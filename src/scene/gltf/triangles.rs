@@ -4,10 +4,12 @@ use super::Problem;
 use super::accessor::{Indices, Vectors};
 use super::buffers::Buffers;
 use super::json::{self, Root, at};
+use super::pose::{Pose, Posed, Posing, Skin};
 use crate::error::quoted;
 use crate::scene::Mesh;
 use glam::DVec3;
 use std::fmt;
+use std::rc::Rc;
 
 /// The most triangles that a file's meshes may hold together, each mesh counted once: 3 GB at worst.
 const MAX_TRIANGLES: usize = 1 << 25;
@@ -49,9 +51,13 @@ impl Topology {
 }
 
 /// The members of a mesh that its triangles depend on: meshes that differ in names and colors alone have one shape.
-pub(super) type Shape = Vec<PrimitiveShape>;
+#[derive(Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Shape {
+    primitives: Vec<PrimitiveShape>,
+    skin: Option<usize>,
+}
 
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct PrimitiveShape {
     mode: u64,
     position: Option<usize>,
@@ -59,6 +65,7 @@ pub(super) struct PrimitiveShape {
     indices: Option<usize>,
     double_sided: bool,
     cut_out: bool,
+    posing: Posing,
 }
 
 /// Reads meshes, within limits for all of them.
@@ -85,8 +92,8 @@ impl<'a> Reader<'a> {
         Self { root, buffers, limit: triangles, made: 0, placed: Placed::default() }
     }
 
-    /// The shape of `meshes[index]`, which does not depend on its name.
-    pub fn shape(&self, index: usize) -> Result<Shape, Problem> {
+    /// The shape of `meshes[index]` in a pose, which does not depend on its name.
+    pub fn shape(&self, index: usize, pose: &Pose) -> Result<Shape, Problem> {
         let mesh = at(&self.root.meshes, index, "meshes", || "a node".into())?;
         let shape = |(i, primitive): (usize, &json::Primitive)| {
             let material = match primitive.material {
@@ -103,25 +110,34 @@ impl<'a> Reader<'a> {
                 indices: primitive.indices,
                 double_sided: material.is_some_and(|m| m.double_sided),
                 cut_out: material.is_some_and(json::Material::cuts),
+                posing: Posing::of(pose, primitive),
             })
         };
-        mesh.primitives.iter().enumerate().map(shape).collect()
+        let primitives: Result<_, Problem> =
+            mesh.primitives.iter().enumerate().map(shape).collect();
+        Ok(Shape { primitives: primitives?, skin: pose.skin })
     }
 
     /// The triangles of `meshes[index]`, which looks like this: what is single-sided, then what is
     /// double-sided, either of which may be missing.
-    pub fn read(&mut self, index: usize, shape: &[PrimitiveShape]) -> Result<Vec<Mesh>, Problem> {
+    /// `skin` is that of its pose.
+    pub fn read(
+        &mut self,
+        index: usize,
+        shape: &Shape,
+        skin: Option<&Rc<Skin>>,
+    ) -> Result<Vec<Mesh>, Problem> {
         let mesh = at(&self.root.meshes, index, "meshes", || "a node".into())?;
         let mut sources = Vec::new();
-        for (i, primitive) in shape.iter().enumerate() {
-            sources.extend(self.open(primitive, Label::new(mesh, index, i))?);
+        for (i, primitive) in shape.primitives.iter().enumerate() {
+            sources.extend(self.open(primitive, skin, Label::new(mesh, index, i))?);
         }
         let mut sides = Vec::new();
         for double_sided in [false, true] {
-            let side = || sources.iter().filter(|s| s.shape.double_sided == double_sided);
+            let side = || sources.iter().filter(|s| s.double_sided == double_sided);
             let mut mesh = Mesh {
                 double_sided,
-                cut_out: side().any(|source| source.shape.cut_out),
+                cut_out: side().any(|source| source.cut_out),
                 ..Mesh::default()
             };
             mesh.indices.reserve_exact(side().map(|source| 3 * source.triangles).sum());
@@ -147,6 +163,7 @@ impl<'a> Reader<'a> {
     fn open(
         &mut self,
         shape: &PrimitiveShape,
+        skin: Option<&Rc<Skin>>,
         label: Label<'a>,
     ) -> Result<Option<Source<'a>>, Problem> {
         let topology = match shape.mode {
@@ -160,11 +177,11 @@ impl<'a> Reader<'a> {
         // Without positions there is nothing to draw (glTF 2.0 §3.7.2.1).
         let Some(position) = shape.position else { return Ok(None) };
         let owner = |what: &'static str| move || format!("the {what} of {label}");
-        let positions = Vectors::open(self.root, self.buffers, position, &owner("POSITION"))?;
-        let normals = match shape.normal {
-            Some(n) => Some(Vectors::open(self.root, self.buffers, n, &owner("NORMAL"))?),
-            None => None,
-        };
+        let integers = self.root.is_quantized();
+        let open =
+            |index, what| Vectors::open(self.root, self.buffers, index, integers, &owner(what));
+        let positions = open(position, "POSITION")?;
+        let normals = shape.normal.map(|n| open(n, "NORMAL")).transpose()?;
         if let Some(normals) = normals.as_ref().filter(|n| n.len() != positions.len()) {
             return Err(format!(
                 "{label} has {} normals for {} positions; it must have as many",
@@ -178,7 +195,11 @@ impl<'a> Reader<'a> {
         };
         let corners = indices.as_ref().map_or(positions.len(), Indices::len);
         let triangles = topology.triangles(corners).map_err(|e| format!("{label}: {e}"))?;
-        self.made = self.made.saturating_add(triangles);
+        let read = (self.root, self.buffers);
+        let posed = Posed::open(read, &shape.posing, skin, positions.len(), &label)?;
+        // What a target adds is read for each corner.
+        let work = triangles.saturating_mul(1 + posed.morphs.len());
+        self.made = self.made.saturating_add(work);
         if self.made > self.limit {
             return Err(format!(
                 "{label}: its triangles exceed the number that a scene may hold, {}",
@@ -193,7 +214,17 @@ impl<'a> Reader<'a> {
                 self.made
             ));
         }
-        Ok(Some(Source { shape: *shape, topology, triangles, positions, normals, indices, label }))
+        Ok(Some(Source {
+            double_sided: shape.double_sided,
+            cut_out: shape.cut_out,
+            topology,
+            triangles,
+            positions,
+            normals,
+            posed,
+            indices,
+            label,
+        }))
     }
 }
 
@@ -241,11 +272,13 @@ impl Default for Placed {
 
 /// A primitive's opened accessors.
 struct Source<'a> {
-    shape: PrimitiveShape,
+    double_sided: bool,
+    cut_out: bool,
     topology: Topology,
     triangles: usize,
-    positions: Vectors<'a>,
-    normals: Option<Vectors<'a>>,
+    positions: Vectors<'a, 3>,
+    normals: Option<Vectors<'a, 3>>,
+    posed: Posed<'a>,
     indices: Option<Indices<'a>>,
     label: Label<'a>,
 }
@@ -289,7 +322,7 @@ impl Source<'_> {
                 mesh.indices.push(before + (placed.next - first));
                 placed.next += 1;
                 mesh.positions.push(point);
-                mesh.normals.push(self.normal(vertex, flat));
+                mesh.normals.push(self.normal(vertex, flat)?);
             }
         }
         Ok(())
@@ -301,7 +334,7 @@ impl Source<'_> {
             Some(indices) => indices.get(corner),
             None => u32::try_from(corner).ok(),
         };
-        let point = vertex.and_then(|v| Some((v, self.positions.get(v)?)));
+        let point = vertex.and_then(|v| Some((v, self.positions.get(v as usize)?)));
         let Some((vertex, point)) = point else {
             return Err(format!(
                 "{}: its corner {corner} is vertex {}, and it has {} positions",
@@ -310,6 +343,8 @@ impl Source<'_> {
                 self.positions.len()
             ));
         };
+        let point = self.posed.position(vertex as usize, point);
+        let point = point.map_err(|e| format!("{}: {e}", self.label))?;
         if point.iter().all(|c| c.is_finite()) {
             Ok((vertex, point))
         } else {
@@ -321,13 +356,15 @@ impl Source<'_> {
     }
 
     /// The vertex's unit normal; its triangle's where the file has none, or one without direction.
-    fn normal(&self, vertex: u32, flat: DVec3) -> [f32; 3] {
-        let given = self.normals.as_ref().and_then(|normals| normals.get(vertex));
-        given
+    fn normal(&self, vertex: u32, flat: DVec3) -> Result<[f32; 3], Problem> {
+        let given = self.normals.as_ref().and_then(|normals| normals.get(vertex as usize));
+        let posed = given.map(|normal| self.posed.normal(vertex as usize, normal)).transpose();
+        let posed = posed.map_err(|e| format!("{}: {e}", self.label))?;
+        Ok(posed
             .and_then(|n| DVec3::from_array(n.map(f64::from)).try_normalize())
             .unwrap_or(flat)
             .as_vec3()
-            .to_array()
+            .to_array())
     }
 }
 

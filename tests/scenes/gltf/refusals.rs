@@ -227,7 +227,8 @@ fn cameras_that_see_nothing() {
 
 #[test]
 fn extensions_versions_and_files_that_are_something_else() {
-    for name in ["KHR_mesh_quantization", "KHR_draco_mesh_compression", "EXT_meshopt_compression"] {
+    for name in ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_mesh_quantization_2"]
+    {
         changed(
             "/extensionsRequired",
             json!([name]),
