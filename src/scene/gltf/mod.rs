@@ -19,7 +19,6 @@ mod nodes;
 mod pose;
 mod triangles;
 
-use self::pose::Pose;
 use super::{Bounds, Instance, Mesh, Scene};
 use crate::Error;
 use glam::{DMat4, DVec3};
@@ -199,7 +198,7 @@ impl<'a> Meshes<'a> {
     ) -> Result<(Range<usize>, Option<DVec3>), Problem> {
         let owner = || nodes::label(self.root, node);
         json::at(&self.root.meshes, index, "meshes", owner)?;
-        let pose = Pose::of(self.root, node, index)?;
+        let pose = pose::Pose::of(self.root, node, index)?;
         let skin = match pose.skin {
             Some(skin) => Some(self.skin(skin, node)?),
             None => None,

@@ -41,7 +41,7 @@ impl Pose {
     }
 }
 
-/// What of a pose a primitive's triangles depend on.
+/// The part of a pose that a primitive's triangles depend on.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Posing {
     /// The morph targets that add something, each with how far it goes, as the bits of an f32.
