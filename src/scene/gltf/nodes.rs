@@ -53,8 +53,8 @@ pub(super) fn label(root: &Root, node: usize) -> String {
 pub(super) fn placed(root: &Root) -> Result<(Vec<Placed>, Vec<DMat4>), Problem> {
     let skinned = if root.skins.is_empty() { 0 } else { root.nodes.len() };
     let mut worlds = vec![DMat4::IDENTITY; skinned];
-    // The transforms of what has children, and whether it is hidden. They wait in a list, not on the call stack, which a deep file
-    // could exhaust.
+    // The transforms of what has children, and whether it is hidden. They wait in a list, not on the call stack, which
+    // a deep file could exhaust.
     let mut parents = vec![(DMat4::IDENTITY, false)];
     let mut waiting: Vec<(usize, usize)> = roots(root)?.into_iter().map(|node| (node, 0)).collect();
     let mut seen = vec![false; root.nodes.len()];

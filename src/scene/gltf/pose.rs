@@ -212,7 +212,8 @@ impl<'a> Posed<'a> {
                         "its vertex {vertex} has a weight of {weight}; weights are 0 or more"
                     ));
                 }
-                let Some(matrix) = skin.joints.get(joint as usize) else {
+                let whole = joint >= 0.0 && joint.fract() == 0.0;
+                let Some(matrix) = skin.joints.get(joint as usize).filter(|_| whole) else {
                     return Err(format!(
                         "its vertex {vertex} hangs on joint {joint}, and the skin has {}",
                         skin.joints.len()
