@@ -109,19 +109,23 @@ fn worst_error(stage: &mut Stage, setup: &Setup, accumulate: &str, pairs: bool) 
     (worst, largest)
 }
 
-fn sides_of(device: &TestDevice) -> &'static [u32] {
+/// Sides of the maps: the largest in two scenes of far and near occluders.
+fn sides_of(device: &TestDevice, scene: &str) -> &'static [u32] {
     // SwiftShader blends 512² maps for minutes; the sums are the same additions.
     let fewer = device.leaves_to_others("sums of maps of 512²");
-    if fewer { &[64, 100, 256] } else { &[64, 100, 256, 512] }
+    if fewer || !["spheres", "foliage"].contains(&scene) {
+        &[64, 100, 256]
+    } else {
+        &[64, 100, 256, 512]
+    }
 }
 
 #[test]
 fn gathered_sums_are_the_exact_sums() {
     let device = device();
-    let sides = sides_of(&device);
     for (name, scene) in scenes() {
         let setup = Setup::ground(&scene, 2.2, 32);
-        for &side in sides {
+        for &side in sides_of(&device, name) {
             let words =
                 format!("receivers=map map={side} receiver_map={side} tolerance=0 sides=one");
             let mut stage = setup.stage(&device, &words);
@@ -221,10 +225,9 @@ fn the_tolerance_is_kept() {
 #[test]
 fn blended_sums_are_the_exact_sums() {
     let device = device();
-    let sides = sides_of(&device);
     for (name, scene) in scenes() {
         let setup = Setup::ground(&scene, 2.2, 32);
-        for &side in sides {
+        for &side in sides_of(&device, name) {
             let words =
                 format!("receivers=map map={side} receiver_map={side} sides=one accumulate=blend");
             let mut stage = setup.stage(&device, &words);

@@ -173,7 +173,7 @@ fn an_independent_version_of_the_published_formulas_says_the_same() {
         let (view, triangles) = in_light_space(&scene, 64);
         let mut truth = None;
         let of = |slices, fill, way| (slices, fill, way);
-        let ways = [4, 8, 16]
+        let ways = [4, 16]
             .into_iter()
             .flat_map(|slices| [false, true].map(|fill| of(slices, fill, Combine::Product)))
             .chain([of(16, false, Combine::Sum), of(16, false, Combine::Max)]);

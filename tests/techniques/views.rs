@@ -10,6 +10,9 @@ use glam::{DMat3, DMat4, DVec3};
 
 const EXTENT: [u32; 2] = [320, 240];
 
+/// The size where an image is compared with another of the same pixels.
+const SMALL: [u32; 2] = [160, 120];
+
 /// A stage whose node is lent the triangles' normals, so that errors are those of maps.
 fn stage(device: &antumbra_harness::HeadlessDevice, setup: &Setup, words: &str) -> Stage {
     let mut stage = setup.stage(device, words);
@@ -18,8 +21,12 @@ fn stage(device: &antumbra_harness::HeadlessDevice, setup: &Setup, words: &str) 
 }
 
 fn setup<'a>(scene: &'a Scene, camera: &Camera) -> Setup<'a> {
-    let view = View::of(camera, EXTENT);
-    Setup { scene, view, extent: EXTENT, window: None, occluders_seen: true }
+    of_extent(scene, camera, EXTENT)
+}
+
+fn of_extent<'a>(scene: &'a Scene, camera: &Camera, extent: [u32; 2]) -> Setup<'a> {
+    let view = View::of(camera, extent);
+    Setup { scene, view, extent, window: None, occluders_seen: true }
 }
 
 /// The room with a ceiling and all four walls, but for what the camera looks through.
@@ -128,7 +135,7 @@ fn tiles_change_nothing() {
     let (yard, eye) = yard();
     let room = closed_room();
     for (scene, camera) in [(&room, room::camera()), (&yard, eye)] {
-        let setup = setup(scene, &camera);
+        let setup = of_extent(scene, &camera, SMALL);
         for words in [
             "technique=soft-shadow-map map=64",
             "technique=pcss",
@@ -152,9 +159,9 @@ fn every_pixel_is_served() {
     let (yard, eye) = yard();
     let room = closed_room();
     for (scene, camera) in [(&room, room::camera()), (&yard, eye)] {
-        let setup = setup(scene, &camera);
+        let setup = of_extent(scene, &camera, SMALL);
         for (words, _) in ERRORS {
-            let words = format!("{words} views=4");
+            let words = format!("{} views=4", words.replace("map=256", "map=64"));
             let fresh = setup.visibility(&mut stage(&device, &setup, &words));
             let mut used = stage(&device, &setup, &words);
             // Another light's image is drawn into it first.
@@ -171,7 +178,7 @@ fn every_pixel_is_served() {
             let before = used.visibility().unwrap();
             let after = setup.visibility(&mut used);
             let changed = before.iter().zip(&after).filter(|(a, b)| a != b).count();
-            assert!(changed > 1000, "{words}: the other light changes {changed} pixels alone");
+            assert!(changed > 250, "{words}: the other light changes {changed} pixels alone");
             let differ = fresh.iter().zip(&after).filter(|(a, b)| a.to_bits() != b.to_bits());
             assert_eq!(differ.count(), 0, "{words}: what was there before shows");
         }
