@@ -114,10 +114,10 @@ struct Ray {
     float end;
 };
 
-// The most turns of a search; a ray that is not done by then passes. Mesa's CPU driver cuts an invocation off,
-// silently, after 65535 turns of all its loops together: 256 rays with their searches stay below, as no loop is within
-// a turn.
-const int TURNS = 250;
+// The most turns of all searches of a pixel; rays that are left then are not counted. Mesa's CPU driver cuts an invocation
+// off, silently, after 65535 turns of all its loops together: 256 rays with their searches stay below, as no loop is
+// within a turn. A ray that grazes a floor looks at nearly every texel on its way, up to three turns each.
+const int TURNS = 64000;
 
 // The most steps of a linear search, with room for halvings; a pixel of 256 rays that often halve in vain may still
 // come to Mesa's limit.
@@ -224,8 +224,8 @@ ivec2 texel_under(Lines l, float s)
 // Hierarchical search (Curtis 2009, algorithm 2): windows that cannot stop the ray are passed at once, and larger ones
 // tried next; otherwise smaller ones are. Two departures: the window lies ahead of the ray instead of around it, and a
 // window whose columns have a common height that the ray passes stops it without a look at its texels. `s` is where the
-// ray is stopped.
-bool search_hierarchical(Place p, Ray ray, Levels l, bool eye, out float s)
+// ray is stopped. `turns` is how many turns may be taken, and then how many are left; at 0 nothing is known of the ray.
+bool search_hierarchical(Place p, Ray ray, Levels l, bool eye, inout int turns, out float s)
 {
     Lines lines = lines_of(p, ray);
     s = ray.start;
@@ -233,7 +233,7 @@ bool search_hierarchical(Place p, Ray ray, Levels l, bool eye, out float s)
     int top = top_of(l);
     int level = clamp(l.kind == THIRDS ? log_three(int(max(extent.x, extent.y)) + 1)
                                        : log_above(int(max(extent.x, extent.y)) + 1), 0, top);
-    for (int turn = 0; turn < TURNS; ++turn) {
+    for (; turns > 0; --turns) {
         ivec2 texel = clamp(texel_under(lines, s), ivec2(0), ivec2(l.map - 1));
         int window = window_of(l, level);
         ivec2 node = node_at(l, level, l.kind == MIP ? texel : mix(texel - window + 1, texel, lines.up));

@@ -314,8 +314,10 @@ Found found_by_rays(ivec2 p, Receiver r, float start, float end)
     FRACTION emitted = FRACTION(0.0);
     FRACTION arrived = FRACTION(0.0);
 #endif
-    for (int i = 0; i < rays(); ++i) {
-        vec2 s = light_sample(sampling(), is_modern(), i, rays(), cell_rows(), uvec2(p), push.seed);
+    int turns = TURNS;
+    int counted = 0;
+    for (; counted < rays(); ++counted) {
+        vec2 s = light_sample(sampling(), is_modern(), counted, rays(), cell_rows(), uvec2(p), push.seed);
         vec2 q = 2.0 * s - 1.0;
         vec2 point = (is_disc() ? on_disc(q) : q) * push.half_light;
 #ifndef FORWARD
@@ -326,10 +328,12 @@ Found found_by_rays(ivec2 p, Receiver r, float start, float end)
 #ifdef TEXTURED
         // The texture covers the rectangle around a disc or a polygon.
         FRACTION weight = emitted_at(is_disc() || is_polygon() ? 0.5 + 0.5 * point / push.half_light : s);
-        emitted += weight;
 #endif
         // The pixel's own surface hides this point of the light; no ray is needed.
         if (r.blocks && dot(r.normal.xy, point) <= c_of(r.normal, r.position)) {
+#ifdef TEXTURED
+            emitted += weight;
+#endif
             continue;
         }
         Ray ray = over_map(place, Ray(slope_to(place, r.position.z, point), start, end), push.map);
@@ -337,11 +341,15 @@ Found found_by_rays(ivec2 p, Receiver r, float start, float end)
         if (ray.start <= ray.end) {
             float height;
             hit = is_linear() ? search_linear(place, ray, levels(), height)
-                              : search_hierarchical(place, ray, levels(), looks_from_eye(), height);
+                              : search_hierarchical(place, ray, levels(), looks_from_eye(), turns, height);
+            if (turns <= 0) {
+                break;
+            }
             found.hidden += int(hit);
             found.heights += hit ? height : 0.0;
         }
 #ifdef TEXTURED
+        emitted += weight;
         arrived += hit ? FRACTION(0.0) : weight;
 #endif
     }
@@ -350,7 +358,7 @@ Found found_by_rays(ivec2 p, Receiver r, float start, float end)
     FRACTION nothing = FRACTION(1.0e-30);
     found.visible = (arrived + nothing) / (emitted + nothing);
 #else
-    found.visible = FRACTION(max(above - float(found.hidden) / float(rays()), 0.0));
+    found.visible = FRACTION(max(above - float(found.hidden) / float(max(counted, 1)), 0.0));
 #endif
     return found;
 }

@@ -130,9 +130,10 @@ impl Machine {
                 Place p = Place(a.xy, a.z, vec2(a.w, b.x), b.y, b.z, b.w);\n\
                 Ray ray = over_map(p, Ray(c.xy, c.z, c.w), push.map);\n\
                 float s;\n\
+                int turns = TURNS;\n\
                 bool hit = ray.start <= ray.end && (push.linear != 0\n\
                     ? search_linear(p, ray, Levels(push.map, push.kind), s)\n\
-                    : search_hierarchical(p, ray, Levels(push.map, push.kind), false, s));\n\
+                    : search_hierarchical(p, ray, Levels(push.map, push.kind), false, turns, s));\n\
                 hits[i] = uint(hit);\n\
             }\n";
         let spirv = try_compile("search.comp", source).unwrap_or_else(|log| panic!("{log}"));

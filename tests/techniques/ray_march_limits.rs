@@ -1,9 +1,11 @@
 //! What ray marching makes of lights larger than any map's window, and of eyes inside occluders.
 
+use antumbra::RectangleLight;
 use antumbra::scene::{Camera, Lens, Mesh, Role, Scene, generate};
 use antumbra_harness::{GBuffer, View};
 use antumbra_tests::device;
 use antumbra_tests::measure::{Setup, percent, settings};
+use antumbra_tests::room;
 use glam::{DMat4, DVec3};
 
 /// Rays that go anywhere would leave this much of the mean |error| to these numbers of rays; those of the
@@ -46,6 +48,39 @@ fn a_light_larger_than_the_frustum_can_hold_is_seen_as_it_is() {
 
 /// What texels cut off an edge, in percentage points of all pixels.
 const ROOM: f64 = 0.05;
+
+/// Rays from a window along the floor look at nearly every texel on their way: with fine maps that is more than each of 256
+/// rays of an invocation may take, and those that are not looked at must not count as free.
+#[test]
+fn rays_along_a_floor_are_followed_to_their_end() {
+    let device = device();
+    let mut scene = room::room();
+    let window =
+        RectangleLight::facing(DVec3::new(1.95, 1.3, 0.2), DVec3::NEG_X, DVec3::Y, [1.0; 2]);
+    scene.lights[0].light = window.unwrap().into();
+    let extent = [96, 72];
+    let view = View::of(&room::camera(), extent);
+    let setup = Setup { scene: &scene, view, extent, window: None, occluders_seen: true };
+    let mut truth = None;
+    let mut errors = [
+        "map=256 rays=64",
+        "map=1024 rays=64",
+        "map=1024 rays=256",
+        "map=1024 rays=256 sampling=jittered",
+    ]
+    .map(|words| {
+        let mut stage = setup.stage(&device, &format!("technique=ray-march views=4 {words}"));
+        let image = setup.visibility(&mut stage);
+        let (truth, _) = truth.get_or_insert_with(|| setup.traced(&stage, 256));
+        let error = percent(truth, &image);
+        println!("{words}: {error:.2} %");
+        error
+    })
+    .into_iter();
+    let coarse = errors.next().unwrap();
+    // Measured 3.73 %, and with the fine maps 3.2 to 3.5; 4.06 to 4.29 where 250 turns end a search.
+    assert!(coarse < 5.0 && errors.all(|fine| fine <= coarse));
+}
 
 /// A closed box around the eye, the light outside: everything that the eye sees is in umbra. It is double-sided, or the
 /// eye would look through its backs.
