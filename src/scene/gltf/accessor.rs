@@ -136,6 +136,12 @@ impl<'a> View<'a> {
         owner: &dyn Fn() -> String,
     ) -> Result<Self, Problem> {
         let base = match accessor.buffer_view {
+            #[cfg(feature = "draco")]
+            _ if let Some(place) = accessor.compressed => {
+                let bytes = buffers.decoded(place, owner)?;
+                let (offset, count) = (accessor.byte_offset, accessor.count);
+                Some(Elements::new(bytes, None, size, offset, count, owner)?)
+            }
             Some(index) => {
                 let (bytes, stride) = buffers.view(index, owner)?;
                 let (offset, count) = (accessor.byte_offset, accessor.count);
@@ -143,7 +149,7 @@ impl<'a> View<'a> {
             }
             None if accessor.sparse.is_none() => {
                 return Err(format!(
-                    "{} has no bufferView (compressed meshes are not supported)",
+                    "{} has no bufferView, and no compression that is read",
                     owner()
                 ));
             }
@@ -266,7 +272,8 @@ impl<'a, const N: usize> Vectors<'a, N> {
         owner: &dyn Fn() -> String,
     ) -> Result<Self, Problem> {
         let accessor = at(&root.accessors, index, "accessors", owner)?;
-        let kind = accessor.component_type;
+        // What is decompressed are floats.
+        let kind = if accessor.compressed.is_some() { F32 } else { accessor.component_type };
         let size = match kind {
             F32 => Some(4),
             I8 | U8 if integers => Some(1),
@@ -311,7 +318,9 @@ impl<'a> Indices<'a> {
         owner: &dyn Fn() -> String,
     ) -> Result<Self, Problem> {
         let accessor = at(&root.accessors, index, "accessors", owner)?;
-        let size = integer_size(accessor.component_type).filter(|_| accessor.kind == "SCALAR");
+        // What is decompressed are integers of four bytes.
+        let kind = if accessor.compressed.is_some() { U32 } else { accessor.component_type };
+        let size = integer_size(kind).filter(|_| accessor.kind == "SCALAR");
         let size = size.ok_or_else(|| {
             format!(
                 "{} are in accessors[{index}], which holds {} of componentType {}; it must hold \

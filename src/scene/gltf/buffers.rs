@@ -84,6 +84,14 @@ pub(super) struct Buffers<'a> {
     files: RefCell<BTreeMap<PathBuf, Rc<Vec<u8>>>>,
     /// The bytes of all `files` together.
     total: Cell<u64>,
+    /// The elements that were decompressed, by their place among those of the root.
+    #[cfg(feature = "draco")]
+    decoded: Vec<OnceCell<Vec<u8>>>,
+    /// The Draco streams that were decoded, by their buffer views.
+    #[cfg(feature = "draco")]
+    streams: RefCell<BTreeMap<usize, Rc<draco_core::Mesh>>>,
+    /// The bytes that they decoded to.
+    unpacked: Cell<u64>,
     /// The scene's own file, data URIs and all.
     own: usize,
 }
@@ -92,11 +100,29 @@ impl<'a> Buffers<'a> {
     /// The buffers of a file of `own` bytes.
     pub fn new(root: &'a Root, own: usize, chunk: Option<&'a [u8]>, folder: &'a Path) -> Self {
         let read = root.buffers.iter().map(|_| OnceCell::new()).collect();
-        Self { root, chunk, folder, read, files: RefCell::default(), total: Cell::new(0), own }
+        Self {
+            root,
+            chunk,
+            folder,
+            read,
+            files: RefCell::default(),
+            total: Cell::new(0),
+            #[cfg(feature = "draco")]
+            decoded: root.compressed.iter().map(|_| OnceCell::new()).collect(),
+            #[cfg(feature = "draco")]
+            streams: RefCell::default(),
+            unpacked: Cell::new(0),
+            own,
+        }
     }
 
-    /// The number of bytes in memory: the scene file's and those of the buffer files read so far.
+    /// The number of bytes in memory: the scene file's, those of the buffer files read so far, and what their compressed
+    /// parts decoded to.
     pub fn held(&self) -> u64 {
+        self.files_hold().saturating_add(self.unpacked.get())
+    }
+
+    fn files_hold(&self) -> u64 {
         (self.own as u64).saturating_add(self.total.get())
     }
 
@@ -121,6 +147,54 @@ impl<'a> Buffers<'a> {
             )
         })?;
         Ok((bytes, view.byte_stride))
+    }
+
+    /// The elements of an accessor that has none of its own, by its place among those of the root.
+    #[cfg(feature = "draco")]
+    pub fn decoded(&self, place: usize, owner: &dyn Fn() -> String) -> Result<&[u8], Problem> {
+        let of = at(&self.root.compressed, place, "compressed parts", owner)?;
+        let cell = at(&self.decoded, place, "compressed parts", owner)?;
+        if let Some(bytes) = cell.get() {
+            return Ok(bytes);
+        }
+        let part = self.stream(of.view, owner).and_then(|mesh| {
+            self.take_room(super::compressed::size(&mesh, of.part))?;
+            super::compressed::part(&mesh, of)
+        });
+        let part = part.map_err(|problem| format!("{}: {problem}", owner()))?;
+        Ok(cell.get_or_init(|| part))
+    }
+
+    /// The Draco stream of a buffer view.
+    #[cfg(feature = "draco")]
+    fn stream(
+        &self,
+        view: usize,
+        owner: &dyn Fn() -> String,
+    ) -> Result<Rc<draco_core::Mesh>, Problem> {
+        if let Some(known) = self.streams.borrow().get(&view) {
+            return Ok(Rc::clone(known));
+        }
+        let (bytes, _) = self.view(view, owner)?;
+        let left = super::compressed::room(self.files_hold()).saturating_sub(self.unpacked.get());
+        let mesh = Rc::new(super::compressed::decoded(bytes, left)?);
+        self.take_room(super::compressed::whole(&mesh))?;
+        self.streams.borrow_mut().insert(view, Rc::clone(&mesh));
+        Ok(mesh)
+    }
+
+    /// Counts bytes that were compressed.
+    #[cfg(feature = "draco")]
+    fn take_room(&self, bytes: u64) -> Result<(), Problem> {
+        let (room, taken) = (super::compressed::room(self.files_hold()), self.unpacked.get());
+        let all = taken.saturating_add(bytes);
+        if all > room {
+            return Err(format!(
+                "with it the file's compressed parts hold more than {room} bytes, 16 MiB and 64 for each byte of the file"
+            ));
+        }
+        self.unpacked.set(all);
+        Ok(())
     }
 
     fn buffer(&self, index: usize, view: usize) -> Result<&[u8], Problem> {

@@ -47,6 +47,20 @@ pub(super) struct Root {
     pub buffer_views: Vec<BufferView>,
     #[serde(default)]
     pub buffers: Vec<Buffer>,
+    /// Where the elements of accessors are that have no bytes of their own.
+    #[serde(skip)]
+    pub compressed: Vec<Compressed>,
+}
+
+/// Where in compressed bytes an accessor's elements are.
+#[derive(Debug)]
+pub(super) struct Compressed {
+    /// The buffer view of the compressed bytes.
+    pub view: usize,
+    /// The attribute among those of a mesh, or its triangles' corners.
+    pub part: Option<u32>,
+    /// Whether the largest integer stands for 1.
+    pub normalized: bool,
 }
 
 #[derive(Debug, Deserialize)]
@@ -134,6 +148,22 @@ pub(super) struct Primitive {
     pub mode: Option<u64>,
     #[serde(default)]
     pub targets: Vec<Target>,
+    pub extensions: Option<Box<PrimitiveExtensions>>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct PrimitiveExtensions {
+    #[serde(rename = "KHR_draco_mesh_compression")]
+    pub draco: Option<Draco>,
+}
+
+/// A primitive whose elements a Draco stream holds.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Draco {
+    pub buffer_view: usize,
+    /// The stream's attributes, by the numbers that it gives them.
+    pub attributes: Attributes,
 }
 
 #[derive(Debug, Deserialize)]
@@ -150,6 +180,14 @@ pub(super) struct Attributes {
     pub joints_1: Option<usize>,
     #[serde(rename = "WEIGHTS_1")]
     pub weights_1: Option<usize>,
+}
+
+impl Attributes {
+    /// Each of them, always in the same order.
+    pub fn all(&self) -> [Option<usize>; 6] {
+        let Self { position, normal, joints_0, weights_0, joints_1, weights_1 } = *self;
+        [position, normal, joints_0, weights_0, joints_1, weights_1]
+    }
 }
 
 /// What a morph target adds.
@@ -209,6 +247,9 @@ pub(super) struct Accessor {
     #[serde(rename = "type")]
     pub kind: String,
     pub sparse: Option<Sparse>,
+    /// The place among [`Root::compressed`] that says where its elements are.
+    #[serde(skip)]
+    pub compressed: Option<usize>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -259,7 +300,16 @@ pub(super) struct Buffer {
 const QUANTIZATION: &str = "KHR_mesh_quantization";
 
 /// The extensions that a file may require because they are read.
-const READ: [&str; 3] = [QUANTIZATION, "KHR_node_visibility", "EXT_mesh_gpu_instancing"];
+const READ: &[&str] = &[
+    QUANTIZATION,
+    "KHR_node_visibility",
+    "EXT_mesh_gpu_instancing",
+    #[cfg(feature = "draco")]
+    DRACO,
+];
+
+/// The extension by which a primitive is a Draco stream.
+const DRACO: &str = "KHR_draco_mesh_compression";
 
 impl Root {
     /// Whether positions and normals may be integers.
@@ -286,14 +336,17 @@ pub(super) fn parse(text: &[u8]) -> Result<Root, Problem> {
         !READ.contains(&name.as_str()) && !HARMLESS.iter().any(|known| name.starts_with(known))
     };
     if let Some(name) = head.extensions_required.iter().find(unknown) {
-        return Err(format!(
-            "it requires the extension {}, which is not supported; export it without",
-            crate::error::quoted(name)
-        ));
+        let how = match name.as_str() {
+            DRACO => "which the crate's feature draco reads; build with it, or export it without",
+            _ => "which is not supported; export it without",
+        };
+        return Err(format!("it requires the extension {}, {how}", crate::error::quoted(name)));
     }
     let mut root: Root = from_json(text)?;
     // What is required is used, whether or not the file says so.
     root.extensions_used.extend(head.extensions_required);
+    #[cfg(feature = "draco")]
+    super::compressed::mark(&mut root);
     Ok(root)
 }
 

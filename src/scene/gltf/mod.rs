@@ -12,6 +12,8 @@
 
 mod accessor;
 mod buffers;
+#[cfg(feature = "draco")]
+mod compressed;
 mod extras;
 mod instances;
 mod json;
