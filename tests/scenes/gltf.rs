@@ -1,5 +1,6 @@
 //! glTF files built in code, one for each thing the loader must read or refuse.
 
+mod draco;
 mod far;
 mod features;
 mod lights;

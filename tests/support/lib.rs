@@ -8,6 +8,7 @@ pub mod bench;
 pub mod compare;
 pub mod compile;
 pub mod device;
+pub mod draco;
 pub mod example;
 pub mod function;
 pub mod headers;

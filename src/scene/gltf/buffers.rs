@@ -161,7 +161,8 @@ impl<'a> Buffers<'a> {
             self.take_room(super::compressed::size(&mesh, of.part))?;
             super::compressed::part(&mesh, of)
         });
-        let part = part.map_err(|problem| format!("{}: {problem}", owner()))?;
+        let part =
+            part.map_err(|problem| format!("{} cannot be decompressed: {problem}", owner()))?;
         Ok(cell.get_or_init(|| part))
     }
 

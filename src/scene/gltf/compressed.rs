@@ -50,7 +50,7 @@ pub(super) fn decoded(stream: &[u8], room: u64) -> Result<Mesh, Problem> {
     let mut buffer = DecoderBuffer::new(stream).with_limits(limits);
     MeshDecoder::new()
         .decode(&mut buffer, &mut mesh)
-        .map_err(|e| format!("its Draco stream cannot be decoded: {e}"))?;
+        .map_err(|e| format!("its Draco stream is wrong: {e}"))?;
     Ok(mesh)
 }
 

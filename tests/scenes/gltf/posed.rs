@@ -4,15 +4,20 @@ use super::*;
 use std::f64::consts::FRAC_1_SQRT_2;
 
 /// The corners of all triangles in the world.
-fn points(scene: &Scene) -> Vec<DVec3> {
+pub fn points(scene: &Scene) -> Vec<DVec3> {
     corners(scene).concat()
 }
 
 #[track_caller]
 fn assert_close(found: &[DVec3], expected: &[DVec3]) {
+    assert_close_by(found, expected, 1e-6);
+}
+
+#[track_caller]
+pub fn assert_close_by(found: &[DVec3], expected: &[DVec3], within: f64) {
     assert_eq!(found.len(), expected.len());
     for (nth, (a, b)) in found.iter().zip(expected).enumerate() {
-        assert!((*a - *b).length() < 1e-6, "corner {nth}: {a} instead of {b}");
+        assert!((*a - *b).length() < within, "corner {nth}: {a} instead of {b}");
     }
 }
 
