@@ -5,7 +5,7 @@
 //! to is held to what [`room`] says.
 
 use super::Problem;
-use super::json::{Compressed, Root};
+use super::json::{Compressed, Root, shortened};
 use draco_core::{DataType, DecodeLimits, DecoderBuffer, FaceIndex, Mesh, MeshDecoder};
 
 /// What compressed parts may decode to together: so many bytes, and as many for each byte of the file.
@@ -50,8 +50,15 @@ pub(super) fn decoded(stream: &[u8], room: u64) -> Result<Mesh, Problem> {
     let mut buffer = DecoderBuffer::new(stream).with_limits(limits);
     MeshDecoder::new()
         .decode(&mut buffer, &mut mesh)
-        .map_err(|e| format!("its Draco stream is wrong: {e}"))?;
+        .map_err(|e| format!("its Draco stream is wrong: {}", in_a_line(&e.to_string())))?;
     Ok(mesh)
+}
+
+/// A decoder's message as a part of a sentence.
+fn in_a_line(message: &str) -> String {
+    let words: Vec<&str> = message.split(|c: char| c.is_whitespace() || c.is_control()).collect();
+    let words = words.into_iter().filter(|word| !word.is_empty());
+    shortened(&words.collect::<Vec<_>>().join(" "))
 }
 
 /// The bytes of all of a mesh.

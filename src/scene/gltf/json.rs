@@ -359,8 +359,8 @@ fn from_json<'a, T: Deserialize<'a>>(text: &'a [u8]) -> Result<T, Problem> {
 /// The numbers of characters that a sentence shows of the beginning and of the end of a JSON parser's error.
 const SHOWN: [usize; 2] = [100, 60];
 
-/// The parser's error without the middle of a long string that it quotes; the position in the file is at its end.
-fn shortened(message: &str) -> String {
+/// A parser's error without the middle of a long string that it quotes; the position in the file is at its end.
+pub(super) fn shortened(message: &str) -> String {
     let length = message.chars().count();
     let [first, last] = SHOWN;
     if length <= first + last {

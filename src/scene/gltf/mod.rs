@@ -47,6 +47,8 @@ const MAX_COORDINATE: f64 = 1e9;
 ///   (EXT_mesh_gpu_instancing); all are instances of the node's name. Nodes that are not visible, and what is below them,
 ///   have neither triangles nor lights (KHR_node_visibility).
 /// - Missing normals are flat, as glTF has it. Vertices that no triangle uses are left out.
+/// - Meshes may be compressed by Draco (KHR_draco_mesh_compression), with the crate's feature `draco`. Those that have
+///   their elements without compression too are read from these.
 /// - Morph targets go as far as the weights of the node or the mesh say. Skinned meshes stand where the joints do, of
 ///   which a vertex has up to eight; their own nodes' transforms do not matter.
 /// - Area lights and roles come from the nodes' extras: `"area_light": "rectangle"` with `"width"`,
@@ -67,9 +69,10 @@ const MAX_COORDINATE: f64 = 1e9;
 /// Instances and lights stand in the order of the file's nodes.
 ///
 /// The file may be a stranger's. Memory is at most 256 bytes for each byte of the file and the files of
-/// its buffers, and 1 MiB; time grows with them and no faster; the stack is of no account, 128 KiB will
+/// its buffers, and 1 MiB; where meshes are compressed, twice that and 64 MiB, since what they decode to is held to
+/// 64 bytes for each byte and 16 MiB. Time grows with them and no faster; the stack is of no account, 128 KiB will
 /// do. So that this holds, all meshes together have no more triangles than there are bytes, of which real
-/// ones take twenty. What instances draw together is a product, which nothing bounds: [`Scene::triangles`]
+/// ones take twenty, and what is compressed counts as it decodes. What instances draw together is a product, which nothing bounds: [`Scene::triangles`]
 /// counts it before anything is drawn.
 ///
 /// # Errors

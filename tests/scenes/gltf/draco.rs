@@ -186,6 +186,39 @@ fn a_stream_that_unfolds_to_more_than_it_may_is_refused() {
     );
 }
 
+/// The file that `tests/files/untrusted.rs` and the fuzzer break; `ANTUMBRA_WRITE_SEED=1` writes it anew.
+#[test]
+fn the_fuzzers_seed_loads() {
+    let path = antumbra_tests::example::root().join("fuzz/seeds/draco.glb");
+    if std::env::var("ANTUMBRA_WRITE_SEED").is_ok() {
+        let mut file = File::default();
+        let mut primitives = Vec::new();
+        // Each kind of stream: each has its own bytes, accessors and triangles.
+        for speed in [0, 5, 10] {
+            let (points, triangles) = grid(4);
+            let (points, up) = (floats(&points), floats(&vec![[0.0, 0.6, 0.8]; points.len()]));
+            let attributes = [
+                of_floats(GeometryAttributeType::Position, &points),
+                of_floats(GeometryAttributeType::Normal, &up),
+            ];
+            let stream = compressed(&attributes, &triangles, speed);
+            let (one, made) = file_of(&stream, &[POSITION, NORMAL], [16, 54]);
+            let view = file.view(&stream);
+            let accessors = file.accessors.len();
+            file.accessors.extend(one.accessors);
+            let mut primitive = made[0].clone();
+            primitive["indices"] = json!(accessors + 2);
+            primitive["attributes"] = json!({"POSITION": accessors, "NORMAL": accessors + 1});
+            primitive["extensions"]["KHR_draco_mesh_compression"]["bufferView"] = json!(view);
+            primitives.push(primitive);
+        }
+        let root = file.root(&Value::Array(primitives), required());
+        std::fs::write(&path, glb(&root, &file.bin)).unwrap();
+    }
+    let scene = from_gltf(&path).unwrap();
+    assert_eq!(points(&scene).len(), 3 * 54);
+}
+
 /// A model that the official encoder made: as many triangles as its accessors say, in the boxes that they say.
 #[test]
 fn a_model_of_the_official_encoder_is_whole() {
