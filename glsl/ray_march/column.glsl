@@ -224,7 +224,7 @@ ivec2 texel_under(Lines l, float s)
 // Hierarchical search (Curtis 2009, algorithm 2): windows that cannot stop the ray are passed at once, and larger ones
 // tried next; otherwise smaller ones are. Two departures: the window lies ahead of the ray instead of around it, and a
 // window whose columns have a common height that the ray passes stops it without a look at its texels. `s` is where the
-// ray is stopped. `turns` is how many turns may be taken, and then how many are left; at 0 nothing is known of the ray.
+// ray is stopped. `turns` is how many turns it may have, and then how many are left; at 0 nothing is known of the ray.
 bool search_hierarchical(Place p, Ray ray, Levels l, bool eye, inout int turns, out float s)
 {
     Lines lines = lines_of(p, ray);

@@ -87,6 +87,16 @@ fn integer(bytes: &[u8]) -> Option<u32> {
     }
 }
 
+/// What an accessor's numbers are: `decoded` where they were compressed.
+fn component_of(accessor: &json::Accessor, decoded: u32) -> u32 {
+    #[cfg(feature = "draco")]
+    if accessor.compressed.is_some() {
+        return decoded;
+    }
+    let _ = decoded;
+    accessor.component_type
+}
+
 fn integer_size(component: u32) -> Option<usize> {
     match component {
         U8 => Some(1),
@@ -272,8 +282,7 @@ impl<'a, const N: usize> Vectors<'a, N> {
         owner: &dyn Fn() -> String,
     ) -> Result<Self, Problem> {
         let accessor = at(&root.accessors, index, "accessors", owner)?;
-        // What is decompressed are floats.
-        let kind = if accessor.compressed.is_some() { F32 } else { accessor.component_type };
+        let kind = component_of(accessor, F32);
         let size = match kind {
             F32 => Some(4),
             I8 | U8 if integers => Some(1),
@@ -318,9 +327,7 @@ impl<'a> Indices<'a> {
         owner: &dyn Fn() -> String,
     ) -> Result<Self, Problem> {
         let accessor = at(&root.accessors, index, "accessors", owner)?;
-        // What is decompressed are integers of four bytes.
-        let kind = if accessor.compressed.is_some() { U32 } else { accessor.component_type };
-        let size = integer_size(kind).filter(|_| accessor.kind == "SCALAR");
+        let size = integer_size(component_of(accessor, U32)).filter(|_| accessor.kind == "SCALAR");
         let size = size.ok_or_else(|| {
             format!(
                 "{} are in accessors[{index}], which holds {} of componentType {}; it must hold \

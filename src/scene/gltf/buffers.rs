@@ -84,14 +84,9 @@ pub(super) struct Buffers<'a> {
     files: RefCell<BTreeMap<PathBuf, Rc<Vec<u8>>>>,
     /// The bytes of all `files` together.
     total: Cell<u64>,
-    /// The elements that were decompressed, by their place among those of the root.
+    /// What was decompressed.
     #[cfg(feature = "draco")]
-    decoded: Vec<OnceCell<Vec<u8>>>,
-    /// The Draco streams that were decoded, by their buffer views.
-    #[cfg(feature = "draco")]
-    streams: RefCell<BTreeMap<usize, Rc<draco_core::Mesh>>>,
-    /// The bytes that they decoded to.
-    unpacked: Cell<u64>,
+    store: super::compressed::Store,
     /// The scene's own file, data URIs and all.
     own: usize,
 }
@@ -108,10 +103,7 @@ impl<'a> Buffers<'a> {
             files: RefCell::default(),
             total: Cell::new(0),
             #[cfg(feature = "draco")]
-            decoded: root.compressed.iter().map(|_| OnceCell::new()).collect(),
-            #[cfg(feature = "draco")]
-            streams: RefCell::default(),
-            unpacked: Cell::new(0),
+            store: super::compressed::Store::new(root),
             own,
         }
     }
@@ -119,7 +111,10 @@ impl<'a> Buffers<'a> {
     /// The number of bytes in memory: the scene file's, those of the buffer files read so far, and what their compressed
     /// parts decoded to.
     pub fn held(&self) -> u64 {
-        self.files_hold().saturating_add(self.unpacked.get())
+        #[cfg(feature = "draco")]
+        return self.files_hold().saturating_add(self.store.held());
+        #[cfg(not(feature = "draco"))]
+        self.files_hold()
     }
 
     fn files_hold(&self) -> u64 {
@@ -153,49 +148,9 @@ impl<'a> Buffers<'a> {
     #[cfg(feature = "draco")]
     pub fn decoded(&self, place: usize, owner: &dyn Fn() -> String) -> Result<&[u8], Problem> {
         let of = at(&self.root.compressed, place, "compressed parts", owner)?;
-        let cell = at(&self.decoded, place, "compressed parts", owner)?;
-        if let Some(bytes) = cell.get() {
-            return Ok(bytes);
-        }
-        let part = self.stream(of.view, owner).and_then(|mesh| {
-            self.take_room(super::compressed::size(&mesh, of.part))?;
-            super::compressed::part(&mesh, of)
-        });
-        let part =
-            part.map_err(|problem| format!("{} cannot be decompressed: {problem}", owner()))?;
-        Ok(cell.get_or_init(|| part))
-    }
-
-    /// The Draco stream of a buffer view.
-    #[cfg(feature = "draco")]
-    fn stream(
-        &self,
-        view: usize,
-        owner: &dyn Fn() -> String,
-    ) -> Result<Rc<draco_core::Mesh>, Problem> {
-        if let Some(known) = self.streams.borrow().get(&view) {
-            return Ok(Rc::clone(known));
-        }
-        let (bytes, _) = self.view(view, owner)?;
-        let left = super::compressed::room(self.files_hold()).saturating_sub(self.unpacked.get());
-        let mesh = Rc::new(super::compressed::decoded(bytes, left)?);
-        self.take_room(super::compressed::whole(&mesh))?;
-        self.streams.borrow_mut().insert(view, Rc::clone(&mesh));
-        Ok(mesh)
-    }
-
-    /// Counts bytes that were compressed.
-    #[cfg(feature = "draco")]
-    fn take_room(&self, bytes: u64) -> Result<(), Problem> {
-        let (room, taken) = (super::compressed::room(self.files_hold()), self.unpacked.get());
-        let all = taken.saturating_add(bytes);
-        if all > room {
-            return Err(format!(
-                "with it the file's compressed parts hold more than {room} bytes, 16 MiB and 64 for each byte of the file"
-            ));
-        }
-        self.unpacked.set(all);
-        Ok(())
+        let stream = || self.view(of.view, owner).map(|(bytes, _)| bytes);
+        let elements = self.store.elements(place, of, self.files_hold(), stream);
+        elements.map_err(|problem| format!("{} cannot be decompressed: {problem}", owner()))
     }
 
     fn buffer(&self, index: usize, view: usize) -> Result<&[u8], Problem> {

@@ -2,18 +2,78 @@
 //! own, and one buffer view holds them all.
 //!
 //! What comes out is as long as the stream says, and a constant takes no bytes of it. So all that a file's streams decode
-//! to is held to what [`room`] says.
+//! to is held to [`ROOM`].
 
 use super::Problem;
 use super::json::{Compressed, Root, shortened};
 use draco_core::{DataType, DecodeLimits, DecoderBuffer, FaceIndex, Mesh, MeshDecoder};
+use std::cell::{Cell, OnceCell, RefCell};
+use std::collections::BTreeMap;
+use std::rc::Rc;
 
 /// What compressed parts may decode to together: so many bytes, and as many for each byte of the file.
 const ROOM: [u64; 2] = [16 << 20, 64];
 
-/// How much what a file of `bytes` bytes has compressed may take.
-pub(super) fn room(bytes: u64) -> u64 {
-    bytes.saturating_mul(ROOM[1]).saturating_add(ROOM[0])
+/// What was decompressed of a file.
+pub(super) struct Store {
+    /// The elements of accessors, by their place among those of the root.
+    elements: Vec<OnceCell<Vec<u8>>>,
+    /// The streams, by their buffer views.
+    streams: RefCell<BTreeMap<usize, Rc<Mesh>>>,
+    /// The bytes of them all.
+    held: Cell<u64>,
+}
+
+impl Store {
+    pub fn new(root: &Root) -> Self {
+        let elements = root.compressed.iter().map(|_| OnceCell::new()).collect();
+        Self { elements, streams: RefCell::default(), held: Cell::new(0) }
+    }
+
+    /// The bytes that all streams and their parts decoded to.
+    pub fn held(&self) -> u64 {
+        self.held.get()
+    }
+
+    /// The elements in a part of a `stream`, of a file whose bytes and whose buffers' are so many.
+    pub fn elements<'a>(
+        &self,
+        place: usize,
+        of: &Compressed,
+        bytes: u64,
+        stream: impl FnOnce() -> Result<&'a [u8], Problem>,
+    ) -> Result<&[u8], Problem> {
+        let Some(cell) = self.elements.get(place) else { return Ok(&[]) };
+        if let Some(known) = cell.get() {
+            return Ok(known);
+        }
+        let room = bytes.saturating_mul(ROOM[1]).saturating_add(ROOM[0]);
+        let known = self.streams.borrow().get(&of.view).cloned();
+        let mesh = match known {
+            Some(mesh) => mesh,
+            None => {
+                let mesh = Rc::new(decoded(stream()?, room.saturating_sub(self.held()))?);
+                self.take(whole(&mesh), room)?;
+                self.streams.borrow_mut().insert(of.view, Rc::clone(&mesh));
+                mesh
+            }
+        };
+        self.take(size(&mesh, of.part), room)?;
+        let part = part(&mesh, of)?;
+        Ok(cell.get_or_init(|| part))
+    }
+
+    /// Counts bytes that were compressed.
+    fn take(&self, bytes: u64, room: u64) -> Result<(), Problem> {
+        let all = self.held().saturating_add(bytes);
+        if all > room {
+            return Err(format!(
+                "with it the file's compressed parts hold more than {room} bytes, 16 MiB and 64 for each byte of the file"
+            ));
+        }
+        self.held.set(all);
+        Ok(())
+    }
 }
 
 /// Tells the accessors of compressed primitives where their elements are. Those that have bytes of their own keep to these.
@@ -41,7 +101,7 @@ pub(super) fn mark(root: &mut Root) {
 }
 
 /// Decodes a Draco stream that may have no more than `room` bytes of attributes, and of triangles.
-pub(super) fn decoded(stream: &[u8], room: u64) -> Result<Mesh, Problem> {
+fn decoded(stream: &[u8], room: u64) -> Result<Mesh, Problem> {
     let limits = DecodeLimits::default()
         .with_max_decoded_bytes(room)
         .with_max_faces(room / 12)
@@ -62,14 +122,14 @@ fn in_a_line(message: &str) -> String {
 }
 
 /// The bytes of all of a mesh.
-pub(super) fn whole(mesh: &Mesh) -> u64 {
+fn whole(mesh: &Mesh) -> u64 {
     let attributes = (0..mesh.num_attributes()).filter_map(|id| mesh.try_attribute(id).ok());
     let bytes: usize = attributes.map(|of| of.buffer().data().len()).sum();
     bytes as u64 + size(mesh, None)
 }
 
 /// The bytes that a part of a mesh will take.
-pub(super) fn size(mesh: &Mesh, part: Option<u32>) -> u64 {
+fn size(mesh: &Mesh, part: Option<u32>) -> u64 {
     let elements = match part {
         None => 3 * mesh.num_faces(),
         Some(id) => {
@@ -81,7 +141,7 @@ pub(super) fn size(mesh: &Mesh, part: Option<u32>) -> u64 {
 }
 
 /// A part of a mesh as packed elements: its triangles' corners as 32-bit integers, or an attribute as 32-bit floats.
-pub(super) fn part(mesh: &Mesh, of: &Compressed) -> Result<Vec<u8>, Problem> {
+fn part(mesh: &Mesh, of: &Compressed) -> Result<Vec<u8>, Problem> {
     let Some(id) = of.part else {
         let faces = (0..mesh.num_faces()).map(|face| mesh.face(FaceIndex(face as u32)));
         return Ok(faces.flatten().flat_map(|point| point.0.to_le_bytes()).collect());

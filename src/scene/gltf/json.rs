@@ -48,11 +48,13 @@ pub(super) struct Root {
     #[serde(default)]
     pub buffers: Vec<Buffer>,
     /// Where the elements of accessors are that have no bytes of their own.
+    #[cfg(feature = "draco")]
     #[serde(skip)]
     pub compressed: Vec<Compressed>,
 }
 
 /// Where in compressed bytes an accessor's elements are.
+#[cfg(feature = "draco")]
 #[derive(Debug)]
 pub(super) struct Compressed {
     /// The buffer view of the compressed bytes.
@@ -148,9 +150,11 @@ pub(super) struct Primitive {
     pub mode: Option<u64>,
     #[serde(default)]
     pub targets: Vec<Target>,
+    #[cfg(feature = "draco")]
     pub extensions: Option<Box<PrimitiveExtensions>>,
 }
 
+#[cfg(feature = "draco")]
 #[derive(Debug, Deserialize)]
 pub(super) struct PrimitiveExtensions {
     #[serde(rename = "KHR_draco_mesh_compression")]
@@ -158,6 +162,7 @@ pub(super) struct PrimitiveExtensions {
 }
 
 /// A primitive whose elements a Draco stream holds.
+#[cfg(feature = "draco")]
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(super) struct Draco {
@@ -182,6 +187,7 @@ pub(super) struct Attributes {
     pub weights_1: Option<usize>,
 }
 
+#[cfg(feature = "draco")]
 impl Attributes {
     /// Each of them, always in the same order.
     pub fn all(&self) -> [Option<usize>; 6] {
@@ -248,6 +254,7 @@ pub(super) struct Accessor {
     pub kind: String,
     pub sparse: Option<Sparse>,
     /// The place among [`Root::compressed`] that says where its elements are.
+    #[cfg(feature = "draco")]
     #[serde(skip)]
     pub compressed: Option<usize>,
 }
@@ -345,8 +352,6 @@ pub(super) fn parse(text: &[u8]) -> Result<Root, Problem> {
     let mut root: Root = from_json(text)?;
     // What is required is used, whether or not the file says so.
     root.extensions_used.extend(head.extensions_required);
-    #[cfg(feature = "draco")]
-    super::compressed::mark(&mut root);
     Ok(root)
 }
 

@@ -111,7 +111,10 @@ fn read(path: &Path) -> Result<Vec<u8>, Problem> {
 /// Reads a file's bytes; `folder` is where its external buffers lie.
 fn parse(bytes: &[u8], folder: &Path) -> Result<Scene, Problem> {
     let (text, chunk) = buffers::split(bytes)?;
-    let root = json::parse(text)?;
+    #[cfg_attr(not(feature = "draco"), expect(unused_mut))]
+    let mut root = json::parse(text)?;
+    #[cfg(feature = "draco")]
+    compressed::mark(&mut root);
     let buffers = buffers::Buffers::new(&root, bytes.len(), chunk, folder);
     let (all_placed, worlds) = nodes::placed(&root)?;
     let mut meshes = Meshes::new(&root, &buffers, &worlds);
