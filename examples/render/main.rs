@@ -11,7 +11,7 @@ mod report;
 use antumbra::audit::ErrorWindow;
 use antumbra::auto::Auto;
 use antumbra::frame::Capacity;
-use antumbra::scene::{AreaLight, Camera, Scene, from_gltf};
+use antumbra::scene::{AreaLight, Camera, GltfOptions, Scene, from_gltf_as};
 use antumbra::{Error, FramePlan, LightIndex, Omit, Technique, TechniqueIndex};
 use antumbra_harness::shade;
 use antumbra_harness::{
@@ -54,7 +54,9 @@ fn no_gltf(path: &Path, error: Error) -> Stop {
 
 /// The scene with the overrides of the command line.
 fn load(options: &Options) -> Result<Scene, Stop> {
-    let mut scene = from_gltf(&options.scene).map_err(|e| no_gltf(&options.scene, e))?;
+    let animation = options.animation.as_ref().map(|(name, time)| (name.as_str(), *time));
+    let of = GltfOptions { scene: options.part.as_deref(), animation };
+    let mut scene = from_gltf_as(&options.scene, &of).map_err(|e| no_gltf(&options.scene, e))?;
     for (node, role) in &options.roles {
         scene.set_role(node, *role)?;
     }

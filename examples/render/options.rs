@@ -34,6 +34,22 @@ struct Arguments {
     /// The camera that shows the scene, by its node; the first one without it, or one that frames the scene
     #[arg(long, value_name = "NODE")]
     camera: Option<String>,
+    /// The scene of the file, by its name or number; the default one without it
+    #[arg(long = "scene", value_name = "NAME")]
+    part: Option<String>,
+    /// Shows the file at a time of an animation, by its name or number
+    #[arg(long, value_name = "NAME")]
+    animation: Option<String>,
+    /// The time of the animation, in seconds
+    #[arg(
+        long,
+        value_name = "T",
+        requires = "animation",
+        allow_hyphen_values = true,
+        default_value_t = 0.0,
+        hide_default_value = true
+    )]
+    time: f64,
     /// Overrides a node's role (occluder, receiver, both), repeatable
     #[arg(long = "role", value_name = "NODE=ROLE")]
     roles: Vec<String>,
@@ -71,6 +87,10 @@ pub struct Options {
     pub light: Option<String>,
     /// The node of the camera; `None` for the first.
     pub camera: Option<String>,
+    /// The scene of the file; `None` for the default one.
+    pub part: Option<String>,
+    /// An animation, and the time of it that is shown, in seconds.
+    pub animation: Option<(String, f64)>,
     pub roles: Vec<(String, Role)>,
     pub repeat: u32,
     /// The pixels of each frame that are traced to measure its error; 0 for none.
@@ -175,6 +195,8 @@ pub fn parse(arguments: impl Iterator<Item = OsString>) -> Result<Options, Stop>
         size: size(&a.size)?,
         light: a.light,
         camera: a.camera,
+        part: a.part,
+        animation: a.animation.map(|name| (name, a.time)),
         roles,
         repeat: a.repeat,
         audit: a.audit,
