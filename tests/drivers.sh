@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs what is missing for `make demo` (a Vulkan loader and driver), `make bench` (also a C++
-# compiler, for FLIP) or `make test` (also the validation layer, a C++ compiler for the GLSL compiler,
+# Installs what is missing for `make demo` (a Vulkan loader and driver, and a C++ compiler, for meshoptimizer), `make
+# bench` or `make test` (also the validation layer, a C++ compiler for the GLSL compiler,
 # glTF models of other makers, and SwiftShader as a second driver; but for the models also for `make function`).
 #   usage: tests/drivers.sh demo|bench|function|test
 # As root it uses apt; otherwise it prints the one line to run and stops. Nothing is updated or
@@ -41,7 +41,7 @@ demo | bench)
     # Any driver will do, also one that the environment names.
     [ -n "${VK_DRIVER_FILES:-}${VK_ICD_FILENAMES:-}${VK_ADD_DRIVER_FILES:-}" ] || have_driver '' ||
         missing+=(mesa-vulkan-drivers)
-    [ "$goal" = demo ] || command -v c++ >/dev/null || missing+=(g++)
+    command -v c++ >/dev/null || missing+=(g++)
     ;;
 function | test)
     have_driver lvp_icd || missing+=(mesa-vulkan-drivers)

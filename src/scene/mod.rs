@@ -16,7 +16,7 @@ pub mod generate;
 #[cfg(feature = "gltf")]
 mod gltf;
 #[cfg(feature = "gltf")]
-pub use gltf::{from_gltf, from_gltf_bytes};
+pub use gltf::{GltfOptions, from_gltf, from_gltf_as, from_gltf_bytes};
 
 /// Triangles in mesh space, metres once its instance's transform is applied.
 #[derive(Clone, Debug, Default)]

@@ -259,9 +259,9 @@ fn wrong_scenes_are_one_sentence() {
     let scene = write(&there, &triangle(&json!([mesh, lamp])), bad);
     refuse("NaN", &scene, &[], "position");
     let mut extension = triangle(&json!([mesh, lamp]));
-    extension["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
+    extension["extensionsRequired"] = json!(["KHR_mesh_of_tomorrow"]);
     let scene = write(&there, &extension, good);
-    refuse("extension", &scene, &[], "KHR_draco_mesh_compression");
+    refuse("extension", &scene, &[], "KHR_mesh_of_tomorrow");
     let mut range = triangle(&json!([mesh, lamp]));
     range["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(7);
     let scene = write(&there, &range, good);

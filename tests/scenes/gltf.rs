@@ -1,9 +1,11 @@
 //! glTF files built in code, one for each thing the loader must read or refuse.
 
+mod animated;
 mod draco;
 mod far;
 mod features;
 mod lights;
+mod meshopt;
 mod models;
 mod posed;
 mod refusals;

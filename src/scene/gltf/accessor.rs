@@ -289,7 +289,11 @@ impl<'a, const N: usize> Vectors<'a, N> {
             I16 | U16 if integers => Some(2),
             _ => None,
         };
-        let form = if N == 16 { "MAT4".to_string() } else { format!("VEC{N}") };
+        let form = match N {
+            1 => "SCALAR".to_string(),
+            16 => "MAT4".to_string(),
+            _ => format!("VEC{N}"),
+        };
         let Some(size) = size.filter(|_| accessor.kind == form) else {
             return Err(format!(
                 "{} is in accessors[{index}], which holds {} of componentType {kind}; it must hold \

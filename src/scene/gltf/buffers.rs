@@ -86,7 +86,12 @@ pub(super) struct Buffers<'a> {
     total: Cell<u64>,
     /// What was decompressed.
     #[cfg(feature = "draco")]
-    store: super::compressed::Store,
+    streams: super::draco::Streams,
+    /// The buffer views that were decompressed.
+    #[cfg(feature = "meshopt")]
+    views: Vec<OnceCell<Vec<u8>>>,
+    #[cfg(any(feature = "draco", feature = "meshopt"))]
+    room: super::room::Room,
     /// The scene's own file, data URIs and all.
     own: usize,
 }
@@ -103,7 +108,11 @@ impl<'a> Buffers<'a> {
             files: RefCell::default(),
             total: Cell::new(0),
             #[cfg(feature = "draco")]
-            store: super::compressed::Store::new(root),
+            streams: super::draco::Streams::new(root),
+            #[cfg(feature = "meshopt")]
+            views: root.buffer_views.iter().map(|_| OnceCell::new()).collect(),
+            #[cfg(any(feature = "draco", feature = "meshopt"))]
+            room: super::room::Room::default(),
             own,
         }
     }
@@ -111,9 +120,9 @@ impl<'a> Buffers<'a> {
     /// The number of bytes in memory: the scene file's, those of the buffer files read so far, and what their compressed
     /// parts decoded to.
     pub fn held(&self) -> u64 {
-        #[cfg(feature = "draco")]
-        return self.files_hold().saturating_add(self.store.held());
-        #[cfg(not(feature = "draco"))]
+        #[cfg(any(feature = "draco", feature = "meshopt"))]
+        return self.files_hold().saturating_add(self.room.taken());
+        #[cfg(not(any(feature = "draco", feature = "meshopt")))]
         self.files_hold()
     }
 
@@ -128,20 +137,57 @@ impl<'a> Buffers<'a> {
         owner: impl Fn() -> String,
     ) -> Result<(&[u8], Option<u64>), Problem> {
         let view = at(&self.root.buffer_views, index, "bufferViews", &owner)?;
-        let bytes = self.buffer(view.buffer, index)?;
-        let range = usize::try_from(view.byte_offset).ok().zip(
-            view.byte_offset.checked_add(view.byte_length).and_then(|e| usize::try_from(e).ok()),
-        );
-        let bytes = range.and_then(|(start, end)| bytes.get(start..end)).ok_or_else(|| {
+        #[cfg(feature = "meshopt")]
+        if let Some(of) = view.extensions.as_ref().and_then(|e| e.meshopt()) {
+            return Ok((self.decompressed(index, of, view.byte_length)?, view.byte_stride));
+        }
+        let name = format!("bufferViews[{index}]");
+        let bytes = self.range(&name, view.buffer, [view.byte_offset, view.byte_length])?;
+        Ok((bytes, view.byte_stride))
+    }
+
+    /// What meshoptimizer compressed to `bufferViews[index]` of `length` bytes.
+    #[cfg(feature = "meshopt")]
+    fn decompressed(
+        &self,
+        index: usize,
+        of: &super::extensions::Meshopt,
+        length: u64,
+    ) -> Result<&[u8], Problem> {
+        let name = format!("the compression of bufferViews[{index}]");
+        let cell = at(&self.views, index, "bufferViews", || name.clone())?;
+        if let Some(bytes) = cell.get() {
+            return Ok(bytes);
+        }
+        let stream = self.range(&name, of.buffer, [of.byte_offset, of.byte_length])?;
+        let bytes = of.count.saturating_mul(of.byte_stride);
+        let decoded = || {
+            if bytes != length {
+                return Err(format!("it decodes to {bytes} bytes, and the view has {length}"));
+            }
+            self.room.take(bytes, self.files_hold())?;
+            super::meshopt::decoded(of, stream)
+        };
+        let decoded = decoded().map_err(|problem| format!("{name} is wrong: {problem}"))?;
+        Ok(cell.get_or_init(|| decoded))
+    }
+
+    /// The bytes of `buffers[buffer]` from an offset on, as many as a length says; `name` is whose they are.
+    fn range(
+        &self,
+        name: &str,
+        buffer: usize,
+        [offset, length]: [u64; 2],
+    ) -> Result<&[u8], Problem> {
+        let bytes = self.buffer(buffer, name)?;
+        let end = offset.checked_add(length).and_then(|end| usize::try_from(end).ok());
+        let range = usize::try_from(offset).ok().zip(end);
+        range.and_then(|(start, end)| bytes.get(start..end)).ok_or_else(|| {
             format!(
-                "bufferViews[{index}] spans {} bytes from byte {} of buffers[{}], which holds {}",
-                view.byte_length,
-                view.byte_offset,
-                view.buffer,
+                "{name} spans {length} bytes from byte {offset} of buffers[{buffer}], which holds {}",
                 bytes.len()
             )
-        })?;
-        Ok((bytes, view.byte_stride))
+        })
     }
 
     /// The elements of an accessor that has none of its own, by its place among those of the root.
@@ -149,13 +195,14 @@ impl<'a> Buffers<'a> {
     pub fn decoded(&self, place: usize, owner: &dyn Fn() -> String) -> Result<&[u8], Problem> {
         let of = at(&self.root.compressed, place, "compressed parts", owner)?;
         let stream = || self.view(of.view, owner).map(|(bytes, _)| bytes);
-        let elements = self.store.elements(place, of, self.files_hold(), stream);
+        let room = (&self.room, self.files_hold());
+        let elements = self.streams.elements(place, of, room, stream);
         elements.map_err(|problem| format!("{} cannot be decompressed: {problem}", owner()))
     }
 
-    fn buffer(&self, index: usize, view: usize) -> Result<&[u8], Problem> {
-        let buffer = at(&self.root.buffers, index, "buffers", || format!("bufferViews[{view}]"))?;
-        let cell = at(&self.read, index, "buffers", || format!("bufferViews[{view}]"))?;
+    fn buffer(&self, index: usize, owner: &str) -> Result<&[u8], Problem> {
+        let buffer = at(&self.root.buffers, index, "buffers", || owner.into())?;
+        let cell = at(&self.read, index, "buffers", || owner.into())?;
         let bytes = match (&buffer.uri, cell.get()) {
             (_, Some(bytes)) => bytes.as_slice(),
             (Some(uri), None) => {

@@ -1,38 +1,26 @@
 //! Meshes that were compressed by Draco (KHR_draco_mesh_compression): the accessors of a primitive have no bytes of their
 //! own, and one buffer view holds them all.
-//!
-//! What comes out is as long as the stream says, and a constant takes no bytes of it. So all that a file's streams decode
-//! to is held to [`ROOM`].
 
 use super::Problem;
 use super::json::{Compressed, Root, shortened};
+use super::room::Room;
 use draco_core::{DataType, DecodeLimits, DecoderBuffer, FaceIndex, Mesh, MeshDecoder};
-use std::cell::{Cell, OnceCell, RefCell};
+use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-/// What compressed parts may decode to together: so many bytes, and as many for each byte of the file.
-const ROOM: [u64; 2] = [16 << 20, 64];
-
 /// What was decompressed of a file.
-pub(super) struct Store {
+pub(super) struct Streams {
     /// The elements of accessors, by their place among those of the root.
     elements: Vec<OnceCell<Vec<u8>>>,
     /// The streams, by their buffer views.
-    streams: RefCell<BTreeMap<usize, Rc<Mesh>>>,
-    /// The bytes of them all.
-    held: Cell<u64>,
+    meshes: RefCell<BTreeMap<usize, Rc<Mesh>>>,
 }
 
-impl Store {
+impl Streams {
     pub fn new(root: &Root) -> Self {
         let elements = root.compressed.iter().map(|_| OnceCell::new()).collect();
-        Self { elements, streams: RefCell::default(), held: Cell::new(0) }
-    }
-
-    /// The bytes that all streams and their parts decoded to.
-    pub fn held(&self) -> u64 {
-        self.held.get()
+        Self { elements, meshes: RefCell::default() }
     }
 
     /// The elements in a part of a `stream`, of a file whose bytes and whose buffers' are so many.
@@ -40,39 +28,26 @@ impl Store {
         &self,
         place: usize,
         of: &Compressed,
-        bytes: u64,
+        (room, bytes): (&Room, u64),
         stream: impl FnOnce() -> Result<&'a [u8], Problem>,
     ) -> Result<&[u8], Problem> {
         let Some(cell) = self.elements.get(place) else { return Ok(&[]) };
         if let Some(known) = cell.get() {
             return Ok(known);
         }
-        let room = bytes.saturating_mul(ROOM[1]).saturating_add(ROOM[0]);
-        let known = self.streams.borrow().get(&of.view).cloned();
+        let known = self.meshes.borrow().get(&of.view).cloned();
         let mesh = match known {
             Some(mesh) => mesh,
             None => {
-                let mesh = Rc::new(decoded(stream()?, room.saturating_sub(self.held()))?);
-                self.take(whole(&mesh), room)?;
-                self.streams.borrow_mut().insert(of.view, Rc::clone(&mesh));
+                let mesh = Rc::new(decoded(stream()?, room.left(bytes))?);
+                room.take(whole(&mesh), bytes)?;
+                self.meshes.borrow_mut().insert(of.view, Rc::clone(&mesh));
                 mesh
             }
         };
-        self.take(size(&mesh, of.part), room)?;
+        room.take(size(&mesh, of.part), bytes)?;
         let part = part(&mesh, of)?;
         Ok(cell.get_or_init(|| part))
-    }
-
-    /// Counts bytes that were compressed.
-    fn take(&self, bytes: u64, room: u64) -> Result<(), Problem> {
-        let all = self.held().saturating_add(bytes);
-        if all > room {
-            return Err(format!(
-                "with it the file's compressed parts hold more than {room} bytes, 16 MiB and 64 for each byte of the file"
-            ));
-        }
-        self.held.set(all);
-        Ok(())
     }
 }
 
@@ -91,10 +66,9 @@ pub(super) fn mark(root: &mut Root) {
             continue;
         };
         mark(primitive.indices, draco.buffer_view, None);
-        let accessors = primitive.attributes.all().into_iter();
-        for (accessor, id) in accessors.zip(draco.attributes.all()) {
-            if let Some(id) = id.and_then(|id| u32::try_from(id).ok()) {
-                mark(accessor, draco.buffer_view, Some(id));
+        for (name, accessor) in primitive.attributes.all() {
+            if let Some(id) = draco.attributes.get(name) {
+                mark(accessor, draco.buffer_view, Some(*id));
             }
         }
     }

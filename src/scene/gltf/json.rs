@@ -5,6 +5,11 @@
 //! as the file gives it: whoever follows one checks it (see [`at`]).
 
 use super::Problem;
+use super::extensions::NodeExtensions;
+#[cfg(feature = "draco")]
+use super::extensions::PrimitiveExtensions;
+#[cfg(feature = "meshopt")]
+use super::extensions::ViewExtensions;
 use serde::Deserialize;
 use serde_json::Value;
 use std::cell::Cell;
@@ -67,6 +72,9 @@ pub(super) struct Compressed {
 
 #[derive(Debug, Deserialize)]
 pub(super) struct SceneRoots {
+    /// A name, where it is one.
+    #[serde(default)]
+    pub name: Value,
     #[serde(default)]
     pub nodes: Vec<usize>,
 }
@@ -89,40 +97,6 @@ pub(super) struct Node {
     pub extensions: Option<Box<NodeExtensions>>,
     #[serde(default)]
     pub extras: Value,
-}
-
-/// The extensions of a node that change what stands where.
-#[derive(Debug, Deserialize)]
-pub(super) struct NodeExtensions {
-    #[serde(rename = "KHR_node_visibility")]
-    pub visibility: Option<Visibility>,
-    #[serde(rename = "EXT_mesh_gpu_instancing")]
-    pub instancing: Option<Instancing>,
-}
-
-#[derive(Debug, Deserialize)]
-pub(super) struct Visibility {
-    #[serde(default = "yes")]
-    pub visible: bool,
-}
-
-fn yes() -> bool {
-    true
-}
-
-#[derive(Debug, Deserialize)]
-pub(super) struct Instancing {
-    #[serde(default)]
-    pub attributes: InstanceAttributes,
-}
-
-/// The accessors of how instances stand within their node.
-#[derive(Debug, Default, Deserialize)]
-#[serde(rename_all = "UPPERCASE")]
-pub(super) struct InstanceAttributes {
-    pub translation: Option<usize>,
-    pub rotation: Option<usize>,
-    pub scale: Option<usize>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -154,23 +128,6 @@ pub(super) struct Primitive {
     pub extensions: Option<Box<PrimitiveExtensions>>,
 }
 
-#[cfg(feature = "draco")]
-#[derive(Debug, Deserialize)]
-pub(super) struct PrimitiveExtensions {
-    #[serde(rename = "KHR_draco_mesh_compression")]
-    pub draco: Option<Draco>,
-}
-
-/// A primitive whose elements a Draco stream holds.
-#[cfg(feature = "draco")]
-#[derive(Debug, Deserialize)]
-#[serde(rename_all = "camelCase")]
-pub(super) struct Draco {
-    pub buffer_view: usize,
-    /// The stream's attributes, by the numbers that it gives them.
-    pub attributes: Attributes,
-}
-
 #[derive(Debug, Deserialize)]
 pub(super) struct Attributes {
     #[serde(rename = "POSITION")]
@@ -189,10 +146,16 @@ pub(super) struct Attributes {
 
 #[cfg(feature = "draco")]
 impl Attributes {
-    /// Each of them, always in the same order.
-    pub fn all(&self) -> [Option<usize>; 6] {
-        let Self { position, normal, joints_0, weights_0, joints_1, weights_1 } = *self;
-        [position, normal, joints_0, weights_0, joints_1, weights_1]
+    /// Each of them by its name.
+    pub fn all(&self) -> [(&'static str, Option<usize>); 6] {
+        [
+            ("POSITION", self.position),
+            ("NORMAL", self.normal),
+            ("JOINTS_0", self.joints_0),
+            ("WEIGHTS_0", self.weights_0),
+            ("JOINTS_1", self.joints_1),
+            ("WEIGHTS_1", self.weights_1),
+        ]
     }
 }
 
@@ -294,6 +257,8 @@ pub(super) struct BufferView {
     pub byte_offset: u64,
     pub byte_length: u64,
     pub byte_stride: Option<u64>,
+    #[cfg(feature = "meshopt")]
+    pub extensions: Option<Box<ViewExtensions>>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -313,10 +278,17 @@ const READ: &[&str] = &[
     "EXT_mesh_gpu_instancing",
     #[cfg(feature = "draco")]
     DRACO,
+    #[cfg(feature = "meshopt")]
+    MESHOPT[0],
+    #[cfg(feature = "meshopt")]
+    MESHOPT[1],
 ];
 
 /// The extension by which a primitive is a Draco stream.
 const DRACO: &str = "KHR_draco_mesh_compression";
+
+/// The extensions by which a buffer view is what meshoptimizer made of it.
+const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 
 impl Root {
     /// Whether positions and normals may be integers.
@@ -326,8 +298,33 @@ impl Root {
 }
 
 /// The first letters of the extensions that a file may require because they change neither triangles nor transforms.
-const HARMLESS: [&str; 5] =
-    ["KHR_lights_punctual", "KHR_materials_", "KHR_technique", "KHR_texture_", "EXT_texture_"];
+const HARMLESS: &[&str] = &[
+    "ADOBE_materials_",
+    "AGI_",
+    "CESIUM_primitive_outline",
+    "EXT_feature_metadata",
+    "EXT_instance_features",
+    "EXT_lights_",
+    "EXT_mesh_features",
+    "EXT_mesh_manifold",
+    "EXT_structural_metadata",
+    "EXT_texture_",
+    "FB_geometry_metadata",
+    "KHR_animation_pointer",
+    "KHR_audio",
+    "KHR_interactivity",
+    "KHR_lights_punctual",
+    "KHR_materials_",
+    "KHR_physics_",
+    "KHR_technique",
+    "KHR_texture_",
+    "KHR_xmp",
+    "MSFT_lod",
+    "MSFT_packing_",
+    "MSFT_texture_",
+    "OMI_",
+    "VRMC_",
+];
 
 /// Reads the JSON and refuses files that need more than this loader knows.
 pub(super) fn parse(text: &[u8]) -> Result<Root, Problem> {
@@ -345,6 +342,9 @@ pub(super) fn parse(text: &[u8]) -> Result<Root, Problem> {
     if let Some(name) = head.extensions_required.iter().find(unknown) {
         let how = match name.as_str() {
             DRACO => "which the crate's feature draco reads; build with it, or export it without",
+            name if MESHOPT.contains(&name) => {
+                "which the crate's feature meshopt reads; build with it, or export it without"
+            }
             _ => "which is not supported; export it without",
         };
         return Err(format!("it requires the extension {}, {how}", crate::error::quoted(name)));
@@ -355,7 +355,7 @@ pub(super) fn parse(text: &[u8]) -> Result<Root, Problem> {
     Ok(root)
 }
 
-fn from_json<'a, T: Deserialize<'a>>(text: &'a [u8]) -> Result<T, Problem> {
+pub(super) fn from_json<'a, T: Deserialize<'a>>(text: &'a [u8]) -> Result<T, Problem> {
     serde_json::from_slice(text).map_err(|e| {
         format!("it is not the JSON of a glTF 2.0 file: {}", shortened(&e.to_string()))
     })

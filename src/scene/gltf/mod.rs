@@ -11,18 +11,25 @@
 //! there is before it is used, and anything wrong becomes one sentence that names the thing.
 
 mod accessor;
+mod animation;
 mod buffers;
 #[cfg(feature = "draco")]
-mod compressed;
+mod draco;
+mod extensions;
 mod extras;
 mod instances;
 mod json;
+#[cfg(feature = "meshopt")]
+mod meshopt;
 mod nodes;
 mod pose;
+#[cfg(any(feature = "draco", feature = "meshopt"))]
+mod room;
 mod triangles;
 
 use super::{Bounds, Instance, Mesh, Scene};
 use crate::Error;
+use crate::error::quoted;
 use glam::{DMat4, DVec3};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -39,7 +46,7 @@ const MAX_COORDINATE: f64 = 1e9;
 /// Reads a glTF 2.0 scene, `.glb` or `.gltf`.
 ///
 /// - Triangles, strips and fans of the default scene (the first, where none is the default; all
-///   nodes, where there is no scene), each node an instance; points and lines are passed over.
+///   nodes, where there is no scene; [`from_gltf_as`] takes another), each node an instance; points and lines are passed over.
 ///   A mesh that mixes single- and double-sided materials becomes two instances of one name.
 /// - Textures are not read. A mesh of whose materials one is not opaque (`alphaMode`) is marked
 ///   [`Mesh::cut_out`](super::Mesh::cut_out), and its triangles count whole.
@@ -81,8 +88,27 @@ const MAX_COORDINATE: f64 = 1e9;
 /// not finite or beyond 10⁹ m, has no triangles, more than one a byte, or more than 2²⁵, or has an area
 /// light that is no rectangle, polygon or sun.
 pub fn from_gltf(path: &Path) -> Result<Scene, Error> {
+    from_gltf_as(path, &GltfOptions::default())
+}
+
+/// What is shown of a glTF file that has more than one scene, or moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GltfOptions<'a> {
+    /// The scene, by its name or its number; `None` for the default scene.
+    pub scene: Option<&'a str>,
+    /// An animation, by its name or its number, and the time of it in seconds: nodes and morph targets are where it has
+    /// them then. Before its first key and after its last it stands still. `None` for the nodes as they are.
+    pub animation: Option<(&'a str, f64)>,
+}
+
+/// Reads a glTF 2.0 scene as [`from_gltf`] does, of the scene and at the time that `options` say.
+///
+/// # Errors
+/// See [`from_gltf`]; also for a scene or an animation that the file has not, times that do not rise, and values that are
+/// not finite.
+pub fn from_gltf_as(path: &Path, options: &GltfOptions) -> Result<Scene, Error> {
     let bytes = read(path).map_err(|problem| about(path, problem))?;
-    from_gltf_bytes(&bytes, path)
+    from_bytes(&bytes, path, options)
 }
 
 /// Reads a glTF file that is in memory already, perhaps from an archive; see [`from_gltf`]. Errors name it by `path`,
@@ -91,8 +117,12 @@ pub fn from_gltf(path: &Path) -> Result<Scene, Error> {
 /// # Errors
 /// See [`from_gltf`].
 pub fn from_gltf_bytes(bytes: &[u8], path: &Path) -> Result<Scene, Error> {
+    from_bytes(bytes, path, &GltfOptions::default())
+}
+
+fn from_bytes(bytes: &[u8], path: &Path, options: &GltfOptions) -> Result<Scene, Error> {
     let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    parse(bytes, folder).map_err(|problem| about(path, problem))
+    parse(bytes, folder, options).map_err(|problem| about(path, problem))
 }
 
 fn about(path: &Path, problem: Problem) -> Error {
@@ -109,12 +139,19 @@ fn read(path: &Path) -> Result<Vec<u8>, Problem> {
 }
 
 /// Reads a file's bytes; `folder` is where its external buffers lie.
-fn parse(bytes: &[u8], folder: &Path) -> Result<Scene, Problem> {
+fn parse(bytes: &[u8], folder: &Path, options: &GltfOptions) -> Result<Scene, Problem> {
     let (text, chunk) = buffers::split(bytes)?;
-    #[cfg_attr(not(feature = "draco"), expect(unused_mut))]
     let mut root = json::parse(text)?;
     #[cfg(feature = "draco")]
-    compressed::mark(&mut root);
+    draco::mark(&mut root);
+    if let Some(scene) = options.scene {
+        root.scene = Some(scene_of(&root, scene)?);
+    }
+    if let Some(animation) = options.animation {
+        let buffers = buffers::Buffers::new(&root, bytes.len(), chunk, folder);
+        let changes = animation::Changes::at(&root, &buffers, text, animation)?;
+        changes.apply(&mut root)?;
+    }
     let buffers = buffers::Buffers::new(&root, bytes.len(), chunk, folder);
     let (all_placed, worlds) = nodes::placed(&root)?;
     let mut meshes = Meshes::new(&root, &buffers, &worlds);
@@ -160,6 +197,21 @@ fn parse(bytes: &[u8], folder: &Path) -> Result<Scene, Problem> {
     }
     scene.meshes = meshes.read;
     Ok(scene)
+}
+
+/// The scene of a name, or of a number.
+fn scene_of(root: &json::Root, name: &str) -> Result<usize, Problem> {
+    let named = root.scenes.iter().position(|scene| scene.name.as_str() == Some(name));
+    let number = name.parse().ok().filter(|number| *number < root.scenes.len());
+    named.or(number).ok_or_else(|| {
+        let names = root.scenes.iter().map(|scene| quoted(scene.name.as_str().unwrap_or_default()));
+        let names: Vec<_> = names.take(8).collect();
+        let count = root.scenes.len();
+        match names.join(", ") {
+            _ if count == 0 => "it has no scenes".into(),
+            names => format!("it has no scene {}; it has {count}: {names}", quoted(name)),
+        }
+    })
 }
 
 /// The file's meshes, each read when a node first places it, and those that look the same once.

@@ -6,7 +6,7 @@ use antumbra_tests::draco::{Attribute, BITS, compressed};
 use draco_core::{DataType, GeometryAttributeType};
 
 /// A grid of so many points a side over the square, with bumps.
-fn grid(side: usize) -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
+pub fn grid(side: usize) -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
     let at = |i: usize| (i % side, i / side);
     let step = 1.0 / (side - 1) as f32;
     let point = |(x, y): (usize, usize)| {

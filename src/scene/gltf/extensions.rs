@@ -1,0 +1,88 @@
+//! The parts of a glTF file's JSON that extensions add.
+
+use serde::Deserialize;
+#[cfg(feature = "draco")]
+use std::collections::BTreeMap;
+
+/// The extensions of a node that change what stands where.
+#[derive(Debug, Deserialize)]
+pub(super) struct NodeExtensions {
+    #[serde(rename = "KHR_node_visibility")]
+    pub visibility: Option<Visibility>,
+    #[serde(rename = "EXT_mesh_gpu_instancing")]
+    pub instancing: Option<Instancing>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Visibility {
+    #[serde(default = "yes")]
+    pub visible: bool,
+}
+
+fn yes() -> bool {
+    true
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Instancing {
+    #[serde(default)]
+    pub attributes: InstanceAttributes,
+}
+
+/// The accessors of how instances stand within their node.
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "UPPERCASE")]
+pub(super) struct InstanceAttributes {
+    pub translation: Option<usize>,
+    pub rotation: Option<usize>,
+    pub scale: Option<usize>,
+}
+
+#[cfg(feature = "draco")]
+#[derive(Debug, Deserialize)]
+pub(super) struct PrimitiveExtensions {
+    #[serde(rename = "KHR_draco_mesh_compression")]
+    pub draco: Option<Draco>,
+}
+
+/// A primitive whose elements a Draco stream holds.
+#[cfg(feature = "draco")]
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Draco {
+    pub buffer_view: usize,
+    /// The numbers that the stream gives its attributes.
+    pub attributes: BTreeMap<String, u32>,
+}
+
+#[cfg(feature = "meshopt")]
+#[derive(Debug, Deserialize)]
+pub(super) struct ViewExtensions {
+    #[serde(rename = "EXT_meshopt_compression")]
+    ext: Option<Meshopt>,
+    #[serde(rename = "KHR_meshopt_compression")]
+    khr: Option<Meshopt>,
+}
+
+#[cfg(feature = "meshopt")]
+impl ViewExtensions {
+    /// What meshoptimizer made of a buffer view: the ratified extension's where there are both.
+    pub fn meshopt(&self) -> Option<&Meshopt> {
+        self.khr.as_ref().or(self.ext.as_ref())
+    }
+}
+
+/// A buffer view as meshoptimizer compressed it.
+#[cfg(feature = "meshopt")]
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Meshopt {
+    pub buffer: usize,
+    #[serde(default)]
+    pub byte_offset: u64,
+    pub byte_length: u64,
+    pub byte_stride: u64,
+    pub count: u64,
+    pub mode: String,
+    pub filter: Option<String>,
+}
