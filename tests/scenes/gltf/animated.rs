@@ -7,7 +7,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 /// The file of a test, written where no other writes.
 fn written(name: &str, root: &Value, bin: &[u8]) -> PathBuf {
-    let path = antumbra_tests::example::folder("animated").join(format!("{name}.glb"));
+    let path = antumbra_tests::example::folder(&format!("animated-{name}")).join("scene.glb");
     std::fs::write(&path, glb(root, bin)).unwrap();
     path
 }
