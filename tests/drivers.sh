@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Installs what is missing for `make demo` (a Vulkan loader and driver, and a C++ compiler, for meshoptimizer), `make
-# bench` or `make test` (also the validation layer, a C++ compiler for the GLSL compiler,
-# glTF models of other makers, and SwiftShader as a second driver; but for the models also for `make function`).
+# Installs what is missing for `make demo` and `make bench` (a Vulkan loader and driver, and a C++ compiler, which
+# meshoptimizer and FLIP take) or `make test` (also the validation layer, glTF models of other makers, and SwiftShader as a
+# second driver; but for the models also for `make function`).
 #   usage: tests/drivers.sh demo|bench|function|test
 # As root it uses apt; otherwise it prints the one line to run and stops. Nothing is updated or
 # downloaded where nothing is missing. SwiftShader goes to .drivers/ and is never installed.

@@ -55,7 +55,11 @@ fn no_gltf(path: &Path, error: Error) -> Stop {
 /// The scene with the overrides of the command line.
 fn load(options: &Options) -> Result<Scene, Stop> {
     let animation = options.animation.as_ref().map(|(name, time)| (name.as_str(), *time));
-    let of = GltfOptions { scene: options.part.as_deref(), animation };
+    let of = GltfOptions {
+        scene: options.part.as_deref(),
+        animation,
+        light_radius: options.light_radius,
+    };
     let mut scene = from_gltf_as(&options.scene, &of).map_err(|e| no_gltf(&options.scene, e))?;
     for (node, role) in &options.roles {
         scene.set_role(node, *role)?;

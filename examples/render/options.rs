@@ -50,6 +50,9 @@ struct Arguments {
         hide_default_value = true
     )]
     time: f64,
+    /// The radius in metres of the file's point and spot lights whose extras say none
+    #[arg(long, value_name = "R", default_value_t = 0.0, hide_default_value = true)]
+    light_radius: f64,
     /// Overrides a node's role (occluder, receiver, both), repeatable
     #[arg(long = "role", value_name = "NODE=ROLE")]
     roles: Vec<String>,
@@ -91,6 +94,8 @@ pub struct Options {
     pub part: Option<String>,
     /// An animation, and the time of it that is shown, in seconds.
     pub animation: Option<(String, f64)>,
+    /// The radius of lights of the file that say none, metres.
+    pub light_radius: f64,
     pub roles: Vec<(String, Role)>,
     pub repeat: u32,
     /// The pixels of each frame that are traced to measure its error; 0 for none.
@@ -186,6 +191,10 @@ pub fn parse(arguments: impl Iterator<Item = OsString>) -> Result<Options, Stop>
             format!("{} pixels cannot be audited; give 16 to 65536, or 0 for none", a.audit);
         return Err(wrong("--audit", problem));
     }
+    if !(a.light_radius.is_finite() && a.light_radius >= 0.0) {
+        let problem = format!("a light has no radius of {}; give metres from 0 up", a.light_radius);
+        return Err(wrong("--light-radius", problem));
+    }
     Ok(Options {
         scene: a.scene,
         out: a.out,
@@ -197,6 +206,7 @@ pub fn parse(arguments: impl Iterator<Item = OsString>) -> Result<Options, Stop>
         camera: a.camera,
         part: a.part,
         animation: a.animation.map(|name| (name, a.time)),
+        light_radius: a.light_radius,
         roles,
         repeat: a.repeat,
         audit: a.audit,

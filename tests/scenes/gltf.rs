@@ -8,6 +8,7 @@ mod lights;
 mod meshopt;
 mod models;
 mod posed;
+mod punctual;
 mod refusals;
 mod round_lights;
 mod sizes;

@@ -1,6 +1,7 @@
 //! The parts of a glTF file's JSON that extensions add.
 
 use serde::Deserialize;
+use serde_json::Value;
 #[cfg(feature = "draco")]
 use std::collections::BTreeMap;
 
@@ -11,6 +12,44 @@ pub(super) struct NodeExtensions {
     pub visibility: Option<Visibility>,
     #[serde(rename = "EXT_mesh_gpu_instancing")]
     pub instancing: Option<Instancing>,
+    #[serde(rename = "KHR_lights_punctual")]
+    pub punctual: Option<PunctualOfNode>,
+}
+
+/// The light at a node.
+#[derive(Debug, Deserialize)]
+pub(super) struct PunctualOfNode {
+    pub light: usize,
+}
+
+/// The extensions of the whole file.
+#[derive(Debug, Deserialize)]
+pub(super) struct RootExtensions {
+    #[serde(rename = "KHR_lights_punctual")]
+    pub punctual: Option<Punctuals>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Punctuals {
+    #[serde(default)]
+    pub lights: Vec<Punctual>,
+}
+
+/// A light without a size.
+#[derive(Debug, Deserialize)]
+pub(super) struct Punctual {
+    #[serde(rename = "type")]
+    pub kind: String,
+    #[serde(default = "white")]
+    pub color: [f64; 3],
+    /// Candela, or of a directional light lux; 1 where it is not there.
+    pub intensity: Option<f64>,
+    #[serde(default)]
+    pub extras: Value,
+}
+
+fn white() -> [f64; 3] {
+    [1.0; 3]
 }
 
 #[derive(Debug, Deserialize)]

@@ -68,7 +68,7 @@ pub(super) fn light(
 }
 
 /// Where the node stands.
-fn center(world: &DMat4) -> Result<DVec3, Problem> {
+pub(super) fn center(world: &DMat4) -> Result<DVec3, Problem> {
     let center = world.w_axis.truncate();
     if center.abs().max_element() <= MAX_COORDINATE {
         return Ok(center);
@@ -77,7 +77,7 @@ fn center(world: &DMat4) -> Result<DVec3, Problem> {
 }
 
 /// What a light refuses, as the end of a sentence that names the node.
-fn unusable(error: Error) -> Problem {
+pub(super) fn unusable(error: Error) -> Problem {
     match error {
         Error::Light(problem) => format!("its light cannot be used: {problem}"),
         other => other.to_string(),
@@ -165,7 +165,7 @@ fn line(center: DVec3, half: DVec3, world: &DMat4) -> Result<RectangleLight, Err
 }
 
 /// The direction in which a light in the node's XY plane shines.
-fn emission(world: &DMat4) -> DVec3 {
+pub(super) fn emission(world: &DMat4) -> DVec3 {
     let [x, y, z] = [world.x_axis, world.y_axis, world.z_axis].map(|axis| axis.truncate());
     // Flattened along its own normal it is the same light.
     if z == DVec3::ZERO { y.cross(x) } else { -z }
@@ -237,6 +237,11 @@ fn sun(extras: &Value, world: &DMat4, all: &Bounds) -> Result<Light, Problem> {
     let size = value.as_f64().ok_or_else(|| {
         format!("its angular_size is {}; write a number of radians", shown(value))
     })?;
+    sun_of(size, world, all)
+}
+
+/// A sun of an angular size in radians that shines along a node's −Z on `all`.
+pub(super) fn sun_of(size: f64, world: &DMat4, all: &Bounds) -> Result<Light, Problem> {
     // Only the direction of the transform counts for a sun, not its scale.
     let emission = -world.z_axis.truncate();
     let radius = (0.5 * all.size().length()).max(SIDES[0]);

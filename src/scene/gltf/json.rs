@@ -5,11 +5,11 @@
 //! as the file gives it: whoever follows one checks it (see [`at`]).
 
 use super::Problem;
-use super::extensions::NodeExtensions;
 #[cfg(feature = "draco")]
 use super::extensions::PrimitiveExtensions;
 #[cfg(feature = "meshopt")]
 use super::extensions::ViewExtensions;
+use super::extensions::{NodeExtensions, RootExtensions};
 use serde::Deserialize;
 use serde_json::Value;
 use std::cell::Cell;
@@ -32,6 +32,7 @@ struct Asset {
 #[serde(rename_all = "camelCase")]
 pub(super) struct Root {
     pub scene: Option<usize>,
+    pub extensions: Option<RootExtensions>,
     #[serde(default)]
     pub extensions_used: Vec<String>,
     #[serde(default)]

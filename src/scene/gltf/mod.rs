@@ -23,6 +23,7 @@ mod json;
 mod meshopt;
 mod nodes;
 mod pose;
+mod punctual;
 #[cfg(any(feature = "draco", feature = "meshopt"))]
 mod room;
 mod triangles;
@@ -66,6 +67,9 @@ const MAX_COORDINATE: f64 = 1e9;
 ///   wherever the node stands; each optionally with `"color"` and `"intensity"`;
 ///   `"shadow_role": "occluder"`, `"receiver"` or `"both"`. A scene without a light is returned all
 ///   the same: [`Scene::light`] is what refuses it.
+/// - Lights of KHR_lights_punctual: a point is a sphere, a spot a disc, each of the `"radius"` (metres, whatever the scale) in
+///   the extras of its node or its own, and a point without one; a directional light is a sun of its `"angular_size"`, or
+///   0.0093. A spot's cone and a range are passed over. Nodes with an area light have that alone.
 /// - The camera is that of the first node with one, perspective or orthographic; [`Scene::set_camera`] takes another.
 /// - Buffers come from the file itself, from data URIs, and from files in its folder or below.
 /// - A mesh whose vertices lie far from the origin of its own space is moved there, and its instances the other way
@@ -99,6 +103,8 @@ pub struct GltfOptions<'a> {
     /// An animation, by its name or its number, and the time of it in seconds: nodes and morph targets are where it has
     /// them then. Before its first key and after its last it stands still. `None` for the nodes as they are.
     pub animation: Option<(&'a str, f64)>,
+    /// The radius in metres of point and spot lights whose extras say none; 0 for points.
+    pub light_radius: f64,
 }
 
 /// Reads a glTF 2.0 scene as [`from_gltf`] does, of the scene and at the time that `options` say.
@@ -192,7 +198,11 @@ fn parse(bytes: &[u8], folder: &Path, options: &GltfOptions) -> Result<Scene, Pr
     for placed in all_placed.iter().filter(|placed| !placed.hidden) {
         let node =
             json::at(&root.nodes, placed.node, "nodes", || nodes::label(&root, placed.node))?;
-        let light = extras::light(&root, placed.node, &node.extras, &placed.world, &all)?;
+        // An area light is what a node with both was given on purpose.
+        let light = match extras::light(&root, placed.node, &node.extras, &placed.world, &all)? {
+            None => punctual::light(&root, placed, &all, options.light_radius)?,
+            light => light,
+        };
         scene.lights.extend(light);
     }
     scene.meshes = meshes.read;
