@@ -89,12 +89,7 @@ fn integer(bytes: &[u8]) -> Option<u32> {
 
 /// What an accessor's numbers are: `decoded` where they were compressed.
 fn component_of(accessor: &json::Accessor, decoded: u32) -> u32 {
-    #[cfg(feature = "draco")]
-    if accessor.compressed.is_some() {
-        return decoded;
-    }
-    let _ = decoded;
-    accessor.component_type
+    if accessor.compressed.is_some() { decoded } else { accessor.component_type }
 }
 
 fn integer_size(component: u32) -> Option<usize> {

@@ -6,7 +6,7 @@
 use super::Problem;
 use super::accessor::Vectors;
 use super::buffers::Buffers;
-use super::json::{Root, at, from_json};
+use super::json::{Root, at, by_name, from_json};
 use crate::error::quoted;
 use glam::DQuat;
 use serde::Deserialize;
@@ -68,17 +68,8 @@ impl Changes {
         (name, time): (&str, f64),
     ) -> Result<Self, Problem> {
         let Animations { animations } = from_json(text)?;
-        let is_named = |animation: &Animation| animation.name.as_deref() == Some(name);
-        let number = name.parse().ok().filter(|number| *number < animations.len());
-        let number = animations.iter().position(is_named).or(number).ok_or_else(|| {
-            let names = animations.iter().map(|a| quoted(a.name.as_deref().unwrap_or_default()));
-            let names: Vec<_> = names.take(8).collect();
-            let count = animations.len();
-            match names.join(", ") {
-                _ if count == 0 => "it has no animations".into(),
-                names => format!("it has no animation {}; it has {count}: {names}", quoted(name)),
-            }
-        })?;
+        let names = animations.iter().map(|animation| animation.name.as_deref());
+        let number = by_name("animation", names, name)?;
         if !time.is_finite() {
             return Err(format!("an animation has no time {time}"));
         }

@@ -1,9 +1,77 @@
-//! The parts of a glTF file's JSON that extensions add.
+//! Extensions of glTF: those that a file may require, and the parts of its JSON that they add.
 
+use super::Problem;
+use crate::error::quoted;
 use serde::Deserialize;
 use serde_json::Value;
 #[cfg(feature = "draco")]
 use std::collections::BTreeMap;
+
+/// The extension by which positions and normals may be integers.
+pub(super) const QUANTIZATION: &str = "KHR_mesh_quantization";
+
+/// The extensions that a file may require because they are read.
+const READ: &[&str] = &[
+    QUANTIZATION,
+    "KHR_node_visibility",
+    "EXT_mesh_gpu_instancing",
+    #[cfg(feature = "draco")]
+    DRACO,
+    #[cfg(feature = "meshopt")]
+    MESHOPT[0],
+    #[cfg(feature = "meshopt")]
+    MESHOPT[1],
+];
+
+/// The extension by which a primitive is a Draco stream.
+const DRACO: &str = "KHR_draco_mesh_compression";
+
+/// The extensions by which a buffer view is what meshoptimizer made of it.
+const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
+
+/// The first letters of the extensions that a file may require because they change neither triangles nor transforms.
+const HARMLESS: &[&str] = &[
+    "ADOBE_materials_",
+    "AGI_",
+    "CESIUM_primitive_outline",
+    "EXT_feature_metadata",
+    "EXT_instance_features",
+    "EXT_lights_",
+    "EXT_mesh_features",
+    "EXT_mesh_manifold",
+    "EXT_structural_metadata",
+    "EXT_texture_",
+    "FB_geometry_metadata",
+    "KHR_animation_pointer",
+    "KHR_audio",
+    "KHR_interactivity",
+    "KHR_lights_punctual",
+    "KHR_materials_",
+    "KHR_physics_",
+    "KHR_technique",
+    "KHR_texture_",
+    "KHR_xmp",
+    "MSFT_lod",
+    "MSFT_packing_",
+    "MSFT_texture_",
+    "OMI_",
+    "VRMC_",
+];
+
+/// Why a file that requires these extensions cannot be read; `None` where it can.
+pub(super) fn refusal(required: &[String]) -> Option<Problem> {
+    let is_known =
+        |name: &str| READ.contains(&name) || HARMLESS.iter().any(|known| name.starts_with(known));
+    let name = required.iter().find(|name| !is_known(name))?;
+    let how = match name.as_str() {
+        DRACO => "which the crate's feature draco reads; build with it, or export it without",
+        name if MESHOPT.contains(&name) => {
+            "which the crate's feature meshopt reads; build with it, or export it without"
+        }
+        _ => "which is not supported; export it without",
+    };
+    Some(format!("it requires the extension {}, {how}", quoted(name)))
+}
 
 /// The extensions of a node that change what stands where.
 #[derive(Debug, Deserialize)]

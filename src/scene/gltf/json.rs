@@ -9,7 +9,8 @@ use super::Problem;
 use super::extensions::PrimitiveExtensions;
 #[cfg(feature = "meshopt")]
 use super::extensions::ViewExtensions;
-use super::extensions::{NodeExtensions, RootExtensions};
+use super::extensions::{self, NodeExtensions, RootExtensions};
+use crate::error::quoted;
 use serde::Deserialize;
 use serde_json::Value;
 use std::cell::Cell;
@@ -218,7 +219,6 @@ pub(super) struct Accessor {
     pub kind: String,
     pub sparse: Option<Sparse>,
     /// The place among [`Root::compressed`] that says where its elements are.
-    #[cfg(feature = "draco")]
     #[serde(skip)]
     pub compressed: Option<usize>,
 }
@@ -269,63 +269,12 @@ pub(super) struct Buffer {
     pub byte_length: u64,
 }
 
-/// The extension by which positions and normals may be integers.
-const QUANTIZATION: &str = "KHR_mesh_quantization";
-
-/// The extensions that a file may require because they are read.
-const READ: &[&str] = &[
-    QUANTIZATION,
-    "KHR_node_visibility",
-    "EXT_mesh_gpu_instancing",
-    #[cfg(feature = "draco")]
-    DRACO,
-    #[cfg(feature = "meshopt")]
-    MESHOPT[0],
-    #[cfg(feature = "meshopt")]
-    MESHOPT[1],
-];
-
-/// The extension by which a primitive is a Draco stream.
-const DRACO: &str = "KHR_draco_mesh_compression";
-
-/// The extensions by which a buffer view is what meshoptimizer made of it.
-const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
-
 impl Root {
     /// Whether positions and normals may be integers.
     pub fn is_quantized(&self) -> bool {
-        self.extensions_used.iter().any(|name| name == QUANTIZATION)
+        self.extensions_used.iter().any(|name| name == extensions::QUANTIZATION)
     }
 }
-
-/// The first letters of the extensions that a file may require because they change neither triangles nor transforms.
-const HARMLESS: &[&str] = &[
-    "ADOBE_materials_",
-    "AGI_",
-    "CESIUM_primitive_outline",
-    "EXT_feature_metadata",
-    "EXT_instance_features",
-    "EXT_lights_",
-    "EXT_mesh_features",
-    "EXT_mesh_manifold",
-    "EXT_structural_metadata",
-    "EXT_texture_",
-    "FB_geometry_metadata",
-    "KHR_animation_pointer",
-    "KHR_audio",
-    "KHR_interactivity",
-    "KHR_lights_punctual",
-    "KHR_materials_",
-    "KHR_physics_",
-    "KHR_technique",
-    "KHR_texture_",
-    "KHR_xmp",
-    "MSFT_lod",
-    "MSFT_packing_",
-    "MSFT_texture_",
-    "OMI_",
-    "VRMC_",
-];
 
 /// Reads the JSON and refuses files that need more than this loader knows.
 pub(super) fn parse(text: &[u8]) -> Result<Root, Problem> {
@@ -334,21 +283,11 @@ pub(super) fn parse(text: &[u8]) -> Result<Root, Problem> {
     let head: Head = from_json(text)?;
     let version = &head.asset.version;
     if version != "2" && !version.starts_with("2.") {
-        let version = crate::error::quoted(version);
+        let version = quoted(version);
         return Err(format!("its asset.version is {version}; only glTF 2.0 is read"));
     }
-    let unknown = |name: &&String| {
-        !READ.contains(&name.as_str()) && !HARMLESS.iter().any(|known| name.starts_with(known))
-    };
-    if let Some(name) = head.extensions_required.iter().find(unknown) {
-        let how = match name.as_str() {
-            DRACO => "which the crate's feature draco reads; build with it, or export it without",
-            name if MESHOPT.contains(&name) => {
-                "which the crate's feature meshopt reads; build with it, or export it without"
-            }
-            _ => "which is not supported; export it without",
-        };
-        return Err(format!("it requires the extension {}, {how}", crate::error::quoted(name)));
+    if let Some(refusal) = extensions::refusal(&head.extensions_required) {
+        return Err(refusal);
     }
     let mut root: Root = from_json(text)?;
     // What is required is used, whether or not the file says so.
@@ -375,6 +314,22 @@ pub(super) fn shortened(message: &str) -> String {
     let start: String = message.chars().take(first).collect();
     let end: String = message.chars().skip(length - last).collect();
     format!("{start}…{end}")
+}
+
+/// The place of the item of a name, or of a number, among those that the file calls `what`.
+pub(super) fn by_name<'a>(
+    what: &str,
+    names: impl ExactSizeIterator<Item = Option<&'a str>> + Clone,
+    name: &str,
+) -> Result<usize, Problem> {
+    let named = names.clone().position(|of| of == Some(name));
+    let number = name.parse().ok().filter(|number| *number < names.len());
+    named.or(number).ok_or_else(|| {
+        let count = names.len();
+        let shown: Vec<_> = names.take(8).map(|of| quoted(of.unwrap_or_default())).collect();
+        let list = if shown.is_empty() { String::new() } else { format!(": {}", shown.join(", ")) };
+        format!("it has no {what} {}; it has {count}{list}", quoted(name))
+    })
 }
 
 /// Follows an index: `owner` (node "lamp", say) refers to item `index` of the array called `what`.

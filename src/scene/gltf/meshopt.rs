@@ -1,11 +1,12 @@
 //! Buffer views that meshoptimizer compressed (EXT_meshopt_compression and KHR_meshopt_compression).
 //!
-//! Its decoder is made for strangers' bytes, but asserts what it is called with: that is checked here, before.
+//! Its decoder takes any bytes of a stream, and asserts that counts and strides suit it. This module checks them before the
+//! call, so that no file makes an assertion fail.
 
 use super::Problem;
 use super::extensions::Meshopt;
 use crate::error::quoted;
-use bytemuck::{cast_slice, cast_slice_mut};
+use bytemuck::{NoUninit, cast_slice, cast_slice_mut};
 use meshopt::encoding::{
     decode_filter_color, decode_filter_exp, decode_filter_oct, decode_filter_quat,
 };
@@ -24,7 +25,6 @@ pub(super) fn decoded(of: &Meshopt, stream: &[u8]) -> Result<Vec<u8>, Problem> {
         .zip(usize::try_from(*byte_stride).ok())
         .filter(|(count, stride)| count.checked_mul(*stride).is_some())
         .ok_or_else(shape)?;
-    let is_triangles = mode == "TRIANGLES";
     let elements = match (mode.as_str(), stride) {
         ("ATTRIBUTES", 1..=LONGEST) if stride.is_multiple_of(4) => {
             return attributes(stream, [count, stride], filter);
@@ -33,25 +33,18 @@ pub(super) fn decoded(of: &Meshopt, stream: &[u8]) -> Result<Vec<u8>, Problem> {
             return Err("it has a filter, which is for attributes".into());
         }
         ("TRIANGLES", 2 | 4) if !count.is_multiple_of(3) => return Err(shape()),
-        ("TRIANGLES" | "INDICES", 2) => {
-            let decode = if is_triangles {
-                decode_index_buffer::<u16>
-            } else {
-                decode_index_sequence::<u16>
-            };
-            decode(stream, count).ok().map(|elements| cast_slice(&elements).to_vec())
-        }
-        ("TRIANGLES" | "INDICES", 4) => {
-            let decode = if is_triangles {
-                decode_index_buffer::<u32>
-            } else {
-                decode_index_sequence::<u32>
-            };
-            decode(stream, count).ok().map(|elements| cast_slice(&elements).to_vec())
-        }
+        ("TRIANGLES", 2) => bytes_of(decode_index_buffer::<u16>(stream, count)),
+        ("TRIANGLES", 4) => bytes_of(decode_index_buffer::<u32>(stream, count)),
+        ("INDICES", 2) => bytes_of(decode_index_sequence::<u16>(stream, count)),
+        ("INDICES", 4) => bytes_of(decode_index_sequence::<u32>(stream, count)),
         _ => return Err(shape()),
     };
     elements.ok_or_else(|| no_stream(stream, [count, stride]))
+}
+
+/// The bytes of indices, where the stream held them.
+fn bytes_of<T: NoUninit, E>(indices: Result<Vec<T>, E>) -> Option<Vec<u8>> {
+    indices.ok().map(|indices| cast_slice(&indices).to_vec())
 }
 
 fn no_stream(stream: &[u8], [count, stride]: [usize; 2]) -> Problem {

@@ -30,7 +30,6 @@ mod triangles;
 
 use super::{Bounds, Instance, Mesh, Scene};
 use crate::Error;
-use crate::error::quoted;
 use glam::{DMat4, DVec3};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -151,9 +150,11 @@ fn parse(bytes: &[u8], folder: &Path, options: &GltfOptions) -> Result<Scene, Pr
     #[cfg(feature = "draco")]
     draco::mark(&mut root);
     if let Some(scene) = options.scene {
-        root.scene = Some(scene_of(&root, scene)?);
+        let names = root.scenes.iter().map(|scene| scene.name.as_str());
+        root.scene = Some(json::by_name("scene", names, scene)?);
     }
     if let Some(animation) = options.animation {
+        // Nodes move before anything stands at them; what it reads of buffers is let go again.
         let buffers = buffers::Buffers::new(&root, bytes.len(), chunk, folder);
         let changes = animation::Changes::at(&root, &buffers, text, animation)?;
         changes.apply(&mut root)?;
@@ -207,21 +208,6 @@ fn parse(bytes: &[u8], folder: &Path, options: &GltfOptions) -> Result<Scene, Pr
     }
     scene.meshes = meshes.read;
     Ok(scene)
-}
-
-/// The scene of a name, or of a number.
-fn scene_of(root: &json::Root, name: &str) -> Result<usize, Problem> {
-    let named = root.scenes.iter().position(|scene| scene.name.as_str() == Some(name));
-    let number = name.parse().ok().filter(|number| *number < root.scenes.len());
-    named.or(number).ok_or_else(|| {
-        let names = root.scenes.iter().map(|scene| quoted(scene.name.as_str().unwrap_or_default()));
-        let names: Vec<_> = names.take(8).collect();
-        let count = root.scenes.len();
-        match names.join(", ") {
-            _ if count == 0 => "it has no scenes".into(),
-            names => format!("it has no scene {}; it has {count}: {names}", quoted(name)),
-        }
-    })
 }
 
 /// The file's meshes, each read when a node first places it, and those that look the same once.

@@ -156,11 +156,26 @@ fn what_is_wrong_with_an_animation_is_a_sentence() {
     let of = GltfOptions { animation: Some(("run", 0.0)), ..GltfOptions::default() };
     let found = from_gltf_as(&path, &of).unwrap_err().to_string();
     assert!(found.contains("it has no animation \"run\"; it has 1: \"walk\""), "{found}");
-    // A matrix cannot be moved; and what is wrong with an animation that nobody asked for stops nothing.
+    // A node with a matrix cannot be moved.
+    let (mut file, _) = square();
+    let times = file.view(&0.0f32.to_le_bytes());
+    let input = file.accessor(
+        json!({"bufferView": times, "componentType": 5126, "type": "SCALAR", "count": 1}),
+    );
+    let output = file.vectors(&[[1.0, 0.0, 0.0]]);
     let members = json!({
         "nodes": [{"mesh": 0, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}],
-        "animations": [3],
+        "animations": [{
+            "samplers": [{"input": input, "output": output}],
+            "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
+        }],
     });
+    let path = written("matrix", &file.root(&primitives, members), &file.bin);
+    let first = GltfOptions { animation: Some(("0", 0.0)), ..GltfOptions::default() };
+    let found = from_gltf_as(&path, &first).unwrap_err().to_string();
+    assert!(found.contains("nodes[0] has a matrix, and an animation moves it"), "{found}");
+    // What is wrong with an animation that nobody named stops nothing.
+    let members = json!({"animations": [3]});
     let path = written("broken", &file.root(&primitives, members), &file.bin);
     assert!(from_gltf(&path).is_ok());
     assert!(from_gltf_as(&path, &of).unwrap_err().to_string().contains("not the JSON of a glTF"));

@@ -77,7 +77,7 @@ fn every_kind_of_stream_is_the_mesh_that_it_was_made_of() {
     let expected = triangles.iter().map(|t| t.map(|i| wide(&grid_points[i as usize]))).collect();
     let bytes = floats(&grid_points);
     let up = floats(&vec![[0.0, 0.6, 0.8]; grid_points.len()]);
-    // All of one size: whatever the encoder found, the mesh is no wider than 1.
+    // A step of a coordinate, of a mesh that is 1 m wide.
     let within = 2.0 / f64::from(1 << BITS);
     let mut lengths = Vec::new();
     for speed in [0, 5, 10] {
@@ -97,7 +97,7 @@ fn every_kind_of_stream_is_the_mesh_that_it_was_made_of() {
         assert_close_by(&in_order(found), &in_order(Clone::clone(&expected)), within);
         let normals = &scene.meshes[0].normals;
         assert!(normals.iter().all(|n| (wide(n) - DVec3::new(0.0, 0.6, 0.8)).length() < 1e-3));
-        // The same file says what it has where nobody requires that.
+        // A file may use the extension without requiring it.
         assert_eq!(points(&file.scene(&primitives, json!({})).unwrap()).len(), counts[1]);
     }
     // The kinds are kinds.
