@@ -129,6 +129,7 @@ struct GBuffer {
     vec4 own_slope;
     vec4 finer_at;          // that of the next finer view
     vec4 finer_slope;
+    vec2 finer_aside; // how far aside of the view's window the finer one's middle is
 };
 // A storage buffer, since lavapipe compiles a shader again whenever a uniform buffer that its branches test is bound. In a
 // fragment shader whose derivatives follow from them they are uniforms: llvmpipe's helper invocations read no buffers.
@@ -285,7 +286,7 @@ vec3 receiver_normal(ivec2 p, vec3 position)
 // Tangents from which on a view from the light's centre keeps half of its window at least.
 const float WIDE = 5.0;
 
-// Whether a point lies within a view's region, whose least x and y and largest x and y change evenly with z. The region of
+// Whether a point of a view's space lies within the view's region, whose least x and y and largest x and y change evenly with z. The region of
 // a view from the light's centre is its window, less what rays spread up to the nearest occluder. A wide view keeps half
 // of its window for what is so near to the light that more would be lost: the next wider view would have texels too large
 // for all else, and the centre sees what is so near otherwise than the light's rim anyway.
@@ -312,8 +313,9 @@ bool is_served(vec3 position)
     int view = gbuffer.flags >> 8 & 15;
     bool alone = (gbuffer.flags >> 12 & 15) == 0;
     vec2 nearest = (view & 1) == 0 ? nearest_before : nearest_before.yx;
+    vec3 in_finer = vec3(position.xy - gbuffer.finer_aside * position.z, position.z);
     return alone || is_within(gbuffer.own_at, gbuffer.own_slope, nearest.x, position) &&
-                        !is_within(gbuffer.finer_at, gbuffer.finer_slope, view == 0 ? -1.0 : nearest.y, position);
+                        !is_within(gbuffer.finer_at, gbuffer.finer_slope, view == 0 ? -1.0 : nearest.y, in_finer);
 }
 
 // The receiver that a pixel shows, without its normal.

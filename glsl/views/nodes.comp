@@ -15,9 +15,9 @@ layout(set = 0, binding = 1, std430) buffer Nodes { float nodes[]; };
 
 layout(push_constant) uniform Push {
     vec2 texels_per_uv; // map texels a unit of u and v
-    vec2 first;         // texel coordinates of u = v = 0
+    vec2 middle;        // texel coordinates of the middle of the finer view's window
     vec2 half_light;    // half the light's width and height, m
-    float tangent;      // the largest u and v of the finer view's window
+    vec2 tangents;      // half the finer view's window in u and in v
     float inv_near;     // the w of the map's near plane
     int map;            // the map's side in texels
 } push;
@@ -36,9 +36,9 @@ void main()
     for (int y = begin.y; y < end.y; ++y) {
         for (int x = begin.x; x < end.x; ++x) {
             float w = texelFetch(front_depth, ivec2(x, y), 0).x * push.inv_near;
-            // The texel counts by its point that is nearest to the axis.
-            vec2 off = max(abs(vec2(x, y) + 0.5 - push.first) - 0.5, vec2(0.0)) / push.texels_per_uv;
-            bool within = all(lessThanEqual(off, push.half_light * w + push.tangent));
+            // The texel counts by its point that is nearest to that middle.
+            vec2 off = max(abs(vec2(x, y) + 0.5 - push.middle) - 0.5, vec2(0.0)) / push.texels_per_uv;
+            bool within = all(lessThanEqual(off, push.half_light * w + push.tangents));
             most = max(most, within ? w : 0.0);
         }
     }

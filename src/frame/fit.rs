@@ -3,21 +3,23 @@
 use super::boxes::{Boxes, MeshBoxes, has_triangles};
 use super::hull::Hull;
 use super::odd::Odd;
+use super::parallel::visible;
 use super::passes::PLACEHOLDER;
 use super::placed::Placed;
 use super::request::FitRequest;
+use super::reuse::CameraBits;
 use super::{Description, Frame};
 use crate::Error;
 use crate::effects::{Seen, Situation};
 use crate::graph::{Need, Why};
 use crate::light::{Light, RectangleLight};
 use crate::stages::depth_layers::{self, HostMapView, LightBox, MapView, Projection};
-use crate::stages::views::{Extent, Region, Served, Views, fit_served};
+use crate::stages::views::{Extent, Lamp, Served, Views, fit_served};
 use crate::techniques::room::{Room, Seen as ViewsSeen};
 use glam::DMat4;
 
 /// A view for passes that do not run, which serves all pixels.
-const ALONE: Served = Served { map: PLACEHOLDER, region: Region::ALL, deepest: PLACEHOLDER.far };
+const ALONE: Served = Served::all(PLACEHOLDER);
 
 /// The inputs of a fit: frames with equal inputs have the same fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,8 +30,8 @@ struct Inputs {
     window: Option<[[f64; 2]; 2]>,
     request: FitRequest,
     meshes: usize,
-    /// The camera, where the views follow it.
-    camera: Option<DMat4>,
+    /// The camera, which matters where the views follow it.
+    camera: DMat4,
 }
 
 /// The meshes that matter to a light, and the views of its maps.
@@ -70,6 +72,8 @@ pub(super) struct Fit {
     pub situation: Option<Situation>,
     /// Signs of mistakes in the meshes.
     pub odd: Odd,
+    /// Whether the views follow the camera.
+    pub(super) follows_camera: bool,
     /// Counts the fits that were made: it changes with each.
     number: u64,
     /// The technique's own views, once [`Self::views`] has made them.
@@ -98,6 +102,7 @@ impl Default for Fit {
             need: Need::No(Why::default()),
             situation: None,
             odd: Odd::default(),
+            follows_camera: false,
             number: 0,
             views: None,
         }
@@ -118,7 +123,9 @@ impl Fit {
         mesh_boxes: &mut MeshBoxes,
     ) -> Result<(), Error> {
         let of = Inputs::of(request, frame);
-        if of.is_some() && self.of == of {
+        let follows = self.follows_camera;
+        let same = |old: &Inputs| of.as_ref().is_some_and(|new| old.are(new, follows));
+        if self.of.as_ref().is_some_and(same) {
             return Ok(());
         }
         self.of = None;
@@ -174,8 +181,9 @@ impl Fit {
         // Lent maps look from the light's centre.
         let eye = if self.host_maps.is_some() { Projection::Centre } else { maps.eye };
         let map = self.centre.unwrap_or(PLACEHOLDER);
-        self.alone = Served { map, deepest: map.far, ..ALONE };
+        self.alone = Served::all(map);
         self.served.clear();
+        self.follows_camera = false;
         let tangent =
             frame.light.tangent().filter(|_| request.parallel && self.host_maps.is_none());
         match eye {
@@ -192,9 +200,19 @@ impl Fit {
                 .into();
             }
             _ => {
-                let boxes = [&self.occluders.boxes[..], &self.receivers.boxes];
-                self.why_served =
-                    fit_served(half, boxes, eye, maps.sides(), most, &mut self.served);
+                let lamp = Lamp {
+                    half,
+                    occluders: &self.occluders.boxes,
+                    receivers: &self.receivers.boxes,
+                    visible: visible(
+                        &(self.light_from_world * frame.world_from_ndc),
+                        &self.receivers.boxes,
+                    ),
+                    projection: eye,
+                    sides: maps.sides(),
+                    most,
+                };
+                (self.why_served, self.follows_camera) = fit_served(&lamp, &mut self.served);
             }
         }
         self.receiver_view = self.shadowed.unwrap_or(PLACEHOLDER);
@@ -316,6 +334,12 @@ impl Fit {
         self.light.is_point()
     }
 
+    /// The camera of a frame, where the views follow it.
+    pub fn camera(&self, frame: &Frame) -> Option<CameraBits> {
+        let bits = || frame.world_from_ndc.to_cols_array().map(f64::to_bits);
+        self.follows_camera.then(bits)
+    }
+
     /// The number of this fit: the meshes and views are the same while it is.
     pub fn number(&self) -> u64 {
         self.number
@@ -352,11 +376,6 @@ impl Fit {
     }
 }
 
-/// Whether the views of a frame follow its camera.
-pub(super) fn follows_camera(request: &FitRequest, frame: &Frame) -> bool {
-    request.parallel && request.most_served > 1 && frame.light.tangent().is_some()
-}
-
 impl Inputs {
     /// The inputs of a frame's fit; `None` where the frame has no revision or lends occluder maps, whose camera may
     /// change: its fit is made anew.
@@ -371,7 +390,13 @@ impl Inputs {
             window: frame.window,
             request: *request,
             meshes: frame.meshes.len(),
-            camera: follows_camera(request, frame).then_some(frame.world_from_ndc),
+            camera: frame.world_from_ndc,
         })
+    }
+
+    /// Whether the fit of these is that of others, for views that follow the camera or do not.
+    fn are(&self, others: &Self, follow: bool) -> bool {
+        let camera = if follow { self.camera } else { others.camera };
+        *others == Self { camera, ..*self }
     }
 }

@@ -83,7 +83,8 @@ pub(super) fn frame_inputs<'a>(
             light_from_normal: from_normal.map(|c| c.as_vec3().extend(0.0).to_array()),
         }),
         noise: frame.noise,
-        ndc_from_light: from_light.to_cols_array(),
+        light_from_ndc,
+        ndc_from_light,
         reach: frame.reach,
         tree: (triangles.sizes, triangles.space(frame, description)),
     };

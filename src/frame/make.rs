@@ -3,7 +3,7 @@
 use super::accesses::{HostAccess, NodeUse};
 use super::boxes::MeshBoxes;
 use super::doubts::Sight;
-use super::fit::{Fit, follows_camera};
+use super::fit::Fit;
 use super::inputs::frame_inputs;
 use super::passes::{Clips, Ids, Limits, build};
 use super::plan::{FramePlan, Stamp};
@@ -126,7 +126,7 @@ pub(crate) fn plan_into(
     let Memory { fit, camera, built, drawn } = memory;
     let request = FitRequest::of(&description.technique);
     fit.update(description, &request, frame, mesh_boxes)?;
-    let fit_number = if follows_camera(&request, frame) { fit.number() } else { 0 };
+    let camera_of_views = fit.camera(frame);
     plan.triangles.meshes.clear();
     if description.has_hierarchy() {
         plan.triangles.fill(description, frame.meshes)?;
@@ -149,7 +149,8 @@ pub(crate) fn plan_into(
     if before.is_none() {
         camera.find(graph, ids.pixels());
     }
-    let revisions = Revisions { scene: frame.revision, view: frame.view_revision, fit: fit_number };
+    let revisions =
+        Revisions { scene: frame.revision, view: frame.view_revision, camera: camera_of_views };
     plan.reuse = reuse::apply(graph, camera, lit, (&frame.visibility, tree), revisions, cached);
     let shape = Shape { needs, views, side, reuses: plan.reuse.uses() };
     plan.imports.clear();
@@ -191,7 +192,7 @@ pub(crate) fn plan_into(
         && (fit.parallel || own == 0)
         && (room.most_served() > 1 || room.takes_parallel())
     {
-        plan.views.extend(fit.served.iter().map(|served| PlannedView::of(&served.map)));
+        plan.views.extend(fit.served.iter().map(PlannedView::of));
     }
     plan.why_views = if plan.views.is_empty() { Why::default() } else { fit.why_served };
     let maps = room.maps();

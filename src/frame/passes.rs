@@ -9,7 +9,7 @@ use crate::knob::MOST_VIEWS;
 use crate::stages::depth_layers::{self, Eye, HostMapView, LightLayers, MapView, Projection};
 use crate::stages::hierarchy::{self, Sizes};
 use crate::stages::views::inner::{self, Inner};
-use crate::stages::views::{Region, Served, Views};
+use crate::stages::views::{Served, Views};
 use crate::stages::visibility::{self, Constants, GBuffer, NormalConstants};
 use crate::techniques::hard::{self, Filter};
 use crate::techniques::room::PassInputs;
@@ -67,7 +67,8 @@ pub(super) struct FrameInputs<'a> {
     pub needs: Needs,
     pub constants: Constants,
     pub normals: Option<NormalConstants>,
-    pub ndc_from_light: [f32; 16],
+    pub light_from_ndc: DMat4,
+    pub ndc_from_light: DMat4,
     pub noise: u32,
     /// How far the light reaches, m.
     pub reach: Option<f64>,
@@ -160,10 +161,16 @@ impl Needs {
 }
 
 impl FrameInputs<'_> {
+    /// Whether the passes of a view need lent normals in another space than those before them: the passes of the widest
+    /// view are the first.
+    fn turns_normals(&self, view: usize) -> bool {
+        self.occluders.get(view + 1).is_none_or(|before| before.aside != self.occluders[view].aside)
+    }
+
     /// Matrices from light space to the clip space of each view of the occluders.
     pub fn occluder_clips(&self) -> Clips {
         match self.views.count() {
-            0 => self.occluders.iter().map(|served| served.map.clip_from_light()).collect(),
+            0 => self.occluders.iter().map(Served::clip_from_light).collect(),
             _ => self.views.clips(),
         }
     }
@@ -176,10 +183,7 @@ pub(crate) fn all_passes(description: &Description, limits: Limits) -> Graph {
     // Lent maps are those of one view.
     let side = if description.occluder_maps.is_some() { maps.side } else { maps.largest() };
     let view = MapView { side, ..PLACEHOLDER };
-    let served = vec![
-        Served { map: view, region: Region::ALL, deepest: view.far };
-        room.most_served() as usize
-    ];
+    let served = vec![Served::all(view); room.most_served() as usize];
     let frame = FrameInputs {
         light: &RectangleLight::unit(),
         occluders: &served,
@@ -197,7 +201,8 @@ pub(crate) fn all_passes(description: &Description, limits: Limits) -> Graph {
         needs: Needs::all(&Need::Yes("nominal".into())),
         constants: Constants::zeroed(),
         normals: description.normals.map(|_| NormalConstants::zeroed()),
-        ndc_from_light: DMat4::IDENTITY.as_mat4().to_cols_array(),
+        light_from_ndc: DMat4::IDENTITY,
+        ndc_from_light: DMat4::IDENTITY,
         noise: 0,
         reach: None,
         tree: (Sizes { capacity: description.capacity.triangles, triangles: 0 }, Space::default()),
@@ -265,7 +270,7 @@ pub(super) fn build(
         layers: &layers,
         gbuffer: &gbuffer,
         visibility,
-        ndc_from_light: frame.ndc_from_light,
+        ndc_from_light: [0.0; 16],
         noise: frame.noise,
         light_texture,
         color,
@@ -282,9 +287,13 @@ pub(super) fn build(
     let is_centred = |map: &MapView| map.eye == Eye::Behind(0.0);
     // The widest view's passes are first: its maps tell what lies before the receivers of the finer ones.
     for (nth, view) in (0..count).rev().enumerate() {
-        let map = &frame.occluders[view].map;
-        let normals = frame.normals.as_ref().filter(|_| nth == 0);
-        frame.constants.for_view(view, count).write(normals, graph, constants, shadowed);
+        let served = &frame.occluders[view];
+        let map = &served.map;
+        let normals = frame.normals.as_ref().filter(|_| frame.turns_normals(view));
+        let normals = normals.map(|normals| normals.seen_aside(served.aside));
+        let of_view = frame.constants.for_view(view, count);
+        let of_view = of_view.seen_aside(&frame.light_from_ndc, served);
+        of_view.write(normals.as_ref(), graph, constants, shadowed);
         if room.most_served() > 1 {
             Constants::write_regions(graph, constants, (view, frame.occluders), &several);
         }
@@ -298,9 +307,7 @@ pub(super) fn build(
             // A frame without a finer view declares the passes once, for the plan to name them.
             inner: nodes.filter(|_| finer.is_some() || nth == 0).map(|nodes| Inner {
                 view: finer.unwrap_or(0) as u32,
-                tangents: finer.map_or([0.0; 2], |finer| {
-                    [finer, view].map(|one| frame.occluders[one].region.tangent())
-                }),
+                views: finer.map(|finer| [&frame.occluders[finer], served]),
                 map,
                 half: frame.light.half_extents(),
                 nodes,
@@ -311,9 +318,12 @@ pub(super) fn build(
         };
         let inputs = PassInputs {
             occluders: map,
-            deepest: frame.occluders[view].deepest,
+            deepest: served.deepest,
             view: view as u32,
             layers: &layers,
+            ndc_from_light: (frame.ndc_from_light * served.light_from_view())
+                .as_mat4()
+                .to_cols_array(),
             ..inputs
         };
         let nearest = room.declare(graph, &inputs);

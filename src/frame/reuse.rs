@@ -20,9 +20,12 @@ pub(crate) struct Revisions {
     pub scene: Option<u64>,
     /// The revision of camera and G-buffer.
     pub view: Option<u64>,
-    /// The number of the fit of the maps' views where these follow the camera, else 0.
-    pub fit: u64,
+    /// The camera, where the maps' views follow it.
+    pub camera: Option<CameraBits>,
 }
+
+/// A camera's matrix to world space, by column, as the bits of its numbers.
+pub(crate) type CameraBits = [u64; 16];
 
 /// A set of the kinds of pass of one description's graphs, a bit each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,8 +48,8 @@ impl Kinds {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Maps {
     pub scene: u64,
-    /// The number of the fit of their views where these follow the camera, else 0.
-    pub fit: u64,
+    /// The camera, where their views follow it.
+    pub camera: Option<CameraBits>,
     pub kinds: Kinds,
 }
 
@@ -106,7 +109,9 @@ impl Reuse {
     pub fn cached_after(&self, cached: &Cached) -> Cached {
         Cached {
             maps: match (self.makes_maps, self.revisions.scene) {
-                (Some(kinds), Some(scene)) => Some(Maps { scene, fit: self.revisions.fit, kinds }),
+                (Some(kinds), Some(scene)) => {
+                    Some(Maps { scene, camera: self.revisions.camera, kinds })
+                }
                 (Some(_), None) => None,
                 (None, _) => cached.maps,
             },
@@ -161,7 +166,7 @@ pub(super) fn apply(
     for &id in &camera.maps {
         graph.keep(id);
     }
-    let maps = revisions.scene.map(|scene| Maps { scene, fit: revisions.fit, kinds });
+    let maps = revisions.scene.map(|scene| Maps { scene, camera: revisions.camera, kinds });
     match maps.filter(|maps| cached.maps == Some(*maps)) {
         Some(Maps { scene, .. }) => {
             let why = Why::from("the maps of scene revision ").and(scene).and(" are kept");

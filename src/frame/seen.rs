@@ -96,11 +96,15 @@ impl Frustum {
         bounds
     }
 
+    /// The corners of the slice between two distances before the eye: bit 2 of a corner's number selects the further end.
+    pub fn corners(&self, [near, far]: [f64; 2]) -> [DVec3; 8] {
+        std::array::from_fn(|i| self.eye + self.rays[i & 3] * if i < 4 { near } else { far })
+    }
+
     /// Calls `add` with every corner of the part of a box that lies in a slice of the frustum. Each is one of a face of
     /// the box that the slice cuts, or of a face of the slice that the box cuts.
     fn each_corner(&self, of: &Bounds, [near, far]: [f64; 2], mut add: impl FnMut(DVec3)) {
-        let own: [DVec3; 8] =
-            std::array::from_fn(|i| self.eye + self.rays[i & 3] * if i < 4 { near } else { far });
+        let own = self.corners([near, far]);
         let middle = 0.25 * (self.rays[0] + self.rays[1] + self.rays[2] + self.rays[3]);
         let side = |a: usize, b: usize| {
             let n = self.rays[a].cross(self.rays[b]);

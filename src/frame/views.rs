@@ -1,6 +1,7 @@
 //! The views of a frame's occluders, for people.
 
-use crate::stages::depth_layers::{Eye, MapView};
+use crate::stages::depth_layers::Eye;
+use crate::stages::views::Served;
 use std::fmt;
 
 /// A view through which a light is seen in a frame: the window of a map.
@@ -20,12 +21,12 @@ pub struct PlannedView {
 }
 
 impl PlannedView {
-    pub(super) fn of(map: &MapView) -> Self {
+    pub(super) fn of(Served { map, aside, .. }: &Served) -> Self {
         let is_parallel = map.eye == Eye::Infinity;
         let before = if is_parallel { map.near } else { map.behind() };
         Self {
-            min: map.min,
-            max: map.max,
+            min: [0, 1].map(|i| map.min[i] + aside[i]),
+            max: [0, 1].map(|i| map.max[i] + aside[i]),
             texel: map.texels_per_uv().map(|per| 1.0 / per),
             distances: [map.near - before, map.far - before],
             is_parallel,

@@ -9,14 +9,14 @@ use smallvec::SmallVec;
 const FLAT: f64 = 1e-6;
 
 /// A convex polygon.
-type Polygon = SmallVec<[DVec3; 12]>;
+pub(crate) type Polygon = SmallVec<[DVec3; 12]>;
 
 /// The corners of a box's faces, which are numbered by a bit an axis.
 const FACES: [[usize; 4]; 6] =
     [[0, 2, 6, 4], [1, 3, 7, 5], [0, 1, 5, 4], [2, 3, 7, 6], [0, 1, 3, 2], [4, 5, 7, 6]];
 
 /// The part of a convex polygon on the inner side of a plane: where `plane · (p, 1)` is 0 or more.
-fn cut(polygon: &Polygon, plane: &DVec4) -> Polygon {
+pub(crate) fn cut(polygon: &Polygon, plane: &DVec4) -> Polygon {
     let height = |p: DVec3| plane.dot(p.extend(1.0));
     let mut kept = Polygon::new();
     for (i, &a) in polygon.iter().enumerate() {
@@ -35,6 +35,12 @@ fn cut(polygon: &Polygon, plane: &DVec4) -> Polygon {
 /// Calls `add` with every corner of the parts of a box's faces that lie within some planes, on the side where
 /// `plane · (p, 1)` is 0 or more.
 pub(crate) fn cut_faces(corners: &[DVec3; 8], planes: &[DVec4], mut add: impl FnMut(DVec3)) {
+    each_face(corners, planes, |face| face.iter().for_each(|p| add(*p)));
+}
+
+/// Calls `add` with the parts of a box's faces that lie within some planes, on the side where `plane · (p, 1)` is 0 or
+/// more.
+pub(crate) fn each_face(corners: &[DVec3; 8], planes: &[DVec4], mut add: impl FnMut(&Polygon)) {
     // The planes that a corner lies outside of, a bit each.
     let outside = corners.map(|p| {
         let beyond = |(i, plane): (usize, &DVec4)| u32::from(plane.dot(p.extend(1.0)) < 0.0) << i;
@@ -52,8 +58,20 @@ pub(crate) fn cut_faces(corners: &[DVec3; 8], planes: &[DVec4], mut add: impl Fn
                 polygon = cut(&polygon, plane);
             }
         }
-        polygon.iter().for_each(|p| add(*p));
+        add(&polygon);
     }
+}
+
+/// The planes of the faces of a convex solid with the corners of a box, where `plane · (p, 1)` is 0 or more within it. The
+/// plane of a face without area is 0.
+pub(crate) fn planes_around(corners: &[DVec3; 8]) -> [DVec4; 6] {
+    let middle = 0.125 * corners.iter().sum::<DVec3>();
+    FACES.map(|[a, b, c, d]| {
+        let across = (corners[c] - corners[a]).cross(corners[d] - corners[b]);
+        let normal = across.normalize_or_zero();
+        let normal = if normal.dot(middle - corners[a]) < 0.0 { -normal } else { normal };
+        normal.extend(-normal.dot(corners[a]))
+    })
 }
 
 /// A mesh's box in light space, metres.
@@ -140,6 +158,14 @@ impl LightBox {
         let mut range = [f64::INFINITY, f64::NEG_INFINITY];
         cut_faces(&self.corners, planes, |p| range = [range[0].min(p.z), range[1].max(p.z)]);
         range
+    }
+
+    /// Whether the box around the corners lies outside one of some planes, on the side where `plane · (p, 1)` is below 0.
+    pub fn is_outside(&self, planes: &[DVec4]) -> bool {
+        planes.iter().any(|plane| {
+            let inmost = DVec3::select(plane.truncate().cmpge(DVec3::ZERO), self.max, self.min);
+            plane.dot(inmost.extend(1.0)) < 0.0
+        })
     }
 
     /// The box's edge along one of the mesh's axes.

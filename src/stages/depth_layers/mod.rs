@@ -25,13 +25,13 @@ mod eye;
 mod host_maps;
 mod view;
 
-pub(crate) use boxes::{LightBox, cut_faces};
+pub(crate) use boxes::{LightBox, Polygon, cut, cut_faces, each_face, planes_around};
 pub(crate) use eye::view_from;
 pub use eye::{Projection, view};
 pub(crate) use host_maps::HostMapView;
 pub use view::{Eye, MapView, fit_from, fit_occluders, fit_receivers, is_aside};
 pub(crate) use view::{
-    fit_boxes, fit_boxes_from, fit_boxes_within, fit_receiver_boxes, pad, tangents_of,
+    fit_boxes, fit_boxes_from, fit_boxes_within, fit_receiver_boxes, nearest_of, pad, tangents_of,
     tangents_within, window_of,
 };
 

@@ -248,6 +248,11 @@ fn planes_of(occluders: &[LightBox]) -> Option<(f64, f64)> {
     Some((near, far))
 }
 
+/// The distance from the light's plane beyond which boxes are drawn; none where all lie behind the light.
+pub(crate) fn nearest_of(occluders: &[LightBox]) -> Option<f64> {
+    Some(planes_of(occluders)?.0)
+}
+
 /// The view of [`fit_occluders`] from an eye behind the light; occluders behind the light are left out.
 pub fn fit_from(
     eye: Eye,
@@ -260,20 +265,24 @@ pub fn fit_from(
 
 /// The view of [`fit_from`] for boxes in light space.
 pub(crate) fn fit_boxes_from(eye: Eye, occluders: &[LightBox], side: u32) -> Option<MapView> {
-    fit_boxes_within(eye, occluders, MAX_TANGENT, side)
+    fit_boxes_within(eye, occluders, [0.0; 2], [MAX_TANGENT; 2], side)
 }
 
-/// The view of [`fit_from`] for boxes in light space, with tangents up to `most` as its eye sees them.
+/// The view of [`fit_from`] for boxes in light space, with tangents up to `most` as its eye sees them. The view's x and y
+/// are less than the boxes' by `aside` for each metre from the light's plane.
 pub(crate) fn fit_boxes_within(
     eye: Eye,
     occluders: &[LightBox],
-    most: f64,
+    aside: [f64; 2],
+    most: [f64; 2],
     side: u32,
 ) -> Option<MapView> {
     let (near, far) = planes_of(occluders)?;
     let (mut window, near, far) = match eye {
         Eye::Behind(behind) => {
-            let of = |p: DVec3| [p.x, p.y].map(|x| (x / (p.z + behind)).clamp(-most, most));
+            let of = |p: DVec3| {
+                [0, 1].map(|i| ((p[i] - aside[i] * p.z) / (p.z + behind)).clamp(-most[i], most[i]))
+            };
             (extents(occluders, near, of)?, near + behind, far + behind)
         }
         Eye::Infinity => {

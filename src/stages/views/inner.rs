@@ -8,6 +8,7 @@ use crate::graph::{Access, Graph, Need, Pass, Push, ResourceId, Use};
 use crate::shaders::module;
 use crate::stages::depth_layers::MapView;
 use crate::stages::nearest::nodes_a_row;
+use crate::stages::views::Served;
 use crate::stages::visibility::{self, grid};
 use bytemuck::{Pod, Zeroable};
 use smallvec::smallvec;
@@ -21,12 +22,12 @@ const WIDE: f64 = 5.0;
 pub struct Nodes {
     /// Map texels a unit of u and v.
     pub texels_per_uv: [f32; 2],
-    /// Texel coordinates of u = v = 0.
-    pub first: [f32; 2],
+    /// Texel coordinates of the middle of the finer view's window.
+    pub middle: [f32; 2],
     /// Half the light's width and height, m.
     pub half_light: [f32; 2],
-    /// The largest u and v of the finer view's window.
-    pub tangent: f32,
+    /// Half the finer view's window in u and in v.
+    pub tangents: [f32; 2],
     /// The w of the map's near plane, 1/m.
     pub inv_near: f32,
     /// The map's side in texels.
@@ -54,8 +55,8 @@ pub struct Nearest {
 pub(crate) struct Inner<'a> {
     /// The finer view's number.
     pub view: u32,
-    /// The largest u and v of the finer view's window, and of the map's own view.
-    pub tangents: [f64; 2],
+    /// The finer view and the map's own, where there is such a view.
+    pub views: Option<[&'a Served; 2]>,
     /// The view of the map.
     pub map: &'a MapView,
     /// Half the light's width and height, m.
@@ -68,6 +69,39 @@ pub(crate) struct Inner<'a> {
     pub need: Need,
 }
 
+/// What the finer view's region follows from.
+struct Bounds {
+    /// How far aside of the own view's window the finer one's middle is, tangents.
+    aside: [f64; 2],
+    /// Half the finer view's window in u and in v.
+    tangents: [f64; 2],
+    /// The nearest occluder before the own view's receivers that counts, 1/m.
+    most: f64,
+    /// How much nearer it may be than that before the finer view's, 1/m.
+    slack: f64,
+}
+
+impl Bounds {
+    /// The bounds of a finer view and the map's own. The finer view's rim, at slopes of `tangents − half · nearest` around
+    /// `aside`, is nowhere beyond the own view's.
+    fn of(views: Option<[&Served; 2]>, half: [f64; 2]) -> Self {
+        let Some([finer, own]) = views else {
+            return Self { aside: [0.0; 2], tangents: [0.0; 2], most: 0.0, slack: 0.0 };
+        };
+        let [tangents, wide] = [finer, own].map(|view| view.region.tangents());
+        let aside = [0, 1].map(|i| finer.aside[i] - own.aside[i]);
+        let (mut most, mut slack) = (0.0f64, f64::INFINITY);
+        for i in 0..2 {
+            let half = half[i].max(1e-30);
+            let counts = if wide[i] >= WIDE { 0.5 * wide[i] / half } else { f64::INFINITY };
+            most = most.max(counts);
+            slack = slack.min((wide[i] - aside[i].abs() - tangents[i]) / half);
+        }
+        let most = most.min(f64::from(f32::MAX));
+        Self { aside, tangents, most, slack }
+    }
+}
+
 /// Declares the buffer of the nodes of a map of `side` texels.
 pub(crate) fn declare(graph: &mut Graph, side: u32) -> ResourceId {
     let row = nodes_a_row(side);
@@ -77,12 +111,9 @@ pub(crate) fn declare(graph: &mut Graph, side: u32) -> ResourceId {
 impl Inner<'_> {
     /// Adds the passes that find the nearest occluder before the receivers of the finer view from the map `front`.
     pub fn find(&self, graph: &mut Graph, front: ResourceId) {
-        // The finer view's rim, at a slope of `finer − half · nearest`, is nowhere beyond the own view's.
-        let [finer, own] = self.tangents;
-        let half = self.half[0].max(self.half[1]).max(1e-30);
-        let most = if own >= WIDE { 0.5 * own / half } else { f64::from(f32::MAX) };
-        let slack = (own - finer) / half;
         let map = self.map.side;
+        let Bounds { aside, tangents, most, slack } = Bounds::of(self.views, self.half);
+        let [first, per] = [self.map.first(), self.map.texels_per_uv()];
         let row = nodes_a_row(map);
         let nodes = self.nodes;
         graph.push(Pass::compute(
@@ -90,10 +121,10 @@ impl Inner<'_> {
             module!("views/nodes.comp"),
             grid([row; 2]),
             Push::new(&Nodes {
-                texels_per_uv: self.map.texels_per_uv().map(|x| x as f32),
-                first: self.map.first().map(|x| x as f32),
+                texels_per_uv: per.map(|x| x as f32),
+                middle: [0, 1].map(|i| (first[i] + aside[i] * per[i]) as f32),
                 half_light: self.half.map(|x| x as f32),
-                tangent: self.tangents[0] as f32,
+                tangents: tangents.map(|x| x as f32),
                 inv_near: self.map.top() as f32,
                 map: map as i32,
             }),

@@ -6,11 +6,13 @@ mod line;
 mod point;
 mod served;
 mod sun;
+mod visible;
 
 pub use line::Line;
 pub use point::LightPoint;
-pub(crate) use served::{Region, Served, fit_served};
+pub(crate) use served::{Lamp, Region, Served, fit_served};
 pub(crate) use sun::{Extent, UnderSun, fit_sun};
+pub(crate) use visible::Visible;
 
 use crate::knob::MOST_VIEWS;
 use glam::DMat4;

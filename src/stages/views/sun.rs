@@ -161,6 +161,7 @@ impl Fit<'_> {
             deepest: (lowest - origin.z).max(near),
             map: MapView { eye: Eye::Infinity, min, max, near, far: 0.0, side: sun.side },
             region,
+            aside: [0.0; 2],
         }
     }
 }

@@ -14,7 +14,7 @@ const CONSTANTS_AT: u8 = 19;
 const REGIONS_AT: u64 = (size_of::<Constants>() + size_of::<NormalConstants>()) as u64;
 
 /// Where the nearest occluders before the receivers of both begin in it, in bytes.
-const NEAREST_AT: u64 = REGIONS_AT + size_of::<[Region; 2]>() as u64;
+const NEAREST_AT: u64 = REGIONS_AT + size_of::<RegionConstants>() as u64;
 
 /// Where the nearest occluder before a view's receivers is in the buffer of constants, in floats. Passes read that of
 /// their own view and of the next finer one, so that every other view has the same place.
@@ -68,7 +68,21 @@ pub struct NormalConstants {
 /// The numbers behind [`NormalConstants`]: the regions of the view and of the next finer one.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct RegionConstants([Region; 2]);
+struct RegionConstants {
+    /// Each in its own view's space.
+    regions: [Region; 2],
+    /// How far aside of the view's window the finer one's middle is, tangents; the last two are not read.
+    finer_aside: [f32; 4],
+}
+
+impl NormalConstants {
+    /// The numbers for the space of a view that looks `aside`.
+    pub(crate) fn seen_aside(&self, [x, y]: [f64; 2]) -> Self {
+        let [s, t] = [x as f32, y as f32];
+        let turned = |[x, y, z, _]: [f32; 4]| [x, y, z + s * x + t * y, 0.0];
+        Self { light_from_normal: self.light_from_normal.map(turned) }
+    }
+}
 
 /// A plane (a, b, c, d) of the image, which holds what a column + b row + c depth + d is 0 of, to x, y and z of its
 /// normal in light space, on the viewer's side: the inverse's transpose, as for all planes, of which a normal takes
@@ -106,6 +120,23 @@ impl Constants {
         Self { flags: self.flags | (view as i32) << 8 | last << 12, ..*self }
     }
 
+    /// The constants in the space of a view. Its planes are those of light space, with x and y times what the view looks
+    /// aside added to the z of their normals.
+    pub(crate) fn seen_aside(&self, light_from_ndc: &DMat4, view: &Served) -> Self {
+        if view.aside == [0.0; 2] {
+            return *self;
+        }
+        let view_from_ndc = view.view_from_light() * *light_from_ndc;
+        let [x, y, z] = self.plane_to_normal;
+        let [s, t] = view.aside.map(|tangent| tangent as f32);
+        let z = std::array::from_fn(|i| z[i] + s * x[i] + t * y[i]);
+        Self {
+            light_from_ndc: view_from_ndc.as_mat4().to_cols_array(),
+            plane_to_normal: [x, y, z],
+            ..*self
+        }
+    }
+
     /// Adds the pass that writes the constants, and where normals are lent the one that writes theirs.
     pub(crate) fn write(
         &self,
@@ -131,8 +162,14 @@ impl Constants {
     ) {
         let is_last = view + 1 == views.len();
         let own = if is_last { Region::ALL } else { views[view].region };
-        let finer = view.checked_sub(1).map_or(Region::NONE, |finer| views[finer].region);
-        let regions = RegionConstants([own, finer]);
+        let finer = view.checked_sub(1).map(|finer| &views[finer]);
+        let [x, y] = finer.map_or([0.0; 2], |finer| {
+            [0, 1].map(|i| (finer.aside[i] - views[view].aside[i]) as f32)
+        });
+        let regions = RegionConstants {
+            regions: [own, finer.map_or(Region::NONE, |finer| finer.region)],
+            finer_aside: [x, y, 0.0, 0.0],
+        };
         graph.push(Pass::constants("gbuffer.regions", buffer, REGIONS_AT, &regions, need));
         if is_last {
             // The nearest occluders are found on the device, where views from the light's centre want them.
