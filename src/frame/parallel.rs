@@ -6,6 +6,7 @@ use super::request::FitRequest;
 use super::seen::{Bounds, Frustum};
 use super::{Description, Frame};
 use crate::graph::Why;
+use crate::knob::MOST_VIEWS;
 use crate::lent::MeshInstance;
 use crate::stages::depth_layers::LightBox;
 use crate::stages::views::{Extent, UnderSun, Visible, fit_sun};
@@ -94,9 +95,6 @@ pub(super) fn visible<'a>(
 /// How many times further the furthest part of a sun's view is than its nearest.
 const DEEPER: f64 = 2.0;
 
-/// How many receivers are looked at for the nearest that is seen.
-const LOOKED_AT: usize = 64;
-
 /// The texel, over the pixel that looks at the nearest receiver, that is small enough.
 const FINE_TEXEL: f64 = 1.5;
 
@@ -131,7 +129,7 @@ fn parts_seen<'a>(
     }
     let furthest = frustum.furthest(&all);
     let mut nearest = f64::INFINITY;
-    for mesh in receivers.take(LOOKED_AT) {
+    for mesh in receivers.clone() {
         let of = bounds_of(mesh);
         if frustum.nearest(&of) < nearest
             && let Some(distance) = frustum.distance(&of)
@@ -162,14 +160,14 @@ fn parts_seen<'a>(
     let deeper = (furthest / nearest).ln() / DEEPER.ln();
     let count = (deeper.ceil() as u32).clamp(1, *most);
     let ratio = (furthest / nearest).powf(1.0 / f64::from(count));
-    let mut from = 0.0;
-    for nth in 1..=count {
-        let to = if nth == count { furthest } else { nearest * ratio.powi(nth as i32) };
-        let seen = frustum.slice(&all, [from, to], sun_from_world);
-        if seen.is_some() {
-            parts.push([seen.min, seen.max]);
-        }
-        from = to;
-    }
+    let mut seen = [Bounds::NONE; MOST_VIEWS as usize];
+    let ends: [f64; MOST_VIEWS as usize + 1] = std::array::from_fn(|nth| match nth as u32 {
+        0 => 0.0,
+        nth if nth == count => furthest,
+        nth => nearest * ratio.powi(nth as i32),
+    });
+    let (seen, ends) = (&mut seen[..count as usize], &ends[..=count as usize]);
+    frustum.slices(receivers.map(bounds_of), ends, sun_from_world, seen);
+    parts.extend(seen.iter().filter(|seen| seen.is_some()).map(|seen| [seen.min, seen.max]));
     why.and(", and the furthest ").number(furthest, 0).and(" m")
 }

@@ -23,6 +23,12 @@ impl Bounds {
         self.max = self.max.max(p);
     }
 
+    /// Widens the bounds to hold others.
+    pub fn join(&mut self, other: &Self) {
+        self.min = self.min.min(other.min);
+        self.max = self.max.max(other.max);
+    }
+
     /// Whether they hold any point.
     pub fn is_some(&self) -> bool {
         self.min.x <= self.max.x
@@ -32,6 +38,10 @@ impl Bounds {
         self.min.cmple(p).all() && p.cmple(self.max).all()
     }
 }
+
+/// How many boxes are cut to what the frustum has of them. What lies within it in part of further ones counts by the box
+/// around them all.
+const MOST_CUT: usize = 32;
 
 /// The pyramid that a perspective camera sees, in world space.
 #[derive(Clone, Copy, Debug)]
@@ -96,6 +106,63 @@ impl Frustum {
         bounds
     }
 
+    /// Finds the bounds, under a transform, of what of some boxes lies between each distance of `ends` and the next.
+    pub fn slices(
+        &self,
+        boxes: impl Iterator<Item = Bounds>,
+        ends: &[f64],
+        transform: &DMat4,
+        seen: &mut [Bounds],
+    ) {
+        let sides = self.sides();
+        let mut rest = Bounds::NONE;
+        let mut cut = 0;
+        for of in boxes {
+            let corners = corners(&of);
+            let [mut all, mut any] = [u32::MAX, 0];
+            for p in corners {
+                let outside = |i: usize| u32::from(sides[i].dot(p.extend(1.0)) < 0.0) << i;
+                let outside = (0..4).map(outside).sum::<u32>();
+                (all, any) = (all & outside, any | outside);
+            }
+            let along = corners.map(|p| (p - self.eye).dot(self.forward));
+            let near = along.into_iter().fold(f64::INFINITY, f64::min);
+            let far = along.into_iter().fold(f64::NEG_INFINITY, f64::max);
+            if all != 0 || far < 0.0 {
+                continue;
+            }
+            let holds = |pair: &[f64]| pair[0] <= near && far <= pair[1];
+            if any == 0
+                && let Some(nth) = ends.windows(2).position(holds)
+            {
+                corners.iter().for_each(|p| seen[nth].add(transform.transform_point3(*p)));
+            } else if cut < MOST_CUT {
+                cut += 1;
+                let ends = ends.windows(2).enumerate();
+                for (nth, pair) in ends.filter(|(_, pair)| near <= pair[1] && pair[0] <= far) {
+                    seen[nth].join(&self.slice(&of, [pair[0], pair[1]], transform));
+                }
+            } else {
+                rest.join(&of);
+            }
+        }
+        if rest.is_some() {
+            for (seen, pair) in seen.iter_mut().zip(ends.windows(2)) {
+                seen.join(&self.slice(&rest, [pair[0], pair[1]], transform));
+            }
+        }
+    }
+
+    /// The planes through the eye and the image's edges, where `plane · (p, 1)` is 0 or more within the frustum.
+    fn sides(&self) -> [DVec4; 4] {
+        let middle = 0.25 * (self.rays[0] + self.rays[1] + self.rays[2] + self.rays[3]);
+        [[0, 2], [1, 3], [0, 1], [2, 3]].map(|[a, b]| {
+            let n = self.rays[a].cross(self.rays[b]);
+            let n = if n.dot(middle) < 0.0 { -n } else { n };
+            n.extend(-n.dot(self.eye))
+        })
+    }
+
     /// The corners of the slice between two distances before the eye: bit 2 of a corner's number selects the further end.
     pub fn corners(&self, [near, far]: [f64; 2]) -> [DVec3; 8] {
         std::array::from_fn(|i| self.eye + self.rays[i & 3] * if i < 4 { near } else { far })
@@ -105,18 +172,13 @@ impl Frustum {
     /// the box that the slice cuts, or of a face of the slice that the box cuts.
     fn each_corner(&self, of: &Bounds, [near, far]: [f64; 2], mut add: impl FnMut(DVec3)) {
         let own = self.corners([near, far]);
-        let middle = 0.25 * (self.rays[0] + self.rays[1] + self.rays[2] + self.rays[3]);
-        let side = |a: usize, b: usize| {
-            let n = self.rays[a].cross(self.rays[b]);
-            let n = if n.dot(middle) < 0.0 { -n } else { n };
-            n.extend(-n.dot(self.eye))
-        };
+        let [left, right, top, bottom] = self.sides();
         let along = self.forward.dot(self.eye);
         let of_slice = [
-            side(0, 2),
-            side(1, 3),
-            side(0, 1),
-            side(2, 3),
+            left,
+            right,
+            top,
+            bottom,
             self.forward.extend(-along - near),
             (-self.forward).extend(along + far),
         ];
@@ -139,3 +201,7 @@ fn corners(of: &Bounds) -> [DVec3; 8] {
         DVec3::new(end(0), end(1), end(2))
     })
 }
+
+#[cfg(test)]
+#[path = "seen_tests.rs"]
+mod tests;

@@ -71,6 +71,32 @@ fn several_views_are_planned_where_they_are_called_for() {
     }
 }
 
+/// The nearest receiver decides how fine a sun's views are, wherever it stands in the list of meshes.
+#[test]
+fn the_last_of_many_meshes_may_be_the_nearest() {
+    let wide = [[-150.0, 0.0, -150.0], [150.0, 0.0, 150.0]];
+    let far = (0..300).map(|i| {
+        let at = DVec3::new(f64::from(i % 20) * 6.0 - 60.0, 0.0, -80.0 - f64::from(i / 20));
+        mesh(WALL, at, Role::Both)
+    });
+    let ground = mesh(wide, DVec3::ZERO, Role::Both);
+    let mut meshes: Vec<_> = far.chain([ground]).collect();
+    let sun = Light::sun(DVec3::new(0.2, -1.0, 0.1), 0.01, DVec3::ZERO, 220.0).unwrap();
+    let description = Description { technique: "hard".parse().unwrap(), ..description(&[]) };
+    let views = |meshes: &[MeshInstance]| {
+        let frame = Frame { light: sun, world_from_ndc: looking_down(), ..frame(meshes) };
+        make(&description, &frame).views().to_vec()
+    };
+    let last = views(&meshes);
+    meshes.rotate_right(1);
+    let first = views(&meshes);
+    assert_eq!(last.len(), first.len());
+    for (a, b) in last.iter().zip(&first) {
+        assert!((a.texel[0] / b.texel[0] - 1.0).abs() < 1e-9, "{last:?}, {first:?}");
+    }
+    assert!(last[0].texel[0] < 0.1, "{last:?}");
+}
+
 #[test]
 fn frames_have_the_kinds_that_the_node_was_made_for() {
     let cube = meshes();
