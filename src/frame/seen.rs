@@ -1,7 +1,7 @@
 //! What a camera sees of the receivers: the parts of their boxes within slices of its frustum.
 
 use super::camera::Camera;
-use crate::stages::depth_layers::cut_faces;
+use crate::stages::depth_layers::{Polygon, cut_faces, each_face};
 use glam::{DMat4, DVec3, DVec4};
 
 /// The least and largest coordinates of points, metres.
@@ -106,7 +106,8 @@ impl Frustum {
         bounds
     }
 
-    /// Finds the bounds, under a transform, of what of some boxes lies between each distance of `ends` and the next.
+    /// Finds the bounds, under a transform, of what of some boxes lies between each distance of `ends` and the next. The
+    /// first of these is 0, and no box reaches beyond the last.
     pub fn slices(
         &self,
         boxes: impl Iterator<Item = Bounds>,
@@ -114,34 +115,29 @@ impl Frustum {
         transform: &DMat4,
         seen: &mut [Bounds],
     ) {
-        let sides = self.sides();
+        let (sides, whole) = (self.sides(), self.corners([0.0, ends[ends.len() - 1]]));
+        let mut parts = Parts { frustum: self, ends, transform, seen };
         let mut rest = Bounds::NONE;
         let mut cut = 0;
         for of in boxes {
             let corners = corners(&of);
+            // The sides that all its corners lie outside of, and those that any does, a bit each.
             let [mut all, mut any] = [u32::MAX, 0];
             for p in corners {
                 let outside = |i: usize| u32::from(sides[i].dot(p.extend(1.0)) < 0.0) << i;
                 let outside = (0..4).map(outside).sum::<u32>();
                 (all, any) = (all & outside, any | outside);
             }
-            let along = corners.map(|p| (p - self.eye).dot(self.forward));
-            let near = along.into_iter().fold(f64::INFINITY, f64::min);
-            let far = along.into_iter().fold(f64::NEG_INFINITY, f64::max);
-            if all != 0 || far < 0.0 {
+            let [near, far] = [self.nearest(&of), self.furthest(&of)];
+            if all != 0 || far <= 0.0 {
                 continue;
             }
-            let holds = |pair: &[f64]| pair[0] <= near && far <= pair[1];
-            if any == 0
-                && let Some(nth) = ends.windows(2).position(holds)
-            {
-                corners.iter().for_each(|p| seen[nth].add(transform.transform_point3(*p)));
+            if any == 0 && parts.of(near) == parts.of(far) {
+                corners.iter().for_each(|p| parts.add(parts.of(near), *p));
             } else if cut < MOST_CUT {
                 cut += 1;
-                let ends = ends.windows(2).enumerate();
-                for (nth, pair) in ends.filter(|(_, pair)| near <= pair[1] && pair[0] <= far) {
-                    seen[nth].join(&self.slice(&of, [pair[0], pair[1]], transform));
-                }
+                each_face(&corners, &sides, |face| parts.add_face(face));
+                each_face(&whole, &planes_of(&of), |face| parts.add_face(face));
             } else {
                 rest.join(&of);
             }
@@ -182,17 +178,57 @@ impl Frustum {
             self.forward.extend(-along - near),
             (-self.forward).extend(along + far),
         ];
-        let of_box = [
-            DVec4::new(1.0, 0.0, 0.0, -of.min.x),
-            DVec4::new(0.0, 1.0, 0.0, -of.min.y),
-            DVec4::new(0.0, 0.0, 1.0, -of.min.z),
-            DVec4::new(-1.0, 0.0, 0.0, of.max.x),
-            DVec4::new(0.0, -1.0, 0.0, of.max.y),
-            DVec4::new(0.0, 0.0, -1.0, of.max.z),
-        ];
         cut_faces(&corners(of), &of_slice, &mut add);
-        cut_faces(&own, &of_box, &mut add);
+        cut_faces(&own, &planes_of(of), &mut add);
     }
+}
+
+/// The bounds of what lies between distances before the eye.
+struct Parts<'a> {
+    frustum: &'a Frustum,
+    ends: &'a [f64],
+    transform: &'a DMat4,
+    seen: &'a mut [Bounds],
+}
+
+impl Parts<'_> {
+    /// The part that has a distance.
+    fn of(&self, distance: f64) -> usize {
+        self.ends[1..self.ends.len() - 1].partition_point(|end| *end < distance)
+    }
+
+    fn add(&mut self, part: usize, p: DVec3) {
+        self.seen[part].add(self.transform.transform_point3(p));
+    }
+
+    /// Adds a face's corners to the parts that they lie in, and where an edge passes from one part to the next to both.
+    fn add_face(&mut self, face: &Polygon) {
+        let Frustum { eye, forward, .. } = *self.frustum;
+        let distance = |p: DVec3| (p - eye).dot(forward);
+        for (i, &a) in face.iter().enumerate() {
+            let b = face[(i + 1) % face.len()];
+            let (from, to) = (distance(a), distance(b));
+            let [first, last] = [self.of(from), self.of(to)];
+            self.add(first, a);
+            for part in first.min(last)..first.max(last) {
+                let p = a + (b - a) * ((self.ends[part + 1] - from) / (to - from));
+                self.add(part, p);
+                self.add(part + 1, p);
+            }
+        }
+    }
+}
+
+/// The planes of a box's faces, where `plane · (p, 1)` is 0 or more within it.
+fn planes_of(of: &Bounds) -> [DVec4; 6] {
+    [
+        DVec4::new(1.0, 0.0, 0.0, -of.min.x),
+        DVec4::new(0.0, 1.0, 0.0, -of.min.y),
+        DVec4::new(0.0, 0.0, 1.0, -of.min.z),
+        DVec4::new(-1.0, 0.0, 0.0, of.max.x),
+        DVec4::new(0.0, -1.0, 0.0, of.max.y),
+        DVec4::new(0.0, 0.0, -1.0, of.max.z),
+    ]
 }
 
 fn corners(of: &Bounds) -> [DVec3; 8] {
