@@ -177,12 +177,12 @@ impl ShadowNode {
     }
 
     /// The render pass and raster state that a host's own pipeline needs to draw into a layer of a technique; `None`
-    /// where the technique has no such layer.
+    /// where the technique has no such layer, or hosts do not draw into it.
     pub fn layer_pass(&self, technique: TechniqueIndex, layer: Layer) -> Option<LayerPass> {
         let description = self.description.choosing(technique).ok()?;
         let graph = frame::all_passes(&description, self.limits);
         let draws = |p: &Pass| match p.work {
-            Work::Raster { draw: Draw::Layer { layer: l, .. }, target, .. } => {
+            Work::Raster { draw: Draw::Layer { layer: l, .. }, fragment: None, target, .. } => {
                 l == layer && matches!(target, Target::Depth { .. })
             }
             _ => false,

@@ -67,6 +67,12 @@ int top_of(Levels l)
     return l.kind == THIRDS ? log_three(l.map) : l.kind == MIP ? log_above(l.map) : findMSB(l.map);
 }
 
+// The layers of an image array that hold the map and all its levels.
+int layers_of(Levels l)
+{
+    return l.kind == MIP ? min(top_of(l), 1) + 1 : top_of(l) + 1;
+}
+
 // The node of a level whose window begins at a texel or, for MIP, holds it; moved inside where there is no such node.
 ivec2 node_at(Levels l, int level, ivec2 texel)
 {

@@ -82,6 +82,9 @@ vec4 two_intervals(float top, float near_back, float far_front, float far_back)
 // The bounds of a window; at level 0 the texel's column.
 vec4 held_at(Levels l, int level, ivec2 node);
 
+// The piece of matter between the two of a texel's column; 0 where there is none.
+vec2 middle_at(ivec2 texel);
+
 // Whether a point of (texels, height) is known to be empty.
 bool seen(vec2 t, float w);
 
@@ -163,7 +166,8 @@ bool meets(Place p, Ray ray, ivec2 texel, vec4 column, float s0, float s1)
 {
     vec2 centre = vec2(texel) + 0.5;
     return meets_interval(p, ray, centre, column.xy, s0, s1) ||
-           meets_interval(p, ray, centre, column.zw, s0, s1);
+           meets_interval(p, ray, centre, column.zw, s0, s1) ||
+           column.z > 0.0 && meets_interval(p, ray, centre, middle_at(texel), s0, s1);
 }
 
 // The heights above a receiver between which a window with bounds b has matter.

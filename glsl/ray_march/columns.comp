@@ -16,33 +16,41 @@ layout(set = 0, binding = 2) uniform texture2D near_back_depth;
 layout(set = 0, binding = 3) uniform texture2D far_front_depth;
 layout(set = 0, binding = 4, rgba32f) writeonly uniform image2DArray windows;
 
+layout(set = 0, binding = 5) uniform texture2D middle_front_depth;
+layout(set = 0, binding = 6) uniform texture2D middle_back_depth;
+
 layout(push_constant) uniform Push {
     int map;      // the map's side in texels
-    int layers;   // 2, or 4 where there are the nearest back and the furthest front faces too
+    int layers;   // 2; 4 where there are the nearest back and the furthest front faces too; 6 where those between are
     float height; // the height of a stored 1
+    int middle;   // the layer of the windows for the pieces between the first and the last
 } push;
 
 const int FRONT = 0;
 const int FAR_FRONT = 1;
 const int NEAR_BACK = 2;
 const int BACK = 3;
+const int MIDDLE_FRONT = 4;
+const int MIDDLE_BACK = 5;
 
 float stored(int layer, ivec2 p)
 {
     if (any(lessThan(p, ivec2(0))) || any(greaterThanEqual(p, ivec2(push.map)))) {
         return 0.0;
     }
-    return layer == FRONT       ? texelFetch(front_depth, p, 0).x
-           : layer == FAR_FRONT ? texelFetch(far_front_depth, p, 0).x
-           : layer == NEAR_BACK ? texelFetch(near_back_depth, p, 0).x
-                                : texelFetch(back_depth, p, 0).x;
+    return layer == FRONT          ? texelFetch(front_depth, p, 0).x
+           : layer == FAR_FRONT    ? texelFetch(far_front_depth, p, 0).x
+           : layer == NEAR_BACK    ? texelFetch(near_back_depth, p, 0).x
+           : layer == MIDDLE_FRONT ? texelFetch(middle_front_depth, p, 0).x
+           : layer == MIDDLE_BACK  ? texelFetch(middle_back_depth, p, 0).x
+                                   : texelFetch(back_depth, p, 0).x;
 }
 
 // The height of a layer's faces, 0 where there are none.
 float height_at(int layer, ivec2 p)
 {
     float depth = stored(layer, p);
-    bool nearest = layer == FRONT || layer == NEAR_BACK;
+    bool nearest = layer != FAR_FRONT && layer != BACK;
     return depth < 1.0 || nearest ? depth * push.height : 0.0;
 }
 
@@ -75,6 +83,21 @@ float drop_of(int layer, ivec2 p, float h)
     return most;
 }
 
+// The piece of matter between the first and the last over a texel: its top and its bottom, 0 where there is none.
+vec2 middle_at(ivec2 p, vec4 column)
+{
+    float top = height_at(MIDDLE_FRONT, p);
+    if (top <= column.z) {
+        return vec2(0.0);
+    }
+    // Down to the last piece where no back face lies before it: they overlap.
+    float back = height_at(MIDDLE_BACK, p);
+    vec2 piece = vec2(top, back > 0.0 ? max(back, column.z) : top);
+    float drop = drop_of(MIDDLE_FRONT, p, top);
+    piece = beveled(piece, half_slope(MIDDLE_FRONT, p, top), half_slope(MIDDLE_BACK, p, piece.y));
+    return vec2(piece.x, min(piece.y, piece.x - drop));
+}
+
 void main()
 {
     ivec2 p = ivec2(gl_GlobalInvocationID.xy);
@@ -82,13 +105,17 @@ void main()
         return;
     }
     vec4 column = vec4(0.0);
+    vec2 middle = vec2(0.0);
     float top = height_at(0, p);
     if (top > 0.0) {
         float far_back = height_at(BACK, p);
-        column = push.layers == 4
+        column = push.layers >= 4
                      ? two_intervals(top, height_at(NEAR_BACK, p), height_at(FAR_FRONT, p), far_back)
                      : one_interval(top, far_back);
         bool two = column.z > 0.0;
+        if (two && push.layers == 6) {
+            middle = middle_at(p, column);
+        }
         float drop = drop_of(FRONT, p, top);
         float below = half_slope(two ? NEAR_BACK : BACK, p, column.y);
         column.xy = beveled(column.xy, half_slope(FRONT, p, top), below);
@@ -101,4 +128,7 @@ void main()
         }
     }
     imageStore(windows, ivec3(p, 0), column);
+    if (push.layers == 6) {
+        imageStore(windows, ivec3(p, push.middle), vec4(middle, 0.0, 0.0));
+    }
 }

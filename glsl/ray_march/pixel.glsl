@@ -24,9 +24,18 @@ layout(set = 0, binding = 2) uniform texture2DArray windows;
 layout(set = 0, binding = 3, FRACTION_FORMAT) writeonly uniform image2D visibility;
 #endif
 
+bool has_middle();
+Levels levels();
+
 vec4 held_at(Levels l, int level, ivec2 node)
 {
     return texelFetch(windows, place_of(l, level, node), 0);
+}
+
+// The last layer of the windows has the third pieces of matter, where there are such.
+vec2 middle_at(ivec2 texel)
+{
+    return has_middle() ? texelFetch(windows, ivec3(texel, layers_of(levels())), 0).xy : vec2(0.0);
 }
 
 // No point is known to be empty, unless the including shader defines SEEN and a test of its own.
@@ -63,6 +72,7 @@ bool is_orthographic() { return (push.flags & 1 << 17) != 0; }
 bool is_modern() { return (push.flags & 1 << 19) != 0; }
 bool classifies() { return (push.flags & 1 << 21) != 0; }
 bool filters() { return (push.flags & 1 << 22) != 0; }
+bool has_middle() { return (push.flags & 1 << 30) != 0; }
 bool is_disc() { return (push.flags & 1 << 28) != 0; }
 #ifdef FORWARD
 bool is_polygon() { return false; }

@@ -3,16 +3,16 @@
 use super::boxes::{Boxes, MeshBoxes, has_triangles};
 use super::hull::Hull;
 use super::odd::Odd;
-use super::parallel::visible;
 use super::passes::PLACEHOLDER;
 use super::placed::Placed;
-use super::request::FitRequest;
+use super::request::{FitRequest, Inputs};
 use super::reuse::CameraBits;
+use super::seen::visible;
 use super::{Description, Frame};
 use crate::Error;
 use crate::effects::{Seen, Situation};
 use crate::graph::{Need, Why};
-use crate::light::{Light, RectangleLight};
+use crate::light::RectangleLight;
 use crate::stages::depth_layers::{self, HostMapView, LightBox, MapView, Projection};
 use crate::stages::views::{Extent, Lamp, Served, Views, fit_served};
 use crate::techniques::room::{Room, Seen as ViewsSeen};
@@ -20,19 +20,6 @@ use glam::DMat4;
 
 /// A view for passes that do not run, which serves all pixels.
 const ALONE: Served = Served::all(PLACEHOLDER);
-
-/// The inputs of a fit: frames with equal inputs have the same fit.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Inputs {
-    revision: u64,
-    light: Light,
-    reach: Option<f64>,
-    window: Option<[[f64; 2]; 2]>,
-    request: FitRequest,
-    meshes: usize,
-    /// The camera, which matters where the views follow it.
-    camera: DMat4,
-}
 
 /// The meshes that matter to a light, and the views of its maps.
 #[derive(Clone, Debug)]
@@ -72,6 +59,8 @@ pub(super) struct Fit {
     pub situation: Option<Situation>,
     /// Signs of mistakes in the meshes.
     pub odd: Odd,
+    /// Whether the host draws some of the occluders.
+    pub host_draws: bool,
     /// Whether the views follow the camera.
     pub(super) follows_camera: bool,
     /// Counts the fits that were made: it changes with each.
@@ -102,6 +91,7 @@ impl Default for Fit {
             need: Need::No(Why::default()),
             situation: None,
             odd: Odd::default(),
+            host_draws: false,
             follows_camera: false,
             number: 0,
             views: None,
@@ -177,6 +167,7 @@ impl Fit {
         });
         let no_occluder = self.occluders.boxes.is_empty() && gone == [0, 0];
         self.odd = Odd::of(frame, boxes, [no_occluder, receivers.is_empty()]);
+        self.host_draws = boxes.host_drawn_blocker.is_some();
         self.need = self.need_of(boxes.blockers, gone);
         // Lent maps look from the light's centre.
         let eye = if self.host_maps.is_some() { Projection::Centre } else { maps.eye };
@@ -373,30 +364,5 @@ impl Fit {
             parallel: if self.parallel { &self.served } else { &[] },
             w_far: self.shadowed.as_ref().map_or(0.0, |receivers| 1.0 / receivers.far),
         })
-    }
-}
-
-impl Inputs {
-    /// The inputs of a frame's fit; `None` where the frame has no revision or lends occluder maps, whose camera may
-    /// change: its fit is made anew.
-    fn of(request: &FitRequest, frame: &Frame) -> Option<Self> {
-        if frame.occluder_maps.is_some() {
-            return None;
-        }
-        Some(Self {
-            revision: frame.revision?,
-            light: frame.light,
-            reach: frame.reach,
-            window: frame.window,
-            request: *request,
-            meshes: frame.meshes.len(),
-            camera: frame.world_from_ndc,
-        })
-    }
-
-    /// Whether the fit of these is that of others, for views that follow the camera or do not.
-    fn are(&self, others: &Self, follow: bool) -> bool {
-        let camera = if follow { self.camera } else { others.camera };
-        *others == Self { camera, ..*self }
     }
 }

@@ -63,6 +63,7 @@ pub(super) fn frame_inputs<'a>(
         views,
         occluders,
         host_maps,
+        host_draws: fit.host_draws,
         receivers,
         needs,
         constants: Constants {

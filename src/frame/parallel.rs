@@ -8,8 +8,7 @@ use super::{Description, Frame};
 use crate::graph::Why;
 use crate::knob::MOST_VIEWS;
 use crate::lent::MeshInstance;
-use crate::stages::depth_layers::LightBox;
-use crate::stages::views::{Extent, UnderSun, Visible, fit_sun};
+use crate::stages::views::{Extent, UnderSun, fit_sun};
 use glam::{DMat4, DVec3};
 use std::f64::consts::PI;
 
@@ -76,20 +75,6 @@ impl Fit {
             self.parallel = true;
         }
     }
-}
-
-/// What a perspective camera sees of receivers in light space; `None` for an orthographic one.
-pub(super) fn visible<'a>(
-    light_from_ndc: &DMat4,
-    receivers: &'a [LightBox],
-) -> Option<Visible<'a>> {
-    let frustum = Frustum::new(light_from_ndc)?;
-    let mut all = Bounds::NONE;
-    for b in receivers {
-        all.add(b.min);
-        all.add(b.max);
-    }
-    Some(Visible::new(frustum.corners([0.0, frustum.furthest(&all)]), receivers))
 }
 
 /// How many times further the furthest part of a sun's view is than its nearest.

@@ -63,6 +63,8 @@ pub(super) struct FrameInputs<'a> {
     /// The technique's own views; there are none where nothing can be shadowed.
     pub views: &'a Views,
     pub host_maps: Option<HostMapView>,
+    /// Whether the host draws some of the occluders.
+    pub host_draws: bool,
     pub receivers: MapView,
     pub needs: Needs,
     pub constants: Constants,
@@ -197,6 +199,7 @@ pub(crate) fn all_passes(description: &Description, limits: Limits) -> Graph {
             near_value: 1.0,
             error: 0.0,
         }),
+        host_draws: false,
         receivers: view,
         needs: Needs::all(&Need::Yes("nominal".into())),
         constants: Constants::zeroed(),
@@ -242,6 +245,14 @@ pub(super) fn build(
     let side = frame.occluders[0].map.side;
     let one = graph.because("one view serves every receiver");
     let several = if count > 1 { *shadowed } else { Need::No(one) };
+    // The host's pipelines leave out no faces.
+    let middle = match inner_need {
+        Need::Yes(_) if count == 1 => Need::No(one),
+        Need::Yes(_) if frame.host_draws => {
+            Need::No(graph.because("the host draws some of the occluders"))
+        }
+        need => *need,
+    };
     let layers = LightLayers {
         occluders: match (front, &frame.host_maps) {
             (Some(front), Some(camera)) => depth_layers::Occluders::Maps { front, back, camera },
@@ -253,6 +264,7 @@ pub(super) fn build(
             front: if maps.front_is_whole { front_need } else { need },
             back: back_need,
             inner: inner_need,
+            middle: &middle,
             receivers: need,
         },
     };

@@ -1,7 +1,8 @@
 //! What a camera sees of the receivers: the parts of their boxes within slices of its frustum.
 
 use super::camera::Camera;
-use crate::stages::depth_layers::{Polygon, cut_faces, each_face};
+use crate::stages::depth_layers::{LightBox, Polygon, cut_faces, each_face};
+use crate::stages::views::Visible;
 use glam::{DMat4, DVec3, DVec4};
 
 /// The least and largest coordinates of points, metres.
@@ -37,6 +38,20 @@ impl Bounds {
     fn holds(&self, p: DVec3) -> bool {
         self.min.cmple(p).all() && p.cmple(self.max).all()
     }
+}
+
+/// What a perspective camera sees of receivers in light space; `None` for an orthographic one.
+pub(super) fn visible<'a>(
+    light_from_ndc: &DMat4,
+    receivers: &'a [LightBox],
+) -> Option<Visible<'a>> {
+    let frustum = Frustum::new(light_from_ndc)?;
+    let mut all = Bounds::NONE;
+    for b in receivers {
+        all.add(b.min);
+        all.add(b.max);
+    }
+    Some(Visible::new(frustum.corners([0.0, frustum.furthest(&all)]), receivers))
 }
 
 /// How many boxes are cut to what the frustum has of them. What lies within it in part of further ones counts by the box

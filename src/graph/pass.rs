@@ -109,6 +109,10 @@ pub enum Layer {
     NearBack,
     /// The occluders' furthest front faces.
     FarFront,
+    /// The occluders' nearest front faces beyond those of [`Self::NearBack`].
+    MiddleFront,
+    /// The occluders' nearest back faces beyond those of [`Self::MiddleFront`].
+    MiddleBack,
     /// The receivers' nearest faces.
     Receivers,
     /// All faces of the occluders, each in its slice.
@@ -127,6 +131,8 @@ impl Layer {
             | Self::Back
             | Self::NearBack
             | Self::FarFront
+            | Self::MiddleFront
+            | Self::MiddleBack
             | Self::Slices
             | Self::FrontSlices
             | Self::BackSlices => MeshList::Occluders,

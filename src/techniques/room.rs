@@ -166,7 +166,7 @@ impl Maps {
         Self {
             side,
             several: side,
-            layers: Wanted { back: false, inner: false, receiver_map: None },
+            layers: Wanted { back: false, inner: false, middle: false, receiver_map: None },
             eye: Projection::Centre,
             front_is_whole: true,
             back_can_be_dropped: false,

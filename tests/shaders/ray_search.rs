@@ -59,6 +59,15 @@ fn column(field: Field, [a, b, c, d]: [f32; 4], x: u32, y: u32, side: u32) -> Co
     }
 }
 
+/// The piece of matter between the two of a column: of most columns with two.
+fn between([_, end, second, _]: Column<f32>, n: f32) -> [f32; 2] {
+    let gap = end - second;
+    match second > 0.0 && n < 0.7 {
+        true => [second + gap * (0.3 + 0.6 * n), second + gap * 0.3],
+        false => [0.0; 2],
+    }
+}
+
 /// One ray: where its receiver is, its plane, its slope, where it begins and ends; as the shader takes it.
 #[derive(Clone, Copy, Debug)]
 struct Case {
@@ -91,6 +100,7 @@ fn cases(side: u32) -> impl Strategy<Value = Case> {
 
 struct Machine {
     windows: HostBuffer,
+    between: HostBuffer,
     rays: HostBuffer,
     hits: HostBuffer,
     program: ComputeProgram,
@@ -107,6 +117,7 @@ impl Machine {
         let most = [Kind::NBuffer, Kind::Thirds, Kind::Mip]
             .map(|kind| Levels { map: MOST, kind }.texels() as usize);
         let windows = buffer("windows", 4 * most.into_iter().max().unwrap());
+        let between = buffer("between", 2 * (MOST * MOST) as usize);
         let rays = buffer("rays", 12 * RAYS);
         let hits = buffer("hits", RAYS);
         let source = "#version 450\n#extension GL_GOOGLE_include_directive : require\n\
@@ -116,8 +127,10 @@ impl Machine {
             layout(set = 0, binding = 0, std430) readonly buffer Windows { vec4 windows[]; };\n\
             layout(set = 0, binding = 1, std430) readonly buffer Rays { vec4 rays[]; };\n\
             layout(set = 0, binding = 2, std430) buffer Hits { uint hits[]; };\n\
+            layout(set = 0, binding = 3, std430) readonly buffer Between { vec2 between[]; };\n\
             layout(push_constant) uniform Push { int map; int kind; int linear; } push;\n\
             bool seen(vec2 t, float w) { return false; }\n\
+            vec2 middle_at(ivec2 p) { return between[p.y * push.map + p.x]; }\n\
             vec4 held_at(Levels l, int level, ivec2 node) {\n\
                 ivec3 p = place_of(l, level, node);\n\
                 return windows[(p.z * l.map + p.y) * l.map + p.x];\n\
@@ -137,15 +150,15 @@ impl Machine {
                 hits[i] = uint(hit);\n\
             }\n";
         let spirv = try_compile("search.comp", source).unwrap_or_else(|log| panic!("{log}"));
-        let buffers = [&windows, &rays, &hits];
+        let buffers = [&windows, &rays, &hits, &between];
         let program = ComputeProgram::new(device, &spirv, 12, &buffers).unwrap();
-        Self { windows, rays, hits, program }
+        Self { windows, between, rays, hits, program }
     }
 
     fn hits(
         &mut self,
         levels: Levels,
-        columns: &[Column<f32>],
+        (columns, between): (&[Column<f32>], &[[f32; 2]]),
         rays: &[Case],
         linear: bool,
     ) -> Vec<u32> {
@@ -156,6 +169,7 @@ impl Machine {
         let mut made = Values::new(levels, map, largest);
         made.of_level[0] = columns.to_vec();
         self.windows.write(&made.as_array([0.0; 4])).unwrap();
+        self.between.write(between.as_flattened()).unwrap();
         self.rays.write(&rays.iter().flat_map(|r| r.words).collect::<Vec<f32>>()).unwrap();
         let push = [levels.map as i32, levels.kind.code(), i32::from(linear)];
         self.program.run(bytemuck::cast_slice(&push), [(RAYS / 64) as u32, 1, 1]).unwrap();
@@ -181,18 +195,23 @@ fn searches_find_what_a_walk_finds() {
                 .zip(0u32..)
                 .map(|(n, i)| column(field, *n, i % side, i / side, side))
                 .collect();
+            let pieces: Vec<[f32; 2]> =
+                columns.iter().zip(&numbers).map(|(c, n)| between(*c, n[3])).collect();
             let rays = prop::collection::vec(cases(side), RAYS);
             let rays = rays.new_tree(&mut runner).unwrap().current();
             let exact: Vec<Column<f64>> = columns.iter().map(|c| c.map(f64::from)).collect();
+            let exact_pieces: Vec<[f64; 2]> = pieces.iter().map(|p| p.map(f64::from)).collect();
+            let exact = (&exact[..], &exact_pieces[..]);
             let walked: Vec<(bool, f64)> = rays
                 .iter()
                 .map(|r| {
                     let [g_x, g_y, start, end] = [8, 9, 10, 11].map(|i| f64::from(r.words[i]));
-                    meets(&exact, side, &r.place(), [g_x, g_y], start, end)
+                    meets(exact, side, &r.place(), [g_x, g_y], start, end)
                 })
                 .collect();
             for kind in [Kind::NBuffer, Kind::Thirds, Kind::Mip] {
-                let hits = machine.hits(Levels { map: side, kind }, &columns, &rays, false);
+                let hits =
+                    machine.hits(Levels { map: side, kind }, (&columns, &pieces), &rays, false);
                 for ((hit, (expected, nearest)), ray) in hits.iter().zip(&walked).zip(&rays) {
                     of += 1;
                     stopped += u32::from(*expected);
@@ -206,7 +225,7 @@ fn searches_find_what_a_walk_finds() {
                 }
             }
             let levels = Levels { map: side, kind: Kind::Mip };
-            let hits = machine.hits(levels, &columns, &rays, true);
+            let hits = machine.hits(levels, (&columns, &pieces), &rays, true);
             linear_wrong += hits.iter().zip(&walked).filter(|(h, (e, _))| (**h == 1) != *e).count();
         }
         println!(

@@ -129,3 +129,36 @@ fn an_eye_inside_an_occluder_sees_its_umbra() {
         }
     }
 }
+
+/// Behind the wall around a window, over each texel: the wall, what stands in the room, and the floor or the wall opposite.
+/// The first and the last piece alone let the light through all that stands in the room.
+#[test]
+fn what_stands_between_two_walls_casts_its_shadow() {
+    let device = device();
+    let mut scene = room::room();
+    let mut wall = |name: &str, size: [f64; 2], at: [f64; 2]| {
+        let mesh = generate::cuboid(DVec3::new(0.1, size[0], size[1]));
+        let place = DMat4::from_translation(DVec3::new(2.05, at[0], at[1]));
+        scene.add(name, mesh, place, Role::Both);
+    };
+    // An opening of 1.1 m around a light of 1 m, 0.1 m before it.
+    wall("below", [0.75, 4.0], [0.375, 0.0]);
+    wall("above", [0.75, 4.0], [2.225, 0.0]);
+    wall("beside", [1.1, 1.25], [1.3, -1.375]);
+    wall("beyond", [1.1, 1.45], [1.3, 1.075]);
+    let window =
+        RectangleLight::facing(DVec3::new(2.2, 1.3, -0.2), DVec3::NEG_X, DVec3::Y, [1.0; 2]);
+    scene.lights[0].light = window.unwrap().into();
+    let extent = [192, 144];
+    let view = View::of(&room::camera(), extent);
+    let setup = Setup { scene: &scene, view, extent, window: None, occluders_seen: true };
+    let mut stage = setup.stage(&device, "technique=ray-march rays=64");
+    let image = setup.visibility(&mut stage);
+    let plan = stage.plan(setup.light(), None).unwrap();
+    assert!(plan.views().len() > 1, "{}", plan.explain());
+    let (truth, _) = setup.traced(&stage, 128);
+    let error = percent(&truth, &image);
+    println!("{error:.2} %");
+    // Measured 2.22 %; 3.83 by the first and the last piece alone.
+    assert!(error < 2.8);
+}

@@ -17,6 +17,10 @@
 //! front face anyway, and an open sheet must cast its shadow whichever way it is turned. The map's window is fitted to
 //! the occluders in u and v apart, so it need not have the light's aspect.
 //!
+//! With `middle`, two more passes leave out the faces that do not lie beyond others (depth peeling, Everitt 2001): the
+//! nearest front faces beyond the nearest back faces, and the nearest back faces beyond these. A face that is both counts
+//! once more, as a sheet. Hosts that draw occluders with their own pipelines have no such layers.
+//!
 //! A host that already has depth images of the occluders lends those instead of meshes; one pass for each layer then
 //! copies them into the form above, whatever their depth convention and window.
 
@@ -86,6 +90,8 @@ pub struct Wanted {
     pub back: bool,
     /// Whether the nearest back faces and the furthest front faces are read too.
     pub inner: bool,
+    /// Whether the faces of a third piece of matter between those are read too.
+    pub middle: bool,
     /// The receiver map's side in texels, where one is read.
     pub receiver_map: Option<u32>,
 }
@@ -100,6 +106,9 @@ pub struct DepthLayers {
     /// Occluders' nearest back faces, 0 where there are none, and their furthest front faces, 1 where
     /// there are none.
     pub inner: Option<[ResourceId; 2]>,
+    /// Occluders' nearest front faces beyond their nearest back faces, and their nearest back faces beyond these; 0 where
+    /// there are none.
+    pub middle: Option<[ResourceId; 2]>,
     /// Receivers' nearest faces; 0 where there are none.
     pub receivers: Option<ResourceId>,
 }
@@ -130,6 +139,7 @@ pub(crate) struct Needs<'a> {
     pub front: &'a Need,
     pub back: &'a Need,
     pub inner: &'a Need,
+    pub middle: &'a Need,
     pub receivers: &'a Need,
 }
 
@@ -165,6 +175,12 @@ pub(crate) fn declare(
         let names = ["depth_layers.far_front_depth", "depth_layers.far_front"];
         [near_back, drawn(graph, Layer::FarFront, names, map, view, needs.inner)]
     });
+    let middle = inner.filter(|_| wanted.middle).map(|[near_back, _]| {
+        let names = ["depth_layers.middle_front_depth", "depth_layers.middle_front"];
+        let front = beyond(graph, Layer::MiddleFront, names, near_back, map, view, needs.middle);
+        let names = ["depth_layers.middle_back_depth", "depth_layers.middle_back"];
+        [front, beyond(graph, Layer::MiddleBack, names, front, map, view, needs.middle)]
+    });
     let names = ["depth_layers.receiver_depth", "depth_layers.receivers"];
     let receivers = wanted
         .receiver_map
@@ -173,6 +189,7 @@ pub(crate) fn declare(
         front,
         back: back.filter(|_| needs.back.is_yes()),
         inner: inner.filter(|_| needs.inner.is_yes()),
+        middle: middle.filter(|_| needs.middle.is_yes()),
         receivers,
     }
 }
@@ -204,6 +221,8 @@ pub fn raster_of(layer: Layer) -> Raster {
         Layer::Back => Raster { cull: Cull::FRONT, clear: 1.0, compare: Op::LESS },
         Layer::NearBack => Raster { cull: Cull::FRONT, clear: 0.0, compare: Op::GREATER },
         Layer::FarFront => Raster { cull: Cull::BACK, clear: 1.0, compare: Op::LESS },
+        Layer::MiddleFront => Raster { cull: Cull::BACK, clear: 0.0, compare: Op::GREATER },
+        Layer::MiddleBack => Raster { cull: Cull::FRONT, clear: 0.0, compare: Op::GREATER },
         // Every face counts, without a depth test.
         Layer::Slices => Raster { cull: Cull::NONE, clear: 0.0, compare: Op::ALWAYS },
         Layer::FrontSlices => Raster { cull: Cull::BACK, clear: 0.0, compare: Op::ALWAYS },
@@ -225,6 +244,41 @@ fn drawn(
 ) -> ResourceId {
     let image = graph.image(image, FORMAT, [side, side], Owner::Transient);
     draw(graph, pass, image, layer, view, need);
+    image
+}
+
+/// Adds a layer of the faces that lie beyond those of another layer.
+fn beyond(
+    graph: &mut Graph,
+    layer: Layer,
+    [image, name]: [&'static str; 2],
+    nearer: ResourceId,
+    side: u32,
+    view: u32,
+    need: &Need,
+) -> ResourceId {
+    let image = graph.image(image, FORMAT, [side, side], Owner::Transient);
+    let Raster { cull, clear, compare } = raster_of(layer);
+    let fragment = match layer {
+        Layer::MiddleBack => module!("depth_layers/not_before.frag"),
+        _ => module!("depth_layers/beyond.frag"),
+    };
+    graph.push(Pass {
+        name,
+        uses: smallvec![
+            Use::bound(0, nearer, Access::SampledFragment),
+            Use::fixed(image, Access::DepthTarget),
+        ],
+        push: Push::NONE,
+        work: Work::Raster {
+            vertex: shaders::DEPTH_VERT,
+            fragment: Some(fragment),
+            cull,
+            target: Target::Depth { clear, compare },
+            draw: Draw::Layer { layer, view },
+        },
+        need: *need,
+    });
     image
 }
 

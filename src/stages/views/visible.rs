@@ -21,7 +21,7 @@ pub(crate) struct Visible<'a> {
 }
 
 impl<'a> Visible<'a> {
-    /// What of receivers lies in a slice of a camera's frustum with these corners.
+    /// The part of receivers that lies in a slice of a camera's frustum with these corners.
     pub fn new(pyramid: [DVec3; 8], receivers: &'a [LightBox]) -> Self {
         Self { pyramid, receivers }
     }

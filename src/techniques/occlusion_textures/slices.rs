@@ -33,7 +33,7 @@ pub(super) fn layers_side(settings: &Settings, inputs: &PassInputs) -> u32 {
 
 /// The layers from which the histogram is made.
 pub(super) fn histogram_layers(settings: &Settings) -> Wanted {
-    Wanted { back: settings.is_fitted(), inner: false, receiver_map: None }
+    Wanted { back: settings.is_fitted(), inner: false, middle: false, receiver_map: None }
 }
 
 /// The push constants of `place.comp` and `place_fitted.comp`.

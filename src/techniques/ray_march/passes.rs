@@ -99,7 +99,7 @@ pub(super) fn declare(
         inputs.need,
     ));
     declare_outline(graph, pixels, inputs);
-    let pushed = Push::new(&pixel_push(settings, inputs));
+    let pushed = Push::new(&pixel_push(settings, inputs, layers.middle.is_some()));
     let shaders = shaders_of(settings, inputs);
     let mut common = Uses::from_slice(&gbuffer.all_bound());
     common.push(Use::bound(2, windows, Access::SampledCompute));
@@ -171,6 +171,8 @@ pub struct Columns {
     pub layers: i32,
     /// The height of a stored 1.
     pub height: f32,
+    /// The layer of the windows for the pieces of matter between the first and the last over each texel.
+    pub middle: i32,
 }
 
 /// The push constants of `level.comp`.
@@ -194,9 +196,12 @@ fn declare_levels(
 ) -> ResourceId {
     let map = inputs.occluders.side;
     let levels = Levels { map, kind: settings.levels };
-    let windows = graph.image_array("ray_march.windows", COLOR_FORMAT, [map; 2], levels.layers());
+    // The last layer has the third pieces of matter.
+    let layers_of_windows = levels.layers() + u32::from(settings.has_middle());
+    let windows = graph.image_array("ray_march.windows", COLOR_FORMAT, [map; 2], layers_of_windows);
     let back = layers.back.unwrap_or(layers.front);
     let [near_back, far_front] = layers.inner.unwrap_or([layers.front; 2]);
+    let [middle_front, middle_back] = layers.middle.unwrap_or([layers.front; 2]);
     let four = layers.inner.is_some();
     graph.push(Pass::compute(
         "ray_march.columns",
@@ -204,8 +209,15 @@ fn declare_levels(
         grid([map; 2]),
         Push::new(&Columns {
             map: map as i32,
-            layers: if four { 4 } else { 2 },
+            layers: if layers.middle.is_some() {
+                6
+            } else if four {
+                4
+            } else {
+                2
+            },
             height: inputs.occluders.top() as f32,
+            middle: levels.layers() as i32,
         }),
         smallvec![
             Use::bound(0, layers.front, Access::SampledCompute),
@@ -213,6 +225,8 @@ fn declare_levels(
             Use::bound(2, near_back, Access::SampledCompute),
             Use::bound(3, far_front, Access::SampledCompute),
             Use::bound(4, windows, Access::ImageWrite),
+            Use::bound(5, middle_front, Access::SampledCompute),
+            Use::bound(6, middle_back, Access::SampledCompute),
         ],
         inputs.need,
     ));
@@ -334,7 +348,7 @@ fn disc_or_rectangle(inputs: &PassInputs) -> ([f64; 2], bool) {
     }
 }
 
-fn pixel_push(settings: &Settings, inputs: &PassInputs) -> Pixels {
+fn pixel_push(settings: &Settings, inputs: &PassInputs, has_middle: bool) -> Pixels {
     let PassInputs { occluders: view, light, .. } = inputs;
     let (half, is_disc) = disc_or_rectangle(inputs);
     let [half_x, half_y] = light.half_extents();
@@ -359,7 +373,8 @@ fn pixel_push(settings: &Settings, inputs: &PassInputs) -> Pixels {
         | settings.levels.code() << 25
         | bit(inputs.light_texture.is_some(), 27)
         | bit(is_disc, 28)
-        | bit(outline_of(inputs).is_some(), 29);
+        | bit(outline_of(inputs).is_some(), 29)
+        | bit(has_middle, 30);
     Pixels {
         texels_per_unit: view.texels_per_uv().map(|x| x as f32),
         first: view.first().map(|x| x as f32),

@@ -185,6 +185,11 @@ impl Knobs for Settings {
 }
 
 impl Settings {
+    /// Whether a frame of several views has the piece of matter between the first and the last over each texel.
+    pub(super) fn has_middle(&self) -> bool {
+        self.layers == Layers::Four && self.views > 1
+    }
+
     /// Checks the knobs that must agree with each other.
     pub(super) fn check_together(&self) -> Result<(), Error> {
         let map = self.maps().largest();

@@ -179,11 +179,12 @@ pub struct Place {
     pub margin: f64,
 }
 
-/// Whether a ray from a receiver meets a column of a map of `side` texels, by visiting every texel under it: `g`
-/// texels a unit of height, from `start` to `end` above the receiver. The second value is the relative distance of
+/// Whether a ray from a receiver meets a column of a map of `side` texels, or the piece of matter between a column's two
+/// (top and bottom, 0 where there is none), by visiting every texel under it: `g` texels a unit of height, from `start` to
+/// `end` above the receiver. The second value is the relative distance of
 /// heights from the opposite answer: below 1e-5 the answer depends on rounding.
 pub fn meets(
-    columns: &[Column<f64>],
+    (columns, between): (&[Column<f64>], &[[f64; 2]]),
     side: u32,
     place: &Place,
     g: [f64; 2],
@@ -205,9 +206,9 @@ pub fn meets(
         if over.iter().any(|x| *x < 0.0 || *x >= f64::from(side)) {
             continue;
         }
-        let column = columns[(over[1] * f64::from(side) + over[0]) as usize];
-        for interval in [[column[0], column[1]], [column[2], column[3]]] {
-            let [top, bottom] = interval;
+        let texel = (over[1] * f64::from(side) + over[0]) as usize;
+        let [first, end, second, last] = columns[texel];
+        for [top, bottom] in [[first, end], between[texel], [second, last]] {
             if top <= 0.0 {
                 continue;
             }

@@ -130,6 +130,7 @@ impl Room for Settings {
             layers: Wanted {
                 back: self.sides != Sides::One,
                 inner: false,
+                middle: false,
                 receiver_map: (!at_pixels).then_some(self.receiver_map),
             },
             // A soft shadow map has passes for each side.

@@ -1,0 +1,15 @@
+// Entry of the pass depth_layers.middle_front (src/stages/depth_layers/mod.rs).
+#version 450
+#extension GL_EXT_samplerless_texture_functions : require
+
+// Leaves out the faces that do not lie beyond those of another layer, as the projection point sees them: a depth peel
+// (Everitt 2001).
+
+layout(set = 0, binding = 0) uniform texture2D nearer;
+
+void main()
+{
+    if (gl_FragCoord.z >= texelFetch(nearer, ivec2(gl_FragCoord.xy), 0).x) {
+        discard;
+    }
+}
