@@ -221,7 +221,8 @@ pub const RULES: [Rule; COUNT] = [
         name: "fusion of overlapping occluders",
         needed: "two occluders meet in the map, or the back side of one is needed",
         bound: "that of the back side",
-        passes: "`depth_layers.near_back`, `depth_layers.far_front`; both faces of `soft_shadow_map`",
+        passes: "`depth_layers.near_back`, `depth_layers.far_front`, and with several views `depth_layers.middle_front` and \
+                 `middle_back`; both faces of `soft_shadow_map`",
         soft: true,
         judge: Case::inside,
         why: |case, _| case.why_inside(),

@@ -14,7 +14,7 @@ pub enum Layers {
     /// Three layers: without the part that the eye looks through (section 3.4).
     Eye,
     /// Four layers: solid from the nearest faces to the nearest back faces, and from the furthest front faces to the
-    /// furthest back faces.
+    /// furthest back faces. Where several views serve a light there are two more, of a third piece between these.
     #[default]
     Four,
 }
@@ -132,7 +132,7 @@ impl Knobs for Settings {
             "layers",
             Layers,
             "depth layers that say what is solid: 2, from the nearest to the furthest faces; 3, that but for what the \
-             eye looks through; 4, two pieces, each from a front to a back face",
+             eye looks through; 4, two pieces, each from a front to a back face, and with several views a third between",
             layers
         ),
         choice!(
