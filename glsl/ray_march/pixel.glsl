@@ -24,18 +24,9 @@ layout(set = 0, binding = 2) uniform texture2DArray windows;
 layout(set = 0, binding = 3, FRACTION_FORMAT) writeonly uniform image2D visibility;
 #endif
 
-bool has_middle();
-Levels levels();
-
 vec4 held_at(Levels l, int level, ivec2 node)
 {
     return texelFetch(windows, place_of(l, level, node), 0);
-}
-
-// The last layer of the windows has the third pieces of matter, where there are such.
-vec2 middle_at(ivec2 texel)
-{
-    return has_middle() ? texelFetch(windows, ivec3(texel, layers_of(levels())), 0).xy : vec2(0.0);
 }
 
 // No point is known to be empty, unless the including shader defines SEEN and a test of its own.
@@ -97,6 +88,12 @@ bool is_textured() { return (push.flags & 1 << 27) != 0; }
 Levels levels()
 {
     return Levels(push.map, level_kind());
+}
+
+// The last layer of the windows has the third pieces of matter, where there are such.
+vec2 middle_at(ivec2 texel)
+{
+    return has_middle() ? texelFetch(windows, ivec3(texel, layers_of(levels())), 0).xy : vec2(0.0);
 }
 
 #ifdef FORWARD

@@ -282,7 +282,7 @@ pub(super) fn build(
         layers: &layers,
         gbuffer: &gbuffer,
         visibility,
-        ndc_from_light: [0.0; 16],
+        ndc_from_light: frame.ndc_from_light.as_mat4().to_cols_array(),
         noise: frame.noise,
         light_texture,
         color,

@@ -1,7 +1,7 @@
 //! What a camera sees of the receivers: the parts of their boxes within slices of its frustum.
 
 use super::camera::Camera;
-use crate::stages::depth_layers::{LightBox, Polygon, cut_faces, each_face};
+use crate::stages::depth_layers::{LightBox, Polygon, cut_faces, each_face, outside_of};
 use crate::stages::views::Visible;
 use glam::{DMat4, DVec3, DVec4};
 
@@ -136,13 +136,7 @@ impl Frustum {
         let mut cut = 0;
         for of in boxes {
             let corners = corners(&of);
-            // The sides that all its corners lie outside of, and those that any does, a bit each.
-            let [mut all, mut any] = [u32::MAX, 0];
-            for p in corners {
-                let outside = |i: usize| u32::from(sides[i].dot(p.extend(1.0)) < 0.0) << i;
-                let outside = (0..4).map(outside).sum::<u32>();
-                (all, any) = (all & outside, any | outside);
-            }
+            let [all, any] = outside_of(&sides, &corners);
             let [near, far] = [self.nearest(&of), self.furthest(&of)];
             if all != 0 || far <= 0.0 {
                 continue;

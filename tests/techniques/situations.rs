@@ -142,7 +142,7 @@ fn a_board_through_the_floor_casts_the_same_shadow() {
             row("traced", [1.4, 0.05, 0.5]),
             row("ray-march", [2.2, 0.1, 0.5]),
             row("soft-shadow-map", [3.0, 0.1, 1.5]),
-            row("occlusion-textures", [2.5, 0.1, 2.5]),
+            row("occlusion-textures", [2.5, 0.1, 2.0]),
             row("pcss", [8.0, 0.1, 10.0]),
         ],
     );

@@ -1,6 +1,6 @@
 //! Buffer views that meshoptimizer compressed (EXT_meshopt_compression and KHR_meshopt_compression).
 //!
-//! Its decoder takes any bytes of a stream, and asserts that counts and strides suit it. This module checks them before the
+//! The `meshopt` crate's decoder takes any bytes of a stream, and asserts that counts and strides suit it. This module checks them before the
 //! call, so that no file makes an assertion fail.
 
 use super::Problem;

@@ -32,6 +32,18 @@ pub(crate) fn cut(polygon: &Polygon, plane: &DVec4) -> Polygon {
     kept
 }
 
+/// The planes that a point lies outside of, where `plane · (p, 1)` is below 0, a bit each.
+fn outside(planes: &[DVec4], p: DVec3) -> u32 {
+    let beyond = |(i, plane): (usize, &DVec4)| u32::from(plane.dot(p.extend(1.0)) < 0.0) << i;
+    planes.iter().enumerate().map(beyond).sum()
+}
+
+/// The planes that all of some points lie outside of, and those that any does, a bit each.
+pub(crate) fn outside_of(planes: &[DVec4], points: &[DVec3]) -> [u32; 2] {
+    let outside = points.iter().map(|p| outside(planes, *p));
+    outside.fold([u32::MAX, 0], |[all, any], bits| [all & bits, any | bits])
+}
+
 /// Calls `add` with every corner of the parts of a box's faces that lie within some planes, on the side where
 /// `plane · (p, 1)` is 0 or more.
 pub(crate) fn cut_faces(corners: &[DVec3; 8], planes: &[DVec4], mut add: impl FnMut(DVec3)) {
@@ -41,11 +53,7 @@ pub(crate) fn cut_faces(corners: &[DVec3; 8], planes: &[DVec4], mut add: impl Fn
 /// Calls `add` with the parts of a box's faces that lie within some planes, on the side where `plane · (p, 1)` is 0 or
 /// more.
 pub(crate) fn each_face(corners: &[DVec3; 8], planes: &[DVec4], mut add: impl FnMut(&Polygon)) {
-    // The planes that a corner lies outside of, a bit each.
-    let outside = corners.map(|p| {
-        let beyond = |(i, plane): (usize, &DVec4)| u32::from(plane.dot(p.extend(1.0)) < 0.0) << i;
-        planes.iter().enumerate().map(beyond).sum::<u32>()
-    });
+    let outside = corners.map(|p| outside(planes, p));
     for face in &FACES {
         let [all, any] =
             face.iter().fold([u32::MAX, 0], |[all, any], &i| [all & outside[i], any | outside[i]]);

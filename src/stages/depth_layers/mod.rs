@@ -29,7 +29,7 @@ mod eye;
 mod host_maps;
 mod view;
 
-pub(crate) use boxes::{LightBox, Polygon, cut, cut_faces, each_face, planes_around};
+pub(crate) use boxes::{LightBox, Polygon, cut, cut_faces, each_face, outside_of, planes_around};
 pub(crate) use eye::view_from;
 pub use eye::{Projection, view};
 pub(crate) use host_maps::HostMapView;

@@ -156,7 +156,9 @@ pub(crate) fn fit_served(lamp: &Lamp, views: &mut Vec<Served>) -> (Why, bool) {
         views.extend(one.map(Served::all));
     }
     let why = match seen {
-        Some(seen) if seen < widest => why.and(", what is seen up to ").number(seen, 2),
+        Some(seen) if seen < widest => {
+            why.and(", shadows that are seen need up to ").number(seen, 2)
+        }
         _ => why,
     };
     let why = match (views.len(), most) {

@@ -170,7 +170,7 @@ fn a_camera_that_sees_little_takes_few_views() {
     let mut few = Vec::new();
     let (why, _) = fit_served(&of, &mut few);
     assert!(few.len() < 3 && all.len() == 6, "{why}");
-    assert!(why.to_string().contains("what is seen up to 0."), "{why}");
+    assert!(why.to_string().contains("shadows that are seen need up to 0."), "{why}");
     let texels = |views: &[Served]| views[0].map.texels_per_uv()[0];
     assert!(texels(&few) > 1.5 * texels(&all), "{} {}", texels(&few), texels(&all));
     // A camera that looks away sees no receiver.

@@ -1,9 +1,9 @@
 //! What a camera sees of a lamp's receivers, as the lamp sees it: how far aside its views need to show.
 
-use crate::stages::depth_layers::{LightBox, Polygon, cut, each_face, planes_around};
+use crate::stages::depth_layers::{LightBox, Polygon, cut, each_face, outside_of, planes_around};
 use glam::{DVec3, DVec4};
 
-/// How many receivers are cut to what the camera sees of them, for each view. Of further ones the boxes count as they are.
+/// How many receivers are cut to what the camera sees of them. Of further ones the boxes count as they are.
 const MOST_CUT: usize = 32;
 
 /// How many steps a doubling of their width has for the windows' ends, so that texels stay where they are while the camera
@@ -79,13 +79,7 @@ impl Seen {
         if self.is_whole() {
             return;
         }
-        // The planes that all its corners lie outside of, and those that any does, a bit each.
-        let [mut all, mut any] = [u32::MAX, 0];
-        for p in face {
-            let outside = |i: usize| u32::from(self.planes[i].dot(p.extend(1.0)) < 0.0) << i;
-            let outside = (0..4).map(outside).sum::<u32>();
-            (all, any) = (all & outside, any | outside);
-        }
+        let [all, any] = outside_of(&self.planes, face);
         if all != 0 {
             return;
         }

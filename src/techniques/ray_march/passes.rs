@@ -167,7 +167,7 @@ fn listed(
 pub struct Columns {
     /// The map's side in texels.
     pub map: i32,
-    /// The number of layers: 2, or 4 with the nearest back and the furthest front faces.
+    /// The number of layers: 2; 4 with the nearest back and the furthest front faces; 6 with those of the piece between.
     pub layers: i32,
     /// The height of a stored 1.
     pub height: f32,
@@ -202,19 +202,16 @@ fn declare_levels(
     let back = layers.back.unwrap_or(layers.front);
     let [near_back, far_front] = layers.inner.unwrap_or([layers.front; 2]);
     let [middle_front, middle_back] = layers.middle.unwrap_or([layers.front; 2]);
-    let four = layers.inner.is_some();
     graph.push(Pass::compute(
         "ray_march.columns",
         module!("ray_march/columns.comp"),
         grid([map; 2]),
         Push::new(&Columns {
             map: map as i32,
-            layers: if layers.middle.is_some() {
-                6
-            } else if four {
-                4
-            } else {
-                2
+            layers: match (layers.middle, layers.inner) {
+                (Some(_), _) => 6,
+                (None, Some(_)) => 4,
+                (None, None) => 2,
             },
             height: inputs.occluders.top() as f32,
             middle: levels.layers() as i32,
