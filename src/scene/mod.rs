@@ -13,6 +13,8 @@ use glam::{DMat3, DMat4, DVec3, DVec4};
 
 mod framing;
 pub mod generate;
+mod opacity;
+pub use opacity::{OpacityMap, Wrap};
 #[cfg(feature = "gltf")]
 mod gltf;
 #[cfg(feature = "gltf")]
@@ -31,6 +33,12 @@ pub struct Mesh {
     pub double_sided: bool,
     /// The alpha of a texture cuts holes into it, or lets light through, which its triangles do not tell.
     pub cut_out: bool,
+    /// Index into [`Scene::opacity_maps`] of the texture that tells where; a mesh that is [`Self::cut_out`] and has none
+    /// counts whole.
+    pub opacity_map: Option<usize>,
+    /// One place in the opacity map a vertex, (0, 0) at the map's first texel's corner and (1, 1) at the last one's; as long
+    /// as `positions`, or empty where there is no opacity map.
+    pub texture_coordinates: Vec<[f32; 2]>,
 }
 
 impl Mesh {
@@ -172,6 +180,8 @@ pub struct Scene {
     pub meshes: Vec<Mesh>,
     /// The placements of the meshes.
     pub instances: Vec<Instance>,
+    /// The textures that say where meshes stop light.
+    pub opacity_maps: Vec<OpacityMap>,
     /// The area lights, in the order of the file.
     pub lights: Vec<AreaLight>,
     /// The camera that shows the scene: the file's first, or another by [`Self::set_camera`]; without one, see
