@@ -1,8 +1,10 @@
 //! What the host lends for a frame: images, meshes, ready-made occluder maps.
 
 mod normals;
+mod opacity;
 
 pub use normals::{NormalEncoding, Normals};
+pub use opacity::{OpacityTexture, Wrap};
 
 use crate::Error;
 use crate::error::quoted;
@@ -256,9 +258,13 @@ pub struct MeshInstance {
     pub role: Role,
     /// Both sides of each triangle are front faces.
     pub double_sided: bool,
-    /// A texture's alpha cuts holes into it. The node knows no textures and draws it whole, which
-    /// [`FramePlan::explain`](crate::FramePlan::explain) then says; with [`Geometry::HostDrawn`] the host cuts it.
+    /// A texture's alpha cuts holes into it, or lets a part of the light through. Without [`Self::opacity`] the node draws
+    /// it whole, which [`FramePlan::explain`](crate::FramePlan::explain) then says; with [`Geometry::HostDrawn`] the host
+    /// cuts it.
     pub cut_out: bool,
+    /// The texture that tells where, for [`Geometry::Buffers`]: every technique's maps and rays then look it up. The node
+    /// is made for a number of such meshes ([`Description::cut_outs`](crate::Description::cut_outs)).
+    pub opacity: Option<OpacityTexture>,
 }
 
 impl MeshInstance {
@@ -270,7 +276,15 @@ impl MeshInstance {
         role: Role,
     ) -> Self {
         let world_from_mesh = world_from_mesh.into().0;
-        Self { geometry, world_from_mesh, bounds, role, double_sided: false, cut_out: false }
+        Self {
+            geometry,
+            world_from_mesh,
+            bounds,
+            role,
+            double_sided: false,
+            cut_out: false,
+            opacity: None,
+        }
     }
 }
 

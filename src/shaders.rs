@@ -47,6 +47,12 @@ pub(crate) use module;
 /// Transforms vertices to clip space, for depth alone.
 pub const DEPTH_VERT: Module = module!("depth_layers/depth.vert");
 
+/// [`DEPTH_VERT`] for meshes that textures cut out.
+pub const DEPTH_CUT_VERT: Module = module!("depth_layers/depth_cut.vert");
+
+/// Leaves out what opacity textures let the light through at, for depth alone.
+pub const CUT_FRAG: Module = module!("cut_outs/depth.frag");
+
 /// Computes a micro-patch's occlusion at a receiver texel.
 pub const PATCH_FRAG: Module = module!("soft_shadow_map/patch.frag");
 

@@ -114,6 +114,7 @@ fn instances(count: u32) -> Vec<MeshInstance> {
         role,
         double_sided: false,
         cut_out: false,
+        opacity: None,
     };
     let ground = mesh([[-50.0, 0.0, -50.0], [50.0, 0.0, 50.0]], DVec3::ZERO, Role::Receiver);
     let place =

@@ -21,6 +21,11 @@ layout(set = 0, binding = 5, rgba32f) readonly uniform image2D triangles;
 layout(set = 0, binding = 6, std430) buffer Parts { uint parts[]; };
 
 #include "audit/pyramid.glsl"
+#ifdef CUT
+layout(set = 0, binding = 7) uniform texture2D cut_outs;
+layout(set = 0, binding = 8) uniform utexture2D opacities;
+#include "hierarchy/cut.glsl"
+#endif
 
 // Cells along the light's width and height: a row of cells is a word.
 const int COLUMNS = 32;
@@ -95,6 +100,33 @@ uvec4 rows_within(Lines l, float j)
     return uvec4(row_within(l, j), row_within(l, j + 1.0), row_within(l, j + 2.0), row_within(l, j + 3.0));
 }
 
+#ifdef CUT
+// The cells of the jth row whose rays an opacity texture stops; `ab` and so on are the planes through the tip and an edge,
+// `middle` is where the figure's middle is from the tip.
+uint row_stopped(Cut cut, Figure f, uint triangle, mat3 planes, vec3 middle, uint cells, int j)
+{
+    const vec2 CELLS = vec2(float(COLUMNS), float(ROWS));
+    uint stopped = 0u;
+    while (cells != 0u) {
+        int i = findLSB(int(cells));
+        cells &= cells - 1u;
+        vec2 at = vec2(i, j) + vec2(float(j) + 0.5, CELLS.x - 0.5 - float(i)) / CELLS.yx;
+        at = (at / CELLS * 2.0 - 1.0) * f.half_size;
+        vec3 ray = middle + f.u * at.x + f.v * at.y;
+        stopped |= stops(cut, ray * planes, even_number(vec2(i, j), triangle)) ? 1u << i : 0u;
+    }
+    return stopped;
+}
+
+uvec4 rows_stopped(Cut cut, Figure f, uint triangle, mat3 planes, vec3 middle, uvec4 cells, int j)
+{
+    return uvec4(row_stopped(cut, f, triangle, planes, middle, cells.x, j),
+                 row_stopped(cut, f, triangle, planes, middle, cells.y, j + 1),
+                 row_stopped(cut, f, triangle, planes, middle, cells.z, j + 2),
+                 row_stopped(cut, f, triangle, planes, middle, cells.w, j + 3));
+}
+#endif
+
 // The cells that a triangle hides, with those that are hidden already.
 Cells with_hidden(Cells hidden, Figure f, vec3 tip, vec3 middle, uint triangle)
 {
@@ -127,10 +159,21 @@ Cells with_hidden(Cells hidden, Figure f, vec3 tip, vec3 middle, uint triangle)
     l.least_step = vec4(none ? 0.0 : e0.least.y, e1.least.y, e2.least.y, own.least.y);
     l.most = vec4(e0.most.x, e1.most.x, e2.most.x, own.most.x);
     l.most_step = vec4(e0.most.y, e1.most.y, e2.most.y, own.most.y);
-    hidden.a |= rows_within(l, 0.0);
-    hidden.b |= rows_within(l, 4.0);
-    hidden.c |= rows_within(l, 8.0);
-    hidden.d |= rows_within(l, 12.0);
+    Cells more = Cells(rows_within(l, 0.0), rows_within(l, 4.0), rows_within(l, 8.0), rows_within(l, 12.0));
+#ifdef CUT
+    if (corner.w > CUT_FROM && !none) {
+        Cut cut = cut_of(triangle);
+        mat3 planes = mat3(bc, ca, ab);
+        more.a = rows_stopped(cut, f, triangle, planes, middle, more.a & ~hidden.a, 0);
+        more.b = rows_stopped(cut, f, triangle, planes, middle, more.b & ~hidden.b, 4);
+        more.c = rows_stopped(cut, f, triangle, planes, middle, more.c & ~hidden.c, 8);
+        more.d = rows_stopped(cut, f, triangle, planes, middle, more.d & ~hidden.d, 12);
+    }
+#endif
+    hidden.a |= more.a;
+    hidden.b |= more.b;
+    hidden.c |= more.c;
+    hidden.d |= more.d;
     return hidden;
 }
 

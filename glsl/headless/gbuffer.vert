@@ -14,6 +14,12 @@ layout(push_constant) uniform Push {
 layout(location = 0) out vec3 from_origin;
 layout(location = 1) out vec3 normal_ws;
 
+#ifdef CUT
+layout(set = 0, binding = 0, std430) readonly buffer Coordinates { vec2 coordinates[]; };
+
+layout(location = 2) out vec2 place;
+#endif
+
 void main()
 {
     mat3 m = mat3(push.world_from_mesh);
@@ -22,4 +28,7 @@ void main()
     // fronts of its triangles (harness/src/painter.rs), and the fragment stage turns both towards the viewer.
     normal_ws = mat3(cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1])) * normal;
     gl_Position = push.clip_from_mesh * vec4(position, 1.0);
+#ifdef CUT
+    place = coordinates[gl_VertexIndex];
+#endif
 }

@@ -14,7 +14,7 @@ layout(push_constant) uniform Push {
     vec4 row_x;      // mesh space, from the origin below on, to the hierarchy's space: a plane each
     vec4 row_y;
     vec4 row_z;
-    vec4 low;        // the least corner of the mesh's box, in mesh space
+    vec4 low;        // the least corner of the mesh's box, in mesh space; 1, or 2 where a texture cuts the mesh out
     vec4 cells;      // Morton cells a unit of mesh space
     uint first;      // the place of the mesh's first triangle among those of all meshes
     uint count;      // how many triangles it has

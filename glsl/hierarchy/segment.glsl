@@ -8,6 +8,13 @@
 
 #include "hierarchy/tree.glsl"
 
+#ifdef CUT
+#include "hierarchy/cut.glsl"
+
+// A number for each ray, spread evenly over 0..1 among the rays of a receiver.
+vec2 ray_number;
+#endif
+
 // A segment, and what is the same for all nodes that it meets.
 struct Segment {
     vec3 from;
@@ -60,7 +67,14 @@ bool crosses(Segment s, uint triangle)
     float reach = dot(normal, s.along) * side;
     vec3 size = max(max(abs(a), abs(b)), abs(c)) + s.size;
     float sharp = 0.5 * ROUNDING * length(normal) * (size.x + size.y + size.z);
-    return corner.w > 0.0 && inside >= 0.0 && reach * s.ends >= abs(volume) * s.ends && abs(volume) > sharp;
+    bool hit = corner.w > 0.0 && inside >= 0.0 && reach * s.ends >= abs(volume) * s.ends && abs(volume) > sharp;
+#ifdef CUT
+    if (hit && corner.w > CUT_FROM) {
+        // Each edge's side is the share of the corner across from it.
+        hit = stops(cut_of(triangle), edges.yzx, even_number(ray_number, triangle));
+    }
+#endif
+    return hit;
 }
 
 // Whether any triangle blocks the segment. Each turn of a loop takes one from `turns`; where none is left nothing more is

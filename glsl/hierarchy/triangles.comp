@@ -26,12 +26,12 @@ void main()
         there = there && is_number(corner.x) && is_number(corner.y) && is_number(corner.z);
         corners[i] = corner;
     }
-    // Beside the corners: that there is a triangle, twice its area, and that times the size of its positions.
+    // Beside the corners: that there is a triangle, and whether a texture cuts it out; twice its area, and that times the size of its positions.
     vec3 size = max(max(abs(corners[0]), abs(corners[1])), abs(corners[2]));
     vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
     float most = max(max(abs(normal.x), abs(normal.y)), max(abs(normal.z), 1.0e-30));
     float area = most * max(length(normal / most), 1.0);
-    vec3 more = vec3(1.0, area, area * (size.x + size.y + size.z));
+    vec3 more = vec3(push.low.w, area, area * (size.x + size.y + size.z));
     for (int i = 0; i < 3; ++i) {
         imageStore(triangles, texel(first + uint(i)), there ? vec4(corners[i], more[i]) : vec4(0.0));
     }

@@ -3,6 +3,9 @@
 #extension GL_GOOGLE_include_directive : require
 #include "linear_light/line.glsl"
 #include "linear_light/view.glsl"
+#ifdef CUT
+#include "cut_outs/vertex.glsl"
+#endif
 
 // Converts the meshes' vertices to the clip space of a sample's map; nothing is drawn where there is no such sample.
 
@@ -12,4 +15,7 @@ void main()
 {
     vec4 p = seen_from(samples.at[push.nth]);
     gl_Position = push.nth < samples.count ? p : vec4(2.0, 2.0, 2.0, 1.0);
+#ifdef CUT
+    hand_over_place();
+#endif
 }

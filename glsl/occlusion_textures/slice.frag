@@ -8,6 +8,9 @@
 // channel.
 
 #include "occlusion_textures/slices.glsl"
+#ifdef CUT
+#include "cut_outs/image.glsl"
+#endif
 
 layout(set = 0, binding = 0) uniform texture2D placement;
 
@@ -21,6 +24,11 @@ const float ONE = 1.0 / 255.0;
 
 void main()
 {
+#ifdef CUT
+    if (lets_through()) {
+        discard;
+    }
+#endif
     vec4 known = texelFetch(placement, ivec2(0, 0), 0);
     int bin = bin_of(gl_FragCoord.z, known.y, known.z);
     int slice = int(texelFetch(placement, ivec2(bin, 0), 0).x) - FIRST;

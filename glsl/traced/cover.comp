@@ -17,6 +17,12 @@ layout(set = 0, binding = 5, std430) readonly buffer Entries { Head head; Entry 
 layout(set = 0, binding = 6, std430) readonly buffer Lists { uint lists[]; };
 layout(set = 0, binding = 7, VISIBILITY_FORMAT) writeonly uniform image2D visibility;
 
+#ifdef CUT
+layout(set = 0, binding = 9) uniform texture2D cut_outs;
+layout(set = 0, binding = 10) uniform utexture2D opacities;
+#include "hierarchy/cut.glsl"
+#endif
+
 // How much a triangle's area, and its area times its size, allow a volume to be off by rounding.
 vec2 sharp;
 
@@ -26,6 +32,7 @@ struct Triangle {
     vec3 b;
     vec3 c;
     float sharp; // the volume that a receiver spans with it, below which the receiver is in its plane
+    bool cut;    // whether a texture says which parts of it block
 };
 
 Triangle triangle_of(uint nth, vec3 middle)
@@ -34,7 +41,7 @@ Triangle triangle_of(uint nth, vec3 middle)
     vec4 b = imageLoad(triangles, texel(3u * nth + 1u));
     vec4 c = imageLoad(triangles, texel(3u * nth + 2u));
     return Triangle(in_light_space(a.xyz) - middle, in_light_space(b.xyz) - middle, in_light_space(c.xyz) - middle,
-                    b.w * sharp.x + c.w * sharp.y);
+                    b.w * sharp.x + c.w * sharp.y, a.w > CUT_FROM);
 }
 
 // The light's samples that a triangle hides from a receiver at `q`, as bounds for each of the rows of samples; `first` is
@@ -92,6 +99,39 @@ Mask behind_plane(Triangle t, vec3 q, vec3 first, float word)
     vec3 sample_from_corner = first + vec3(0.0, 0.0, light_end) - (t.a - q);
     Line own = line_of(normal, sample_from_corner, height < 0.0 ? -1.0 : 1.0);
     return samples_between(bounds_of(own, own, own, false), word);
+}
+
+// The samples that are hidden with those that the triangle of a number hides; `first` is where the first sample is, from the
+// receiver at `q`, and `word` the number of the masks' first word.
+Mask with_hidden(Mask hidden, Mask more, uint nth, Triangle t, vec3 q, vec3 first, float word)
+{
+#ifdef CUT
+    if (t.cut) {
+        Cut cut = cut_of(nth);
+        vec3 a = t.a - q;
+        vec3 b = t.b - q;
+        vec3 c = t.c - q;
+        vec3 ab = cross(a, b);
+        vec3 bc = cross(b, c);
+        vec3 ca = cross(c, a);
+        for (int w = 0; w < MASK_WORDS; ++w) {
+            uint open = word_of(more, w) & ~word_of(hidden, w);
+            uint stopped = 0u;
+            while (open != 0u) {
+                int bit = findLSB(int(open));
+                open &= open - 1u;
+                int number = (int(word) + w) * 32 + bit;
+                vec2 at = vec2(number % SIDE, number / SIDE);
+                vec3 ray = first + vec3(at + TURN * vec2(at.y, -at.x), 0.0);
+                vec3 shares = vec3(dot(bc, ray), dot(ca, ray), dot(ab, ray));
+                stopped |= stops(cut, shares, even_number(at, nth)) ? 1u << bit : 0u;
+            }
+            hidden = with_word(hidden, w, stopped);
+        }
+        return hidden;
+    }
+#endif
+    return either(hidden, more);
 }
 
 // What all samples count for.
@@ -155,21 +195,24 @@ void main()
         Mask hidden0 = whole_mask(mine0 ? 0u : 0xffffffffu);
         Mask hidden1 = whole_mask(mine1 ? 0u : 0xffffffffu);
         for (uint i = 0u; i < entry.few && !(is_full(hidden0) && is_full(hidden1)); ++i) {
-            Triangle t = triangle_of(lists[entry.first + i], middle);
-            hidden0 = either(hidden0, few_hidden_by(t, q0, first0, word));
-            hidden1 = either(hidden1, few_hidden_by(t, q1, first1, word));
+            uint number = lists[entry.first + i];
+            Triangle t = triangle_of(number, middle);
+            hidden0 = with_hidden(hidden0, few_hidden_by(t, q0, first0, word), number, t, q0, first0, word);
+            hidden1 = with_hidden(hidden1, few_hidden_by(t, q1, first1, word), number, t, q1, first1, word);
         }
         for (uint i = crossing ? entry.many : 0u; i < entry.many && !(is_full(hidden0) && is_full(hidden1)); ++i) {
-            Triangle t = triangle_of(lists[entry.others + i], middle);
-            hidden0 = either(hidden0, hidden_by(t, q0, first0, word));
-            hidden1 = either(hidden1, hidden_by(t, q1, first1, word));
+            uint number = lists[entry.others + i];
+            Triangle t = triangle_of(number, middle);
+            hidden0 = with_hidden(hidden0, hidden_by(t, q0, first0, word), number, t, q0, first0, word);
+            hidden1 = with_hidden(hidden1, hidden_by(t, q1, first1, word), number, t, q1, first1, word);
         }
         for (uint i = crossing ? 0u : entry.many; i < entry.many && !(is_full(hidden0) && is_full(hidden1)); ++i) {
-            Triangle t = triangle_of(lists[entry.others + i], middle);
+            uint number = lists[entry.others + i];
+            Triangle t = triangle_of(number, middle);
             Mask by0 = both(hidden_by(t, q0, first0, word), behind_plane(t, q0, first0, word));
             Mask by1 = both(hidden_by(t, q1, first1, word), behind_plane(t, q1, first1, word));
-            hidden0 = either(hidden0, by0);
-            hidden1 = either(hidden1, by1);
+            hidden0 = with_hidden(hidden0, by0, number, t, q0, first0, word);
+            hidden1 = with_hidden(hidden1, by1, number, t, q1, first1, word);
         }
         seen0 += seen_of(hidden0, m * MASK_WORDS);
         seen1 += seen_of(hidden1, m * MASK_WORDS);

@@ -109,6 +109,13 @@ uint word_of(Mask m, int nth)
     return nth == 0 ? m.words.x : m.words.y;
 }
 
+// The mask with more samples in its nth word.
+Mask with_word(Mask m, int nth, uint bits)
+{
+    m.words |= nth == 0 ? uvec2(bits, 0u) : uvec2(0u, bits);
+    return m;
+}
+
 Mask samples_between(Bounds b, float j)
 {
     return Mask(uvec2(
@@ -160,6 +167,15 @@ uint word_of(Mask m, int nth)
     uvec4 half_of = nth < 4 ? m.low : m.high;
     uvec2 pair = (nth & 2) == 0 ? half_of.xy : half_of.zw;
     return (nth & 1) == 0 ? pair.x : pair.y;
+}
+
+// The mask with more samples in its nth word.
+Mask with_word(Mask m, int nth, uint bits)
+{
+    uvec4 words = mix(uvec4(0u), uvec4(bits), equal(ivec4(0, 1, 2, 3), ivec4(nth & 3)));
+    m.low |= nth < 4 ? words : uvec4(0u);
+    m.high |= nth < 4 ? uvec4(0u) : words;
+    return m;
 }
 
 uint word_between(Bounds b, float j)

@@ -22,6 +22,7 @@ layout(set = 0, binding = 8, VISIBILITY_FORMAT) writeonly uniform image2D visibi
 // The corners of a triangle in light space, or relative to a point of it.
 struct Corners {
     bool there;
+    bool cut; // whether a texture says which parts of it block
     vec3 a;
     vec3 b;
     vec3 c;
@@ -32,7 +33,7 @@ Corners corners_of(uint triangle)
     vec4 a = imageLoad(triangles, texel(3u * triangle));
     vec4 b = imageLoad(triangles, texel(3u * triangle + 1u));
     vec4 c = imageLoad(triangles, texel(3u * triangle + 2u));
-    return Corners(a.w > 0.0, in_light_space(a.xyz), in_light_space(b.xyz), in_light_space(c.xyz));
+    return Corners(a.w > 0.0, a.w > CUT_FROM, in_light_space(a.xyz), in_light_space(b.xyz), in_light_space(c.xyz));
 }
 
 // How far a sum over the half sides of the receivers' box goes to either side.
@@ -142,7 +143,7 @@ int part_hidden(Shaft shaft, Corners t)
     bool between = furthest < shaft.near && (is_sun() || nearest >= light_end);
     bool opposite = free > rounding && abs(over) > dot(abs(normal.xy), half_light) + rounding &&
                     (height < 0.0) != (over < 0.0);
-    bool all_hidden = between && opposite && all(greaterThan(middle, change));
+    bool all_hidden = between && opposite && !t.cut && all(greaterThan(middle, change));
     // Where the corners are seen in the light, in steps of the grid. Samples are at whole steps; a triangle that spans none
     // in x or in y hides none.
     const float MARGIN = 1.0 / 64.0;

@@ -16,6 +16,11 @@ layout(set = 0, binding = 5, std430) readonly buffer Slots { Slot slots[]; };
 layout(set = 0, binding = 6, std430) readonly buffer Entries { Head head; Entry entries[]; };
 layout(set = 0, binding = 7, VISIBILITY_FORMAT) writeonly uniform image2D visibility;
 
+#ifdef CUT
+layout(set = 0, binding = 9) uniform texture2D cut_outs;
+layout(set = 0, binding = 10) uniform utexture2D opacities;
+#endif
+
 #include "hierarchy/segment.glsl"
 
 // The turns of all loops of an invocation: some drivers end loops without a word after 65,535 of them.
@@ -73,6 +78,9 @@ void main()
         in_light *= is_sun() ? 1.0 : 1.0 - light_end / r.in_light.z;
         vec3 along = in_light.x * light_x.xyz + in_light.y * light_y.xyz + in_light.z * light_z.xyz;
         Segment s = segment_of(r.position, along, !is_sun());
+#ifdef CUT
+        ray_number = vec2(number % int(frame.side), number / int(frame.side));
+#endif
         // A sample that is dark, or outside the light's shape, needs no ray.
         bool hit = weight != SUM(0.0) && blocked(s, frame.nodes, turns);
         sent += 1;

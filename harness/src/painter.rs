@@ -3,7 +3,7 @@
 
 use crate::raster::{Raster, RasterInfo, Triangles};
 use crate::set::BoundSet;
-use crate::shaders::GBUFFER_VERT;
+use crate::shaders::{GBUFFER_CUT_FRAG, GBUFFER_CUT_VERT, GBUFFER_VERT};
 use crate::{HeadlessDevice, OwnedImage, SceneBuffers, View};
 use antumbra::Error;
 use antumbra::scene::{Instance, Scene};
@@ -35,6 +35,8 @@ pub(crate) struct SceneDraw {
     normals: vk::Buffer,
     indices: vk::Buffer,
     count: u32,
+    /// The set of a mesh that a texture cuts out, and its layout.
+    cut: Option<(vk::DescriptorSet, vk::DescriptorSetLayout)>,
 }
 
 /// The instances that `keep` accepts, as a view sees them.
@@ -55,7 +57,8 @@ pub(crate) fn draws(
         };
         let flags = u32::from(instance.role.mask()) | backs;
         let push = push_of(&buffers.world_from_buffer(instance), flags, view);
-        Some(SceneDraw { push, positions, normals, indices, count })
+        let cut = buffers.cut_set(instance.mesh).map(|set| (set.raw(), set.layout()));
+        Some(SceneDraw { push, positions, normals, indices, count, cut })
     };
     scene.instances.iter().filter(|i| keep(i)).filter_map(draw).collect()
 }
@@ -64,6 +67,7 @@ pub(crate) fn draws(
 pub(crate) struct Painter {
     device: HeadlessDevice,
     raster: Raster,
+    colors: Vec<vk::Format>,
     inputs: bool,
 }
 
@@ -94,9 +98,28 @@ impl Painter {
             fragment: Some(fragment),
             vertices,
             set,
+            set_layout: None,
             push: size_of::<Push>() as u32,
         };
-        Ok(Self { device: device.clone(), raster: Raster::new(device, info)?, inputs })
+        let (device, colors) = (device.clone(), colors.to_vec());
+        Ok(Self { raster: Raster::new(&device, info)?, device, colors, inputs })
+    }
+
+    /// A raster like the G-buffer's own for meshes that textures cut out, whose sets have this layout.
+    fn cut_raster(&self, set_layout: vk::DescriptorSetLayout) -> Result<Raster, Error> {
+        let info = RasterInfo {
+            colors: &self.colors,
+            background: 0.0,
+            adds: false,
+            depth: true,
+            vertex: GBUFFER_CUT_VERT,
+            fragment: Some(GBUFFER_CUT_FRAG),
+            vertices: &[&[3], &[3]],
+            set: None,
+            set_layout: Some(set_layout),
+            push: size_of::<Push>() as u32,
+        };
+        Raster::new(&self.device, info)
     }
 
     /// Paints into the images, the color attachments in order and then depth, submits and waits; how long
@@ -106,8 +129,19 @@ impl Painter {
     /// [`Error::Vulkan`] where the driver refuses.
     pub fn paint(&self, images: &[&OwnedImage], draws: &[SceneDraw]) -> Result<Duration, Error> {
         let target = self.raster.target(images)?;
+        // Forward evaluation draws them whole.
+        let cut = draws.iter().find_map(|draw| draw.cut).filter(|_| self.inputs);
+        let cut = cut.map(|(_, layout)| self.cut_raster(layout)).transpose()?;
         let draw_all = |cmd| {
-            for draw in draws {
+            // What is cut out comes last, because it changes the pipeline.
+            let is_cut = |draw: &&SceneDraw| cut.is_some() && draw.cut.is_some();
+            let whole = draws.iter().filter(|draw| !is_cut(draw));
+            for draw in whole.chain(draws.iter().filter(is_cut)) {
+                let mut raster = &self.raster;
+                if let (Some(cut), Some((set, _))) = (&cut, draw.cut) {
+                    cut.take_over(cmd, set);
+                    raster = cut;
+                }
                 let triangles = Triangles {
                     vertices: &[draw.positions, draw.normals],
                     offsets: &[0, 0],
@@ -118,7 +152,7 @@ impl Painter {
                 let world_from_mesh =
                     if self.inputs { draw.push.world_from_mesh } else { [0.0; 15] };
                 let push = Push { world_from_mesh, ..draw.push };
-                self.raster.draw(cmd, bytemuck::bytes_of(&push), &triangles);
+                raster.draw(cmd, bytemuck::bytes_of(&push), &triangles);
             }
         };
         let painted = self.device.submit_timed(|cmd| {

@@ -31,6 +31,8 @@ pub(crate) struct RasterInfo<'a> {
     pub vertices: &'a [&'a [u32]],
     /// The descriptor set that the fragment shader reads.
     pub set: Option<BoundSet>,
+    /// The layout of sets that draws bind themselves, where there is no such set.
+    pub set_layout: Option<vk::DescriptorSetLayout>,
     /// Bytes of push constants, which all stages see.
     pub push: u32,
 }
@@ -86,7 +88,8 @@ impl Raster {
             set: info.set.take(),
         };
         new.make_render_pass(&info)?;
-        let set_layouts: Vec<_> = new.set.iter().map(BoundSet::layout).collect();
+        let set_layouts: Vec<_> =
+            new.set.iter().map(BoundSet::layout).chain(info.set_layout).collect();
         let ranges = [vk::PushConstantRange { stage_flags: stages, offset: 0, size: info.push }];
         let create = vk::PipelineLayoutCreateInfo::default()
             .set_layouts(&set_layouts)
@@ -273,6 +276,17 @@ impl Raster {
         draw();
         // SAFETY: the render pass was begun above.
         unsafe { raw.cmd_end_render_pass(cmd) };
+    }
+
+    /// Draws the next triangles by this pipeline inside another raster's [`Self::record`], whose attachments have the same
+    /// formats; `set` is of the layout that this one was made for.
+    pub fn take_over(&self, cmd: vk::CommandBuffer, set: vk::DescriptorSet) {
+        let raw = self.device.device();
+        let point = vk::PipelineBindPoint::GRAPHICS;
+        // SAFETY: inside a render pass that is compatible with this one's; the set was written.
+        unsafe { raw.cmd_bind_pipeline(cmd, point, self.pipeline) };
+        // SAFETY: as above.
+        unsafe { raw.cmd_bind_descriptor_sets(cmd, point, self.layout, 0, &[set], &[]) };
     }
 
     /// Draws triangles inside [`Self::record`].

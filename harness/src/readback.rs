@@ -94,6 +94,7 @@ impl ReadbackScheme {
             fragment: None,
             vertices: &[&[3]],
             set: None,
+            set_layout: None,
             push: size_of::<DepthPush>() as u32,
         };
         let layers = Raster::new(device, layers)?;
@@ -109,6 +110,7 @@ impl ReadbackScheme {
             // As a `Corner` lies in memory.
             vertices: &[&[2, 3]],
             set: Some(BoundSet::new(device, vk::ShaderStageFlags::FRAGMENT, &fetched)?),
+            set_layout: None,
             push: size_of::<PatchDraw>() as u32,
         };
         let blend = Raster::new(device, blend)?;

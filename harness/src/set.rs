@@ -109,6 +109,11 @@ impl BoundSet {
         }
     }
 
+    /// The set itself.
+    pub fn raw(&self) -> vk::DescriptorSet {
+        self.set
+    }
+
     /// The set's layout, for the pipeline's.
     pub fn layout(&self) -> vk::DescriptorSetLayout {
         self.layout

@@ -6,7 +6,7 @@ use crate::{
     View, read_image,
 };
 use antumbra::auto::{Auto, Choice};
-use antumbra::frame::Capacity;
+use antumbra::frame::{Capacity, CutOuts};
 use antumbra::graph::Scope;
 use antumbra::node::PlanObject;
 use antumbra::scene::{AreaLight, Instance, Scene};
@@ -123,6 +123,7 @@ impl Stage {
             frames_in_flight: 1,
             mask_format: Some(MASK),
             capacity: Capacity::of(&self.instances),
+            cut_outs: CutOuts::of(&self.instances),
             inspect: true,
             ..Description::new(self.gbuffer.depth.extent())
         };

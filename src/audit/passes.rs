@@ -183,7 +183,14 @@ pub(crate) fn declare(
         write(6, parts),
         Use::fixed(arguments, Access::Indirect),
     ]);
-    let shader = module!("audit/trace.comp");
+    let shader = match tree.cut_outs {
+        None => module!("audit/trace.comp"),
+        Some(cut) => {
+            uses.push(Use::bound(7, cut.places, Access::SampledCompute));
+            uses.push(Use::bound(8, cut.opacities, Access::SampledCompute));
+            module!("audit/trace_cut.comp")
+        }
+    };
     let work = Work::Indirect { shader, arguments, offset: 0 };
     graph.push(Pass { name: "audit.trace", uses, push: light, work, need: *need });
     let push = Push::new(&ListPush { candidates, blocks: pixel_blocks, pixels });

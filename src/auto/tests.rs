@@ -27,6 +27,7 @@ pub(super) fn mesh(bounds: [[f32; 3]; 2], at: DVec3, role: Role, triangles: u32)
         role,
         double_sided: false,
         cut_out: false,
+        opacity: None,
     }
 }
 

@@ -1,5 +1,6 @@
 //! How a frame accesses images and buffers of the host: the barriers and scopes at the node's border.
 
+use super::CutOutSet;
 use super::MeshDraw;
 use super::triangles::TriangleMesh;
 use crate::graph::Scope;
@@ -136,10 +137,16 @@ pub struct BufferAccess {
 
 /// The buffers that these draws read and that these meshes' triangles are read from, each once, with all accesses to it.
 pub(super) fn of_buffers<'a>(
-    draws: impl Iterator<Item = &'a MeshDraw>,
+    draws: impl Iterator<Item = &'a MeshDraw> + Clone,
     triangles: &[TriangleMesh],
+    cut_outs: &[CutOutSet],
 ) -> Vec<BufferAccess> {
     use vk::{AccessFlags as A, PipelineStageFlags as S};
+    let (draws, again) = (draws.clone(), draws);
+    let cut = again.filter_map(|d| cut_outs.get(d.cut_out? as usize));
+    let cut = cut.map(|set| (set.coordinates, S::VERTEX_SHADER, A::SHADER_READ));
+    let traced = triangles.iter().filter_map(|mesh| cut_outs.get(mesh.cut_out? as usize));
+    let traced = traced.map(|set| (set.coordinates, S::COMPUTE_SHADER, A::SHADER_READ));
     let drawn = draws
         .filter_map(|d| match d.mesh.geometry {
             Geometry::Buffers(b) => Some(b),
@@ -156,6 +163,8 @@ pub(super) fn of_buffers<'a>(
     let scope = |stage, access| Scope { stage, access, layout: vk::ImageLayout::UNDEFINED };
     let mut found: Vec<BufferAccess> = drawn
         .chain(read)
+        .chain(cut)
+        .chain(traced)
         .map(|(buffer, stage, access)| BufferAccess { buffer, scope: scope(stage, access) })
         .collect();
     found.sort_by_key(|a| (a.buffer, a.scope.access.as_raw()));

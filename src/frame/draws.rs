@@ -1,6 +1,6 @@
 //! The meshes that a frame draws, and the matrices that transform them into each view.
 
-use super::Description;
+use super::{CutOutList, Description};
 use crate::Error;
 use crate::lent::{Geometry, MeshBuffers, MeshInstance, from_origin, origin_of};
 use glam::DMat4;
@@ -27,6 +27,8 @@ pub struct MeshDraw {
     pub faces: Faces,
     /// What is subtracted from positions before the matrix; 0 for a mesh that the host draws.
     pub origin: [f32; 3],
+    /// The mesh's number among those of the frame that textures cut out; `None` for one that is drawn whole.
+    pub cut_out: Option<u32>,
 }
 
 /// A list of meshes, and the matrices that transform them into each of the list's views.
@@ -53,15 +55,17 @@ impl DrawList {
     pub fn fill<'a>(
         &mut self,
         description: &Description,
-        meshes: impl ExactSizeIterator<Item = &'a MeshInstance>,
+        meshes: impl ExactSizeIterator<Item = (u32, &'a MeshInstance)>,
+        cut_outs: &CutOutList,
         light_from_world: &DMat4,
         views: &[DMat4],
     ) -> Result<(), Error> {
         self.clear();
         let count = meshes.len();
         self.clip_from_mesh.resize(views.len() * count, [0.0; 16]);
-        for (nth, mesh) in meshes.enumerate() {
-            let draw = draw_of(description, mesh)?;
+        for (nth, (place, mesh)) in meshes.enumerate() {
+            let cut_out = cut_outs.number_of(place as usize);
+            let draw = MeshDraw { cut_out, ..draw_of(description, mesh)? };
             let light_from_origin =
                 *light_from_world * from_origin(&mesh.world_from_mesh, draw.origin);
             self.meshes.push(draw);
@@ -98,5 +102,5 @@ fn draw_of(description: &Description, mesh: &MeshInstance) -> Result<MeshDraw, E
         Geometry::HostDrawn(_) => [0.0; 3],
         Geometry::Buffers(_) => origin_of(&mesh.bounds),
     };
-    Ok(MeshDraw { mesh: *mesh, stride, faces, origin })
+    Ok(MeshDraw { mesh: *mesh, stride, faces, origin, cut_out: None })
 }

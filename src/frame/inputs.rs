@@ -7,7 +7,7 @@ use super::fit::Fit;
 use super::passes::{FrameInputs, Needs};
 use super::request::FitRequest;
 use super::triangles::TriangleList;
-use super::{Description, Frame};
+use super::{CutOutList, Description, Frame};
 use crate::Error;
 use crate::effects::{Camera, Situation, Verdicts};
 use crate::lent::Normals;
@@ -27,6 +27,7 @@ pub(super) fn frame_inputs<'a>(
     frame: &Frame,
     fit: &'a mut Fit,
     triangles: &TriangleList,
+    cut_outs: &CutOutList,
 ) -> Result<(FrameInputs<'a>, Verdicts), Error> {
     let room = description.technique.room();
     let texture = description.light_texture.is_some();
@@ -87,6 +88,7 @@ pub(super) fn frame_inputs<'a>(
         light_from_ndc,
         ndc_from_light,
         reach: frame.reach,
+        cut_outs: cut_outs.records.len() as u32,
         tree: (triangles.sizes, triangles.space(frame, description)),
     };
     Ok((inputs, verdicts))

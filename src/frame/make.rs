@@ -127,12 +127,14 @@ pub(crate) fn plan_into(
     let request = FitRequest::of(&description.technique);
     fit.update(description, &request, frame, mesh_boxes)?;
     let camera_of_views = fit.camera(frame);
+    plan.cut_outs.fill(&description.cut_outs, frame.meshes)?;
     plan.triangles.meshes.clear();
     if description.has_hierarchy() {
-        plan.triangles.fill(description, frame.meshes)?;
+        plan.triangles.fill(description, frame.meshes, &plan.cut_outs)?;
     }
     let tree = description.has_hierarchy().then(|| TreeKey::of(&plan.triangles, frame));
-    let (inputs, verdicts) = frame_inputs(description, frame, fit, &plan.triangles)?;
+    let (inputs, verdicts) =
+        frame_inputs(description, frame, fit, &plan.triangles, &plan.cut_outs)?;
     graph.clear();
     let ids = build(graph, description, limits, &inputs);
     let occluder_clips = inputs.occluder_clips();
@@ -218,13 +220,16 @@ fn fill_draws(
     fit: &Fit,
     [occluder_clips, receiver_clips]: [&Clips; 2],
 ) -> Result<(), Error> {
-    let FramePlan { plan, occluders, receivers, .. } = plan;
+    let FramePlan { plan, occluders, receivers, cut_outs, .. } = plan;
     for (list, draws, placed, clips) in [
         (MeshList::Occluders, occluders, &fit.occluders, occluder_clips),
         (MeshList::Receivers, receivers, &fit.receivers, receiver_clips),
     ] {
         match is_drawn(plan, list) {
-            true => draws.fill(description, placed.meshes(meshes), &fit.space_from_world, clips)?,
+            true => {
+                let meshes = placed.places.iter().map(|&place| (place, &meshes[place as usize]));
+                draws.fill(description, meshes, cut_outs, &fit.space_from_world, clips)?;
+            }
             false => draws.clear(),
         }
     }

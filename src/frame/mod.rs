@@ -5,6 +5,7 @@ mod boxes;
 mod cache;
 mod camera;
 mod check;
+mod cut_outs;
 mod doubts;
 mod draws;
 mod fit;
@@ -29,6 +30,8 @@ mod views;
 pub use accesses::{BufferAccess, HostAccess, ImageBarrier, NodeUse};
 pub(crate) use boxes::MeshBoxes;
 pub(crate) use cache::{Cache, CacheKey};
+pub(crate) use cut_outs::{CutOutList, CutOutSet};
+pub use cut_outs::{CutOutRecord, CutOuts};
 pub use doubts::Doubt;
 pub use draws::{Faces, MeshDraw};
 pub(crate) use inputs::SituationCache;
@@ -102,6 +105,8 @@ pub struct Description {
     pub light_texture: Option<LightTexture>,
     /// The most triangles and meshes that block light, where a technique works with the triangles themselves.
     pub capacity: Capacity,
+    /// How many meshes textures cut out at most ([`MeshInstance::opacity`]); none by default.
+    pub cut_outs: CutOuts,
     /// How many pixels a frame are traced through the blocking triangles to measure the error of what the technique
     /// wrote ([`crate::audit`]): 0 for no audit, the default, or 16 to 65,536. The image is the same with it and without.
     pub audit: u32,
@@ -167,6 +172,7 @@ impl Description {
             occluder_maps: None,
             light_texture: None,
             capacity: Capacity::default(),
+            cut_outs: CutOuts::default(),
             audit: 0,
         }
     }
@@ -207,6 +213,7 @@ impl Description {
             )));
         }
         self.capacity.check()?;
+        self.cut_outs.check()?;
         self.check_audit()?;
         self.normals.map_or(Ok(()), |normals| normals.check())?;
         let formats = [Some(self.depth_format), self.occluder_maps];

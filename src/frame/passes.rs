@@ -1,6 +1,6 @@
 //! The passes of a description, with one frame's numbers in them.
 
-use super::{Description, Space};
+use super::{CutOutRecord, Description, Space};
 use crate::RectangleLight;
 use crate::audit::passes::{self as audit, Audited};
 use crate::effects::{Effect, Verdicts};
@@ -74,6 +74,8 @@ pub(super) struct FrameInputs<'a> {
     pub noise: u32,
     /// How far the light reaches, m.
     pub reach: Option<f64>,
+    /// How many meshes textures cut out.
+    pub cut_outs: u32,
     /// The sizes of the hierarchy, and how the pixels see its space.
     pub tree: (Sizes, Space),
 }
@@ -208,7 +210,15 @@ pub(crate) fn all_passes(description: &Description, limits: Limits) -> Graph {
         ndc_from_light: DMat4::IDENTITY,
         noise: 0,
         reach: None,
-        tree: (Sizes { capacity: description.capacity.triangles, triangles: 0 }, Space::default()),
+        cut_outs: 0,
+        tree: (
+            Sizes {
+                capacity: description.capacity.triangles,
+                texels: description.cut_outs.all_texels(),
+                ..Sizes::default()
+            },
+            Space::default(),
+        ),
     };
     let mut graph = Graph::new();
     build(&mut graph, description, limits, &frame);
@@ -241,6 +251,11 @@ pub(super) fn build(
         &needs.each().map(|n| graph.need(n));
     // A hard shadow may stand in for the technique.
     let shadowed = if hard.is_yes() { hard } else { need };
+    if description.cut_outs.meshes > 0 {
+        let bytes = size_of::<CutOutRecord>() as u64 * u64::from(description.cut_outs.meshes);
+        let none = Need::No(graph.because("no texture cuts out a mesh"));
+        graph.cut_outs(bytes, if frame.cut_outs > 0 { shadowed } else { &none });
+    }
     let count = frame.occluders.len();
     let side = frame.occluders[0].map.side;
     let one = graph.because("one view serves every receiver");

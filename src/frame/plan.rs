@@ -2,6 +2,7 @@
 
 use super::accesses::{self, BufferAccess, HostAccess, ImageBarrier, NodeUse};
 use super::cache::CacheKey;
+use super::cut_outs::CutOutList;
 use super::doubts::{Doubt, Sight};
 use super::draws::{DrawList, MeshDraw};
 use super::reuse::Reuse;
@@ -39,6 +40,8 @@ pub struct FramePlan {
     pub(super) receivers: DrawList,
     /// The meshes whose triangles a pass reads; empty where none does.
     pub(crate) triangles: TriangleList,
+    /// The meshes that textures cut out.
+    pub(crate) cut_outs: CutOutList,
 }
 
 impl Default for FramePlan {
@@ -61,6 +64,7 @@ impl Default for FramePlan {
             occluders: DrawList::default(),
             receivers: DrawList::default(),
             triangles: TriangleList::default(),
+            cut_outs: CutOutList::default(),
         }
     }
 }
@@ -160,7 +164,7 @@ impl FramePlan {
     /// must make what it wrote to them visible to these scopes.
     pub fn buffer_accesses(&self) -> Vec<BufferAccess> {
         let drawn = self.occluders.meshes.iter().chain(&self.receivers.meshes);
-        accesses::of_buffers(drawn, &self.triangles.meshes)
+        accesses::of_buffers(drawn, &self.triangles.meshes, &self.cut_outs.sets)
     }
 
     /// The meshes of a list.

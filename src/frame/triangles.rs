@@ -3,11 +3,11 @@
 use super::boxes::has_triangles;
 use super::camera::Camera;
 use super::check::bad;
-use super::{Description, Frame};
+use super::{CutOutList, Description, Frame};
 use crate::Error;
 use crate::lent::{Geometry, LightIndex, MeshBuffers, MeshInstance, from_origin, origin_of};
 use crate::light::{Light, Shape};
-use crate::stages::hierarchy::{LEAF, MeshPush, Sizes};
+use crate::stages::hierarchy::{CUT_OUT, LEAF, MeshPush, Sizes, WHOLE};
 use ash::vk;
 use glam::{DMat3, DMat4, DVec3, DVec4};
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -71,6 +71,8 @@ pub(crate) struct TriangleMesh {
     /// The indices; the positions once more where there are none.
     pub indices: vk::Buffer,
     pub push: MeshPush,
+    /// The mesh's number among those that textures cut out.
+    pub cut_out: Option<u32>,
 }
 
 /// The blocking meshes of a frame.
@@ -94,10 +96,11 @@ impl TriangleList {
         &mut self,
         description: &Description,
         meshes: &[MeshInstance],
+        cut_outs: &CutOutList,
     ) -> Result<(), Error> {
         let capacity = description.capacity.triangles;
         self.meshes.clear();
-        let blocking = |m: &&MeshInstance| m.role.blocks() && has_triangles(m);
+        let blocking = |m: &MeshInstance| m.role.blocks() && has_triangles(m);
         let drawn = |m: &MeshInstance| matches!(m.geometry, Geometry::HostDrawn(_));
         if let Some(index) = meshes.iter().position(|m| m.role.blocks() && drawn(m))
             && description.audit > 0
@@ -107,26 +110,39 @@ impl TriangleList {
                  or set audit to 0"
             ));
         }
-        let in_buffers = |m: &MeshInstance| match m.geometry {
-            Geometry::Buffers(buffers) => Some((*m, buffers)),
-            Geometry::HostDrawn(_) => None,
+        let listed = || {
+            let blocking = meshes.iter().enumerate().filter(|(_, m)| blocking(m));
+            blocking.filter_map(|(place, m)| match m.geometry {
+                Geometry::Buffers(buffers) => Some((place, *m, buffers)),
+                Geometry::HostDrawn(_) => None,
+            })
         };
-        let listed = || meshes.iter().filter(blocking).filter_map(in_buffers);
-        self.origin = middle(listed().map(|(m, _)| m));
+        self.origin = middle(listed().map(|(_, m, _)| m));
         let [of_meshes, key_bits] = MeshPush::key_bits(listed().count() as u32);
         let mut hasher = DefaultHasher::new();
         let mut needed = Needed::default();
-        for (rank, (mesh, buffers)) in listed().enumerate() {
+        for (rank, (place, mesh, buffers)) in listed().enumerate() {
             buffers.hash_into(&mut hasher);
             let one = self.mesh(&mesh, &buffers, needed.triangles as u32)?;
             let key = (rank as u32).checked_shl(u32::BITS - of_meshes).unwrap_or(0);
             needed.add(&buffers, one.indices);
-            self.meshes.push(TriangleMesh { push: MeshPush { key, key_bits, ..one.push }, ..one });
+            let cut_out = cut_outs.number_of(place);
+            if let Some(texture) = cut_out.and_then(|number| cut_outs.texture(number)) {
+                texture.hash_into(&mut hasher);
+            }
+            let [x, y, z, _] = one.push.low;
+            let low = [x, y, z, if cut_out.is_some() { CUT_OUT } else { WHOLE }];
+            let push = MeshPush { key, key_bits, low, ..one.push };
+            self.meshes.push(TriangleMesh { push, cut_out, ..one });
         }
+        cut_outs.halved.hash(&mut hasher);
         if let Some(problem) = needed.beyond(description.capacity) {
             return bad(problem);
         }
-        self.sizes = Sizes { capacity, triangles: needed.triangles as u32 };
+        let cut_outs = self.meshes.iter().filter(|m| m.cut_out.is_some()).count() as u32;
+        let triangles = needed.triangles as u32;
+        let texels = description.cut_outs.all_texels();
+        self.sizes = Sizes { capacity, triangles, texels, cut_outs };
         self.key = hasher.finish();
         Ok(())
     }
@@ -149,7 +165,7 @@ impl TriangleList {
         let count = buffers.count / 3;
         let push = MeshPush {
             rows: [row(0), row(1), row(2)],
-            low: [low[0], low[1], low[2], 0.0],
+            low: [low[0], low[1], low[2], WHOLE],
             cells: MeshPush::cells_of(size),
             first,
             count,
@@ -162,7 +178,7 @@ impl TriangleList {
             key_bits: 0,
             origin,
         };
-        Ok(TriangleMesh { positions: buffers.positions, indices, push })
+        Ok(TriangleMesh { positions: buffers.positions, indices, push, cut_out: None })
     }
 
     /// How the passes over pixels see the hierarchy's space.

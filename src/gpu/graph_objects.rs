@@ -2,7 +2,7 @@
 
 use super::descriptors::Descriptors;
 use super::maker::Maker;
-use super::mesh_sets::MeshSets;
+use super::mesh_sets::{CutOutSets, MeshSets};
 use super::objects::Objects;
 use super::pipeline::PassObjects;
 use crate::Error;
@@ -18,6 +18,7 @@ pub(crate) struct GraphObjects {
     pub labels: Vec<CString>,
     pub descriptors: Descriptors,
     pub mesh_sets: MeshSets,
+    pub cut_out_sets: CutOutSets,
     /// The number of Vulkan objects that the node's owner does not keep one by one: descriptor sets, which are freed
     /// with their pool, and layouts that nodes share.
     pub unowned: usize,
@@ -38,13 +39,16 @@ impl GraphObjects {
         let kinds = kinds.collect::<Result<Vec<_>, _>>()?;
         let descriptors = Descriptors::new(maker, graph, &kinds, places)?;
         let mesh_sets = MeshSets::new(maker, graph, &kinds, description, places)?;
+        let cut_out_sets = CutOutSets::new(maker, graph, &kinds, description, places)?;
+        let own = kinds.len() * places as usize;
         let shared_layouts = if maker.host.layouts.is_some() { 2 * kinds.len() } else { 0 };
         Ok(Self {
             objects,
             labels: graph.kinds().map(|p| label(p.name)).collect(),
             descriptors,
-            unowned: kinds.len() * places as usize + mesh_sets.count() + shared_layouts,
+            unowned: own + mesh_sets.count() + cut_out_sets.count() + shared_layouts,
             mesh_sets,
+            cut_out_sets,
             kinds,
         })
     }

@@ -10,7 +10,7 @@ use std::sync::{Mutex, PoisonError};
 #[derive(Clone, Copy, Default)]
 pub(super) struct PassLayouts {
     pub set: vk::DescriptorSetLayout,
-    /// The layout of set 1, for passes that read the host's meshes; else a null handle.
+    /// The layout of set 1, for passes that have one for each mesh; else a null handle.
     pub mesh: vk::DescriptorSetLayout,
     pub pipeline: vk::PipelineLayout,
 }
@@ -20,8 +20,37 @@ pub(super) struct LayoutsInfo<'a> {
     pub bindings: &'a [vk::DescriptorSetLayoutBinding<'a>],
     pub push_stages: vk::ShaderStageFlags,
     pub push_bytes: u32,
-    /// Whether set 1 holds a mesh's positions and indices.
-    pub meshes: bool,
+    /// What set 1 holds of a mesh.
+    pub of_mesh: OfMesh,
+}
+
+/// What a pass's set 1 holds, which is bound anew for each mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum OfMesh {
+    /// There is no set 1.
+    Nothing,
+    /// The mesh's positions and indices.
+    Triangles,
+    /// The mesh's texture coordinates, its opacity texture, and its indices.
+    CutOut,
+}
+
+impl OfMesh {
+    fn bindings(self) -> &'static [(vk::DescriptorType, vk::ShaderStageFlags)] {
+        use vk::{DescriptorType as Type, ShaderStageFlags as Stage};
+        const COMPUTE: Stage = Stage::COMPUTE;
+        const VERTEX: Stage = Stage::from_raw(Stage::VERTEX.as_raw() | COMPUTE.as_raw());
+        const FRAGMENT: Stage = Stage::from_raw(Stage::FRAGMENT.as_raw() | COMPUTE.as_raw());
+        match self {
+            Self::Nothing => &[],
+            Self::Triangles => &[(Type::STORAGE_BUFFER, COMPUTE); 2],
+            Self::CutOut => &[
+                (Type::STORAGE_BUFFER, VERTEX),
+                (Type::SAMPLED_IMAGE, FRAGMENT),
+                (Type::STORAGE_BUFFER, COMPUTE),
+            ],
+        }
+    }
 }
 
 impl PassLayouts {
@@ -45,14 +74,18 @@ impl PassLayouts {
             size: info.push_bytes,
         }];
         let mut mesh = vk::DescriptorSetLayout::null();
-        if info.meshes {
-            let bindings = [0, 1].map(|binding| {
-                vk::DescriptorSetLayoutBinding::default()
-                    .binding(binding)
-                    .descriptor_type(vk::DescriptorType::STORAGE_BUFFER)
-                    .descriptor_count(1)
-                    .stage_flags(vk::ShaderStageFlags::COMPUTE)
-            });
+        let of_mesh = info.of_mesh.bindings();
+        if !of_mesh.is_empty() {
+            let bindings: Vec<_> = (0u32..)
+                .zip(of_mesh)
+                .map(|(binding, &(kind, stages))| {
+                    vk::DescriptorSetLayoutBinding::default()
+                        .binding(binding)
+                        .descriptor_type(kind)
+                        .descriptor_count(1)
+                        .stage_flags(stages)
+                })
+                .collect();
             let create = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
             // SAFETY: as above.
             mesh = unsafe { device.create_descriptor_set_layout(&create, None) }
@@ -60,7 +93,7 @@ impl PassLayouts {
             owner.keep(mesh);
         }
         let set_layouts = [set, mesh];
-        let set_layouts = &set_layouts[..1 + usize::from(info.meshes)];
+        let set_layouts = &set_layouts[..1 + usize::from(!of_mesh.is_empty())];
         let mut create = vk::PipelineLayoutCreateInfo::default().set_layouts(set_layouts);
         if info.push_bytes > 0 {
             create = create.push_constant_ranges(&ranges);
@@ -82,9 +115,10 @@ impl PassLayouts {
 #[derive(Default)]
 pub struct SharedLayouts(Mutex<(HashMap<Key, PassLayouts>, ObjectOwner)>);
 
-/// The key of a pair: number, type and stages of each binding; stages and bytes of the push constants; whether there are
-/// meshes.
-type Key = (Vec<(u32, vk::DescriptorType, vk::ShaderStageFlags)>, vk::ShaderStageFlags, u32, bool);
+/// The key of a pair: number, type and stages of each binding; stages and bytes of the push constants; what there is of a
+/// mesh.
+type Key =
+    (Vec<(u32, vk::DescriptorType, vk::ShaderStageFlags)>, vk::ShaderStageFlags, u32, OfMesh);
 
 impl SharedLayouts {
     /// Finds the layouts with these declarations, or creates them; the table owns them.
@@ -96,7 +130,7 @@ impl SharedLayouts {
     ) -> Result<PassLayouts, Error> {
         let bindings = info.bindings.iter();
         let bindings = bindings.map(|b| (b.binding, b.descriptor_type, b.stage_flags)).collect();
-        let key = (bindings, info.push_stages, info.push_bytes, info.meshes);
+        let key = (bindings, info.push_stages, info.push_bytes, info.of_mesh);
         let (known, owner) = &mut *self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(&layouts) = known.get(&key) {
             return Ok(layouts);

@@ -1,11 +1,12 @@
-//! Descriptor sets of the host's meshes, whose triangles shaders read: a mesh's positions at binding 0, its indices at
-//! binding 1. They are written each time a plan that reads meshes is recorded, before its first pass.
+//! Descriptor sets of the host's meshes: of those whose triangles shaders read, the positions at binding 0 and the indices
+//! at binding 1; of those that textures cut out, the coordinates, the texture and the indices. They are written each time a
+//! plan that reads meshes is recorded, before its first pass.
 
 use super::host::Host;
 use super::maker::Maker;
 use super::pipeline::PassObjects;
 use crate::Error;
-use crate::frame::{Description, TriangleList};
+use crate::frame::{CutOutList, Description, TriangleList};
 use crate::graph::{Graph, Work};
 use ash::vk;
 
@@ -92,5 +93,88 @@ impl MeshSets {
             }
             self.sets.get(at).copied()
         })
+    }
+}
+
+/// The sets of the meshes that textures cut out, as many at each place as a frame may have.
+#[derive(Default)]
+pub(crate) struct CutOutSets {
+    sets: Vec<vk::DescriptorSet>,
+    a_place: usize,
+}
+
+impl CutOutSets {
+    /// Allocates the sets where a pass of the graph needs them.
+    pub fn new(
+        maker: &mut Maker,
+        graph: &Graph,
+        kinds: &[PassObjects],
+        description: &Description,
+        places: u32,
+    ) -> Result<Self, Error> {
+        let a_place = description.cut_outs.meshes;
+        let mut passes = graph.kinds();
+        let needs = passes
+            .position(|p| p.draws_cut_outs() || matches!(p.work, Work::EachCutOut { .. }))
+            .filter(|_| a_place > 0);
+        let Some(layout) = needs.and_then(|kind| Some(kinds.get(kind)?.layouts.mesh)) else {
+            return Ok(Self::default());
+        };
+        let count = a_place * places;
+        let size = |ty, descriptor_count| vk::DescriptorPoolSize { ty, descriptor_count };
+        let sizes = [
+            size(vk::DescriptorType::STORAGE_BUFFER, 2 * count),
+            size(vk::DescriptorType::SAMPLED_IMAGE, count),
+        ];
+        let create = vk::DescriptorPoolCreateInfo::default().max_sets(count).pool_sizes(&sizes);
+        // SAFETY: the device is valid (Host::borrow).
+        let pool = unsafe { maker.host.device.create_descriptor_pool(&create, None) }
+            .map_err(Error::vulkan("creating the descriptor pool of cut-out meshes"))?;
+        maker.keep(pool);
+        let layouts = vec![layout; count as usize];
+        let allocate =
+            vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(&layouts);
+        // SAFETY: the pool was sized for exactly these sets, and the layout is alive.
+        let sets = unsafe { maker.host.device.allocate_descriptor_sets(&allocate) }
+            .map_err(Error::vulkan("allocating the descriptor sets of cut-out meshes"))?;
+        Ok(Self { sets, a_place: a_place as usize })
+    }
+
+    /// How many sets there are.
+    pub fn count(&self) -> usize {
+        self.sets.len()
+    }
+
+    /// Writes the sets of a place with the meshes of a frame.
+    pub fn write(&self, host: &Host, list: &CutOutList, place: usize) {
+        for (number, of) in list.sets.iter().enumerate() {
+            let Some(set) = self.of(number as u32, place) else { return };
+            let whole =
+                |buffer| vk::DescriptorBufferInfo { buffer, offset: 0, range: vk::WHOLE_SIZE };
+            let buffers = [whole(of.coordinates), whole(of.indices)];
+            let image = [vk::DescriptorImageInfo {
+                image_view: of.view,
+                image_layout: of.layout,
+                ..Default::default()
+            }];
+            let write =
+                |binding| vk::WriteDescriptorSet::default().dst_set(set).dst_binding(binding);
+            let buffer = |binding, nth: usize| {
+                write(binding)
+                    .descriptor_type(vk::DescriptorType::STORAGE_BUFFER)
+                    .buffer_info(&buffers[nth..=nth])
+            };
+            let sampled = write(1).descriptor_type(vk::DescriptorType::SAMPLED_IMAGE);
+            let writes = [buffer(0, 0), sampled.image_info(&image), buffer(2, 1)];
+            // SAFETY: Host::borrow's promise: the slot's earlier commands are done, so no command uses the set; the
+            // host's buffers and view are alive, with the usage that OpacityTexture says.
+            unsafe { host.device.update_descriptor_sets(&writes, &[]) };
+        }
+    }
+
+    /// The set of a mesh by its number among those that are cut out.
+    pub fn of(&self, number: u32, place: usize) -> Option<vk::DescriptorSet> {
+        let at = number as usize;
+        (at < self.a_place).then(|| self.sets.get(place * self.a_place + at).copied()).flatten()
     }
 }

@@ -124,6 +124,7 @@ impl NodeObjects {
             labels: &settings.labels,
             descriptors: &settings.descriptors,
             mesh_sets: &settings.mesh_sets,
+            cut_out_sets: &settings.cut_out_sets,
             timing: self.timing.as_ref(),
             measured: self.measured.as_ref(),
             number: 0,

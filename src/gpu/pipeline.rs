@@ -1,7 +1,7 @@
 //! The pipelines, the layouts and, for draws, the render pass of a kind of pass.
 
 use super::host::Host;
-use super::layouts::{LayoutsInfo, PassLayouts};
+use super::layouts::{LayoutsInfo, OfMesh, PassLayouts};
 use super::maker::Maker;
 use super::objects::{Object, Objects, name};
 use super::owner::ObjectOwner;
@@ -10,7 +10,7 @@ use crate::frame::Faces;
 use crate::graph::{Draw, Graph, Pass, Shape, Target, Work};
 use crate::shaders::Module;
 use crate::stages::depth_layers::DepthPush;
-use crate::stages::hierarchy::MeshPush;
+use crate::stages::hierarchy::{CutOutPush, MeshPush};
 use ash::vk;
 
 /// The objects that record the passes of one kind.
@@ -20,6 +20,8 @@ pub(crate) struct PassObjects {
     pub push_stages: vk::ShaderStageFlags,
     /// The pipelines: one for compute and indirect draws; for meshes one for each stride and each of [`Faces`].
     pub pipelines: Vec<vk::Pipeline>,
+    /// The pipelines for meshes that textures cut out, in the same order; empty where the description has none.
+    pub cut_pipelines: Vec<vk::Pipeline>,
     pub render_pass: vk::RenderPass,
     pub framebuffer: vk::Framebuffer,
     pub extent: vk::Extent2D,
@@ -60,8 +62,11 @@ impl PassObjects {
                 (vk::ShaderStageFlags::COMPUTE, pass.push.bytes().len())
             }
             Work::EachMesh { .. } => (vk::ShaderStageFlags::COMPUTE, size_of::<MeshPush>()),
+            Work::EachCutOut { .. } => (vk::ShaderStageFlags::COMPUTE, size_of::<CutOutPush>()),
             // A command writes them into a buffer, and no shader sees them pushed.
-            Work::Constants { .. } | Work::FrameNumber => (vk::ShaderStageFlags::COMPUTE, 0),
+            Work::Constants { .. } | Work::FrameNumber | Work::CutOuts => {
+                (vk::ShaderStageFlags::COMPUTE, 0)
+            }
             Work::Raster { draw: Draw::Layer { .. }, .. } => {
                 // Each mesh pushes its matrix and origin; the pass's own push constants follow it.
                 (vk::ShaderStageFlags::VERTEX, pass.push.bytes().len().max(size_of::<DepthPush>()))
@@ -75,7 +80,12 @@ impl PassObjects {
             bindings: &bindings,
             push_stages: stages,
             push_bytes: push_bytes as u32,
-            meshes: matches!(pass.work, Work::EachMesh { .. }),
+            of_mesh: match pass.work {
+                Work::EachMesh { .. } => OfMesh::Triangles,
+                Work::EachCutOut { .. } => OfMesh::CutOut,
+                _ if pass.draws_cut_outs() => OfMesh::CutOut,
+                _ => OfMesh::Nothing,
+            },
         };
         let layouts = match &host.layouts {
             Some(shared) => shared.find(&host.device, &info, pass.name)?,
@@ -83,10 +93,11 @@ impl PassObjects {
         };
         let mut made = Self { layouts, push_stages: stages, ..Self::default() };
         match pass.work {
-            Work::Constants { .. } | Work::FrameNumber => {}
+            Work::Constants { .. } | Work::FrameNumber | Work::CutOuts => {}
             Work::Dispatch { shader, .. }
             | Work::Indirect { shader, .. }
-            | Work::EachMesh { shader } => {
+            | Work::EachMesh { shader }
+            | Work::EachCutOut { shader, .. } => {
                 let pipeline = made.compute(host, pass, shader)?;
                 made.pipelines.push(maker.keep(pipeline));
             }
@@ -95,7 +106,7 @@ impl PassObjects {
                 made.rasters(maker, pass, strides)?;
             }
         }
-        for &pipeline in &made.pipelines {
+        for &pipeline in made.pipelines.iter().chain(&made.cut_pipelines) {
             name(host, pipeline, pass.name);
         }
         Ok(made)
@@ -178,9 +189,14 @@ impl PassObjects {
     }
 
     fn rasters(&mut self, maker: &mut Maker, pass: &Pass, strides: &[u32]) -> Result<(), Error> {
-        let Work::Raster { vertex, fragment, cull, draw, .. } = pass.work else { return Ok(()) };
-        let mut modules = vec![(vertex, vk::ShaderStageFlags::VERTEX)];
-        modules.extend(fragment.map(|f| (f, vk::ShaderStageFlags::FRAGMENT)));
+        let Work::Raster { vertex, fragment, cut, cull, draw, .. } = pass.work else {
+            return Ok(());
+        };
+        let stages = |vertex, fragment: Option<Module>| {
+            let mut modules = vec![(vertex, vk::ShaderStageFlags::VERTEX)];
+            modules.extend(fragment.map(|f| (f, vk::ShaderStageFlags::FRAGMENT)));
+            modules
+        };
         let variants: Vec<(Option<u32>, vk::CullModeFlags, vk::FrontFace)> = match draw {
             Draw::Indirect { .. } => vec![(None, cull, vk::FrontFace::COUNTER_CLOCKWISE)],
             // In the order of `variant`.
@@ -195,13 +211,23 @@ impl PassObjects {
                 })
                 .collect(),
         };
-        with_modules(maker.host, &modules, |stages| {
-            for (stride, cull, front) in variants {
-                let pipeline = self.raster(maker.host, pass, stages, stride, cull, front)?;
-                self.pipelines.push(maker.keep(pipeline));
-            }
-            Ok(())
-        })
+        let mut all = |modules: &[_]| {
+            with_modules(maker.host, modules, |stages| {
+                let mut pipelines = Vec::with_capacity(variants.len());
+                for &(stride, cull, front) in &variants {
+                    let pipeline = self.raster(maker.host, pass, stages, stride, cull, front)?;
+                    pipelines.push(maker.keep(pipeline));
+                }
+                Ok(pipelines)
+            })
+        };
+        let whole = all(&stages(vertex, fragment))?;
+        let cut = match cut.filter(|_| pass.draws_cut_outs()) {
+            Some([vertex, fragment]) => all(&stages(vertex, Some(fragment)))?,
+            None => Vec::new(),
+        };
+        (self.pipelines, self.cut_pipelines) = (whole, cut);
+        Ok(())
     }
 
     fn raster(

@@ -5,7 +5,7 @@
 use super::descriptors::Descriptors;
 use super::host::Host;
 use super::measured::Measured;
-use super::mesh_sets::MeshSets;
+use super::mesh_sets::{CutOutSets, MeshSets};
 use super::objects::{Object, Objects, layers, whole};
 use super::pipeline::{PassObjects, variant};
 use super::result::ResultImage;
@@ -17,8 +17,12 @@ use crate::graph::{
 };
 use crate::lent::{Geometry, MeshBuffers};
 use crate::stages::depth_layers::DepthPush;
+use crate::stages::hierarchy::CutOutPush;
 use ash::vk;
 use std::ffi::CString;
+
+/// The most bytes that one command writes into a buffer.
+const MOST_UPDATED: usize = 65536;
 
 /// The most barriers that one call records; longer lists take several calls.
 const BATCH: usize = 16;
@@ -51,6 +55,7 @@ pub(crate) struct Recorder<'a> {
     pub labels: &'a [CString],
     pub descriptors: &'a Descriptors,
     pub mesh_sets: &'a MeshSets,
+    pub cut_out_sets: &'a CutOutSets,
     pub timing: Option<&'a Timing>,
     /// The figures of the audit; `None` where the description has none.
     pub measured: Option<&'a Measured>,
@@ -82,6 +87,7 @@ impl Recorder<'_> {
         if !frame.triangles.meshes.is_empty() {
             self.mesh_sets.write(self.host, &frame.triangles, self.place);
         }
+        self.cut_out_sets.write(self.host, &frame.cut_outs, self.place);
         for (nth, step) in plan.steps.iter().enumerate() {
             let pass = &plan.graph.passes()[step.pass];
             let kind = plan.graph.kind_of(step.pass);
@@ -106,6 +112,8 @@ impl Recorder<'_> {
             Work::Dispatch { .. }
             | Work::Indirect { .. }
             | Work::EachMesh { .. }
+            | Work::EachCutOut { .. }
+            | Work::CutOuts
             | Work::Constants { .. }
             | Work::FrameNumber => vk::PipelineBindPoint::COMPUTE,
             Work::Raster { .. } => vk::PipelineBindPoint::GRAPHICS,
@@ -124,14 +132,18 @@ impl Recorder<'_> {
         let constants = match pass.work {
             Work::Constants { offset } => Some((offset, pushed)),
             Work::FrameNumber => Some((0, bytemuck::cast_slice(&number))),
+            Work::CutOuts => Some((0, bytemuck::cast_slice(&frame.cut_outs.records))),
             _ => None,
         };
         if let Some((offset, bytes)) = constants {
             let target = pass.uses.first().map_or(Object::None, |u| objects.get(u.resource));
             if let Object::Buffer(buffer) = target {
-                // SAFETY: Host::borrow's promise: cmd is recording outside a render pass; the buffer has
-                // TRANSFER_DST usage, and holds these bytes from a multiple of 4 on.
-                unsafe { device.cmd_update_buffer(cmd, buffer, offset, bytes) };
+                for (chunk, bytes) in (0u64..).zip(bytes.chunks(MOST_UPDATED)) {
+                    let offset = offset + chunk * MOST_UPDATED as u64;
+                    // SAFETY: Host::borrow's promise: cmd is recording outside a render pass; the buffer has
+                    // TRANSFER_DST usage, and holds these bytes from a multiple of 4 on.
+                    unsafe { device.cmd_update_buffer(cmd, buffer, offset, bytes) };
+                }
             }
             return;
         }
@@ -149,8 +161,10 @@ impl Recorder<'_> {
                 // that its accesses need were recorded before it.
                 unsafe { device.cmd_dispatch(cmd, x, y, z) };
             }
-            Work::Constants { .. } | Work::FrameNumber => {}
+            Work::Constants { .. } | Work::FrameNumber | Work::CutOuts => {}
             Work::EachMesh { .. } => self.each_mesh(frame, made),
+            Work::EachCutOut { textures: true, .. } => self.each_texture(frame, made),
+            Work::EachCutOut { .. } => self.each_cut_out(frame, made),
             Work::Indirect { arguments, offset, .. } => {
                 let Object::Buffer(buffer) = objects.get(arguments) else { return };
                 // SAFETY: as for the other grids; the buffer holds one VkDispatchIndirectCommand,
@@ -209,6 +223,48 @@ impl Recorder<'_> {
         }
     }
 
+    /// Dispatches for each opacity texture that is not an earlier mesh's, too.
+    fn each_texture(&self, frame: &FramePlan, made: &PassObjects) {
+        let list = &frame.cut_outs;
+        for &number in &list.textures {
+            let Some(record) = list.records.get(number as usize) else { continue };
+            let push = CutOutPush::of_texture(record, list.halved);
+            self.dispatch_cut_out(made, number, &push, push.groups());
+        }
+    }
+
+    /// Dispatches for each blocking mesh that a texture cuts out.
+    fn each_cut_out(&self, frame: &FramePlan, made: &PassObjects) {
+        for mesh in &frame.triangles.meshes {
+            let Some(number) = mesh.cut_out else { continue };
+            let Some(record) = frame.cut_outs.records.get(number as usize) else { continue };
+            let push = CutOutPush::of_mesh(record, &mesh.push);
+            self.dispatch_cut_out(made, number, &push, mesh.push.groups());
+        }
+    }
+
+    fn dispatch_cut_out(
+        &self,
+        made: &PassObjects,
+        number: u32,
+        push: &CutOutPush,
+        [x, y, z]: [u32; 3],
+    ) {
+        let Some(set) = self.cut_out_sets.of(number, self.place) else { return };
+        let (device, cmd, layout) = (&self.host.device, self.cmd, made.layouts.pipeline);
+        let point = vk::PipelineBindPoint::COMPUTE;
+        let push = bytemuck::bytes_of(push);
+        // SAFETY: Host::borrow's promise: cmd is recording outside a render pass.
+        unsafe { device.cmd_bind_pipeline(cmd, point, made.pipelines[0]) };
+        // SAFETY: as above; the set was made for a layout that is defined alike.
+        unsafe { device.cmd_bind_descriptor_sets(cmd, point, layout, 1, &[set], &[]) };
+        // SAFETY: as above; the layout's range is one CutOutPush.
+        unsafe { device.cmd_push_constants(cmd, layout, made.push_stages, 0, push) };
+        // SAFETY: pipeline, sets and push constants are bound; the barriers that the pass needs came before it, and
+        // each dispatch writes places of its own.
+        unsafe { device.cmd_dispatch(cmd, x, y, z) };
+    }
+
     fn begin_render_pass(&self, made: &PassObjects, target: Target) {
         let clear = match target {
             Target::Depth { clear, .. } => vk::ClearValue {
@@ -252,7 +308,18 @@ impl Recorder<'_> {
         let [x, y, z] = draw.origin;
         let push = DepthPush { clip_from_mesh: *matrix, origin: [x, y, z, 0.0] };
         let push = bytemuck::bytes_of(&push);
-        let pipeline = made.pipelines[variant(draw.stride, draw.faces)];
+        let cut = draw.cut_out.and_then(|n| Some((n, self.cut_out_sets.of(n, self.place)?)));
+        let nth = variant(draw.stride, draw.faces);
+        let (pipeline, first) = match cut.zip(made.cut_pipelines.get(nth)) {
+            None => (made.pipelines[nth], 0),
+            Some(((number, set), &pipeline)) => {
+                let (layout, point) = (made.layouts.pipeline, vk::PipelineBindPoint::GRAPHICS);
+                // SAFETY: Host::borrow's promise: cmd is recording; the set was made for a layout that is defined
+                // alike.
+                unsafe { device.cmd_bind_descriptor_sets(cmd, point, layout, 1, &[set], &[]) };
+                (pipeline, number)
+            }
+        };
         // SAFETY: inside the pass's render pass, with a pipeline made for it.
         unsafe { device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::GRAPHICS, pipeline) };
         // SAFETY: the layout's range begins with one DepthPush for the vertex stage.
@@ -269,10 +336,10 @@ impl Recorder<'_> {
                 // SAFETY: as above.
                 unsafe { device.cmd_bind_index_buffer(cmd, buffer, offset, kind) };
                 // SAFETY: as above.
-                unsafe { device.cmd_draw_indexed(cmd, mesh.count, 1, 0, 0, 0) };
+                unsafe { device.cmd_draw_indexed(cmd, mesh.count, 1, 0, 0, first) };
             }
             // SAFETY: as above.
-            None => unsafe { device.cmd_draw(cmd, mesh.count, 1, 0, 0) },
+            None => unsafe { device.cmd_draw(cmd, mesh.count, 1, 0, first) },
         }
     }
 

@@ -33,6 +33,7 @@ pub use show::Run;
 pub use why::{Part, Why};
 
 use ash::vk;
+use pass::CUT_OUTS_BINDING;
 use std::ops::Range;
 
 /// Resources, and the passes that use them in the order in which they may run.
@@ -47,6 +48,8 @@ pub struct Graph {
     firsts: Vec<usize>,
     /// The resources that are still to be declared again; see [`Self::again`].
     again: Range<usize>,
+    /// The buffer of the meshes that textures cut out; `None` where the description has none.
+    cut_outs: Option<ResourceId>,
 }
 
 impl Graph {
@@ -154,6 +157,7 @@ impl Graph {
         self.kinds.clear();
         self.firsts.clear();
         self.again = 0..0;
+        self.cut_outs = None;
     }
 
     /// How many resources, reasons, passes and kinds of them there are.
@@ -208,8 +212,24 @@ impl Graph {
         id
     }
 
+    /// Declares the buffer of the meshes that textures cut out, and the pass that writes it. Passes that draw meshes, and
+    /// are appended after this, read it.
+    pub(crate) fn cut_outs(&mut self, bytes: u64, need: &Need) {
+        let buffer = self.buffer("cut_outs.meshes", bytes);
+        // Frames whose maps are kept, or without such meshes, do not write it.
+        self.keep(buffer);
+        let uses = smallvec::smallvec![Use::fixed(buffer, Access::TransferWrite)];
+        let work = Work::CutOuts;
+        let pass = Pass { name: "cut_outs.write", uses, push: Push::NONE, work, need: *need };
+        self.push(pass);
+        self.cut_outs = Some(buffer);
+    }
+
     /// Appends a pass.
-    pub fn push(&mut self, pass: Pass) {
+    pub fn push(&mut self, mut pass: Pass) {
+        if let (Some(cut_outs), Work::Raster { cut: Some(_), .. }) = (self.cut_outs, pass.work) {
+            pass.uses.push(Use::bound(CUT_OUTS_BINDING, cut_outs, Access::BufferReadVertex));
+        }
         // Repeated passes come close together, so the search ends soon.
         let known = self.firsts.iter().rposition(|&first| self.passes[first].name == pass.name);
         let kind = known.unwrap_or_else(|| {

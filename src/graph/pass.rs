@@ -17,6 +17,9 @@ pub const STORAGE_BYTES: u64 = 1 << 27;
 /// The most color attachments that every device draws into at once (maxColorAttachments).
 pub const COLOR_ATTACHMENTS: usize = 4;
 
+/// The binding at which passes that draw meshes read those that textures cut out (`cut_outs/vertex.glsl`).
+pub(super) const CUT_OUTS_BINDING: u8 = 15;
+
 /// The push constants of a pass, as bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Push {
@@ -180,6 +183,17 @@ pub enum Work {
         /// Where in the buffer, in bytes: a multiple of 4.
         offset: u64,
     },
+    /// Writes the frame's meshes that textures cut out into the one buffer that the pass uses:
+    /// [`CutOutRecord`](crate::frame::CutOutRecord)s.
+    CutOuts,
+    /// A compute dispatch for each opacity texture, or for each blocking mesh that one cuts out: set 1 is that of the mesh,
+    /// and an [`OpacityPush`](crate::stages::hierarchy::OpacityPush) is pushed.
+    EachCutOut {
+        /// The compute shader.
+        shader: Module,
+        /// Whether it runs for each texture; else for each mesh.
+        textures: bool,
+    },
     /// Writes which frame it is into the one buffer that the pass uses: the number of the light's recorded frames, from
     /// 1 up, and the light's index, 32 bits each.
     FrameNumber,
@@ -189,6 +203,9 @@ pub enum Work {
         vertex: Module,
         /// The fragment shader; `None` where only depth is written.
         fragment: Option<Module>,
+        /// The vertex and the fragment shader for meshes that textures cut out; `None` where no meshes are drawn. Set 1
+        /// has the mesh's texture coordinates at binding 0 and its opacity texture at binding 1.
+        cut: Option<[Module; 2]>,
         /// The faces that are culled.
         cull: vk::CullModeFlags,
         /// The attachments.
@@ -204,8 +221,11 @@ impl Work {
         match *self {
             Self::Dispatch { shader, .. }
             | Self::Indirect { shader, .. }
-            | Self::EachMesh { shader } => Some(shader),
-            Self::Raster { .. } | Self::Constants { .. } | Self::FrameNumber => None,
+            | Self::EachMesh { shader }
+            | Self::EachCutOut { shader, .. } => Some(shader),
+            Self::Raster { .. } | Self::Constants { .. } | Self::FrameNumber | Self::CutOuts => {
+                None
+            }
         }
     }
 }
@@ -302,6 +322,12 @@ impl Pass {
             (a, b) => a == b,
         };
         self.name == other.name && self.uses == other.uses && same_work
+    }
+
+    /// Whether the pass draws meshes, and those that textures cut out by pipelines of their own.
+    pub(crate) fn draws_cut_outs(&self) -> bool {
+        matches!(self.work, Work::Raster { cut: Some(_), .. })
+            && self.uses.iter().any(|u| u.binding == Some(CUT_OUTS_BINDING))
     }
 
     /// The resources that the pass writes.

@@ -112,6 +112,9 @@ fn work_of(graph: &Graph, work: &Work) -> String {
             format!("dispatch by {}", graph.resource(*arguments).name)
         }
         Work::EachMesh { .. } => "dispatch a mesh".into(),
+        Work::EachCutOut { textures: true, .. } => "dispatch an opacity texture".into(),
+        Work::EachCutOut { .. } => "dispatch a mesh that is cut out".into(),
+        Work::CutOuts => "write the meshes that are cut out".into(),
         Work::Constants { .. } => "write constants".into(),
         Work::FrameNumber => "write the frame's number".into(),
         Work::Raster { draw: super::Draw::Layer { layer, .. }, .. } => {

@@ -1,16 +1,6 @@
 //! Where a mesh stops light, and how much of it, as the alpha of a texture says.
 
-/// How an opacity map goes on beyond its edges (glTF 2.0 §5.26).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Wrap {
-    /// It begins anew.
-    #[default]
-    Repeat,
-    /// It begins anew, each time mirrored.
-    Mirror,
-    /// Its edge goes on.
-    Clamp,
-}
+pub use crate::lent::Wrap;
 
 /// The part of the light that a surface stops, as a texture.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -5,7 +5,7 @@
 
 use crate::scene::{Instance, Scene};
 use crate::{Error, Light, Shape};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::leaf_collapser::collapse;
@@ -40,22 +40,45 @@ pub(super) struct Blockers<T> {
     pub(super) tree: Option<Bvh2>,
 }
 
+impl Blockers<[DVec3; 3]> {
+    /// Builds the hierarchy over triangles that block whole.
+    ///
+    /// # Errors
+    /// See [`Self::new`]; [`Error::Scene`] too where an opacity map cuts a blocking mesh out.
+    pub(super) fn whole(scene: &Scene) -> Result<Self, Error> {
+        let cuts = |i: &&Instance| {
+            let mesh = scene.meshes.get(i.mesh);
+            i.role.blocks() && mesh.is_some_and(|mesh| mesh.opacity_map.is_some())
+        };
+        if let Some(instance) = scene.instances.iter().find(cuts) {
+            return Err(Error::Scene(format!(
+                "{}: a texture says where it stops light, which no closed form looks up; trace it by Tracer",
+                instance.name
+            )));
+        }
+        Self::new(scene, |corners, _| corners)
+    }
+}
+
 impl<T> Blockers<T> {
     /// Builds the hierarchy over the instances that block light ([`crate::scene::Role::blocks`]).
     ///
-    /// `form` makes a triangle of its corners, relative to the origin. Triangles without an area
-    /// are left out.
+    /// `form` makes a triangle of its corners, relative to the origin, and of what says where it stops light. Triangles
+    /// without an area are left out.
     ///
     /// # Errors
     /// [`Error::Scene`] where an instance names a mesh or vertex that does not exist, or puts a
     /// vertex at a position that is not finite (or beyond 10¹⁸ m).
-    pub(super) fn new(scene: &Scene, form: impl Fn([DVec3; 3]) -> T) -> Result<Self, Error> {
+    pub(super) fn new(
+        scene: &Scene,
+        form: impl Fn([DVec3; 3], Option<Cut>) -> T,
+    ) -> Result<Self, Error> {
         let (mut low, mut high) = (DVec3::MAX, DVec3::MIN);
         let mut include = |point: DVec3| (low, high) = (low.min(point), high.max(point));
         let mut corners = Vec::new();
         for instance in &scene.instances {
             let world = triangle_corners(scene, instance)?;
-            world.iter().flatten().for_each(|&corner| include(corner));
+            world.iter().flat_map(|(corners, _)| corners).for_each(|&corner| include(corner));
             if instance.role.blocks() {
                 corners.extend(world);
             }
@@ -68,11 +91,11 @@ impl<T> Blockers<T> {
         } else {
             (DVec3::ZERO, 0.0)
         };
-        corners.iter_mut().flatten().for_each(|corner| *corner -= origin);
-        corners.retain(|[a, b, c]| (b - a).cross(c - a) != DVec3::ZERO);
+        corners.iter_mut().flat_map(|(c, _)| c).for_each(|corner| *corner -= origin);
+        corners.retain(|([a, b, c], _)| (b - a).cross(c - a) != DVec3::ZERO);
         let pad = PAD_ROUNDINGS * F32_ROUNDING * extent;
-        let boxes: Vec<Aabb> = corners.iter().map(|corners| bounds(corners, pad)).collect();
-        let triangles = corners.into_iter().map(form).collect();
+        let boxes: Vec<Aabb> = corners.iter().map(|(corners, _)| bounds(corners, pad)).collect();
+        let triangles = corners.into_iter().map(|(corners, cut)| form(corners, cut)).collect();
         Ok(Self { origin, extent, triangles, tree: build(&boxes) })
     }
 
@@ -155,8 +178,18 @@ fn bounds([a, b, c]: &[DVec3; 3], pad: f64) -> Aabb {
     Aabb::new(low.as_vec3a(), high.as_vec3a())
 }
 
-/// The corners of an instance's triangles in world space.
-fn triangle_corners(scene: &Scene, instance: &Instance) -> Result<Vec<[DVec3; 3]>, Error> {
+/// Which opacity map says where a triangle stops light, and the places of its corners in the map.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cut {
+    pub(super) map: usize,
+    pub(super) places: [DVec2; 3],
+}
+
+/// The corners of an instance's triangles in world space, and what cuts them out.
+fn triangle_corners(
+    scene: &Scene,
+    instance: &Instance,
+) -> Result<Vec<([DVec3; 3], Option<Cut>)>, Error> {
     let refuse = |problem: String| Error::Scene(format!("{}: {problem}", instance.name));
     let mesh = scene.meshes.get(instance.mesh).ok_or_else(|| {
         refuse(format!("mesh {} does not exist (there are {})", instance.mesh, scene.meshes.len()))
@@ -176,10 +209,26 @@ fn triangle_corners(scene: &Scene, instance: &Instance) -> Result<Vec<[DVec3; 3]
             )))
         }
     };
-    mesh.indices
-        .chunks_exact(3)
-        .map(|triangle| Ok([corner(&triangle[0])?, corner(&triangle[1])?, corner(&triangle[2])?]))
-        .collect()
+    if let Some(map) = mesh.opacity_map.filter(|&map| map >= scene.opacity_maps.len()) {
+        let count = scene.opacity_maps.len();
+        return Err(refuse(format!("opacity map {map} does not exist (there are {count})")));
+    }
+    let place = |&index: &u32| {
+        let place = mesh.texture_coordinates.get(index as usize).ok_or_else(|| {
+            let count = mesh.texture_coordinates.len();
+            refuse(format!("index {index} is past its {count} texture coordinates"))
+        })?;
+        Ok::<_, Error>(DVec2::from_array(place.map(f64::from)))
+    };
+    let triangle = |corners: &[u32]| {
+        let [a, b, c] = [0, 1, 2].map(|i| &corners[i]);
+        let cut = match mesh.opacity_map {
+            Some(map) => Some(Cut { map, places: [place(a)?, place(b)?, place(c)?] }),
+            None => None,
+        };
+        Ok(([corner(a)?, corner(b)?, corner(c)?], cut))
+    };
+    mesh.indices.chunks_exact(3).map(triangle).collect()
 }
 
 /// A hierarchy over the boxes: obvhs's medium preset, without the validation that its own

@@ -48,7 +48,7 @@ impl ExactLine {
     /// [`Error::Scene`] where an instance names a mesh or vertex that does not exist, or puts a
     /// vertex at a position that is not finite (or beyond 10¹⁸ m).
     pub fn new(scene: &Scene) -> Result<Self, Error> {
-        Ok(Self { blockers: Blockers::new(scene, |corners| corners)?, position_error: 0.0 })
+        Ok(Self { blockers: Blockers::whole(scene)?, position_error: 0.0 })
     }
 
     /// Says how far, in metres, the receivers may lie off their surfaces: as

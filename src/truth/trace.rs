@@ -4,8 +4,8 @@
 //! thin triangle is known only to 2⁻²⁴ × length² / width, and a floor made of such triangles would
 //! shadow itself.
 
-use super::blockers::{Blockers, F32_ROUNDING, PAD_ROUNDINGS};
-use crate::scene::Scene;
+use super::blockers::{Blockers, Cut, F32_ROUNDING, PAD_ROUNDINGS};
+use crate::scene::{OpacityMap, Scene};
 use crate::{Error, Light, Shape};
 use glam::DVec3;
 use obvhs::ray::Ray;
@@ -58,6 +58,8 @@ pub struct Traced {
 /// The blocking triangles of a scene, for visible fractions by tracing rays.
 pub struct Tracer {
     blockers: Blockers<Triangle>,
+    /// What cuts triangles out.
+    opacity_maps: Vec<OpacityMap>,
 }
 
 impl Tracer {
@@ -67,7 +69,8 @@ impl Tracer {
     /// [`Error::Scene`] where an instance names a mesh or vertex that does not exist, or puts a
     /// vertex at a position that is not finite (or beyond 10¹⁸ m).
     pub fn new(scene: &Scene) -> Result<Self, Error> {
-        Ok(Self { blockers: Blockers::new(scene, Triangle::new)? })
+        let opacity_maps = scene.opacity_maps.clone();
+        Ok(Self { blockers: Blockers::new(scene, Triangle::new)?, opacity_maps })
     }
 
     /// The distance that a receiver is moved off its surface along its normal, in metres, before its rays
@@ -87,7 +90,9 @@ impl Tracer {
     }
 
     /// The visible fraction from one receiver: the share of stratified points on the light from
-    /// which no blocking triangle crosses the segment to the receiver. The table in [`crate::truth`] says which points
+    /// which no blocking triangle crosses the segment to the receiver. A triangle that an opacity map cuts out blocks
+    /// where the map says so; what lets a part of the light through lets that part of the segment through, and several
+    /// behind each other the product of their parts. The table in [`crate::truth`] says which points
     /// a light of any shape has.
     ///
     /// `stream` picks the random numbers, with the sampling's seed: receivers of one image take
@@ -133,11 +138,11 @@ impl Tracer {
         let mut last_hit = None;
         let rays = target.rays(sampling.side());
         let mut grid = || {
-            let seen = target
+            let seen: f64 = target
                 .strata(sampling.side(), &mut random)
-                .filter(|&to| !self.blocked(from, (to - from) * target.end, &mut last_hit))
-                .count();
-            seen as f64 / f64::from(rays)
+                .map(|to| self.passes(from, (to - from) * target.end, &mut last_hit))
+                .sum();
+            seen / f64::from(rays)
         };
         let a = grid();
         if light.shape() == Shape::Point {
@@ -188,14 +193,15 @@ impl Tracer {
         })
     }
 
-    /// Whether a triangle crosses the segment from `from` to `from + along`.
+    /// The part of the light that comes through along the segment from `from` to `from + along`: 0 where a whole triangle
+    /// crosses it.
     ///
     /// The triangle that blocked the receiver's last ray is tested first: any blocker will do, and
     /// neighbouring rays mostly share theirs.
-    fn blocked(&self, from: DVec3, along: DVec3, last_hit: &mut Option<usize>) -> bool {
-        let Blockers { triangles, tree: Some(tree), .. } = &self.blockers else { return false };
-        if last_hit.is_some_and(|i| triangles[i].crosses(from, along)) {
-            return true;
+    fn passes(&self, from: DVec3, along: DVec3, last_hit: &mut Option<usize>) -> f64 {
+        let Blockers { triangles, tree: Some(tree), .. } = &self.blockers else { return 1.0 };
+        if last_hit.is_some_and(|i| triangles[i].crosses(from, along).is_some()) {
+            return 0.0;
         }
         let length = along.length();
         // The tree's reciprocals have an absolute floor, made for unit directions.
@@ -205,17 +211,26 @@ impl Tracer {
             0.0,
             (length * (1.0 + PAD_ROUNDINGS * F32_ROUNDING)) as f32,
         );
-        let mut hit = None;
+        let (mut hit, mut passes) = (None, 1.0);
         tree.ray_traverse_miss(ray, |_, leaf| {
             let i = tree.primitive_indices[leaf] as usize;
-            if triangles[i].crosses(from, along) {
-                hit = Some(i);
-                return 0.0;
+            if let Some(shares) = triangles[i].crosses(from, along) {
+                match &triangles[i].cut {
+                    None => hit = Some(i),
+                    Some(cut) => passes *= 1.0 - self.opacity(cut, shares),
+                }
             }
-            f32::INFINITY
+            if hit.is_some() || passes == 0.0 { 0.0 } else { f32::INFINITY }
         });
         *last_hit = hit.or(*last_hit);
-        hit.is_some()
+        if hit.is_some() { 0.0 } else { passes }
+    }
+
+    /// The opacity of a triangle at these shares of its second and third corner.
+    fn opacity(&self, cut: &Cut, [u, v]: [f64; 2]) -> f64 {
+        let [a, b, c] = cut.places;
+        let place = a * (1.0 - u - v) + b * u + c * v;
+        self.opacity_maps.get(cut.map).map_or(1.0, |map| map.at(place.into()))
     }
 }
 
@@ -225,16 +240,19 @@ struct Triangle {
     corner: DVec3,
     edges: [DVec3; 2],
     normal: DVec3,
+    /// What says where it stops light; `None` where all of it does.
+    cut: Option<Cut>,
 }
 
 impl Triangle {
-    fn new([a, b, c]: [DVec3; 3]) -> Self {
+    fn new([a, b, c]: [DVec3; 3], cut: Option<Cut>) -> Self {
         let edges = [b - a, c - a];
-        Self { corner: a, edges, normal: edges[0].cross(edges[1]) }
+        Self { corner: a, edges, normal: edges[0].cross(edges[1]), cut }
     }
 
-    /// Whether the segment from `from` to `from + along` meets the triangle, from either side.
-    fn crosses(&self, from: DVec3, along: DVec3) -> bool {
+    /// Where the segment from `from` to `from + along` meets the triangle, from either side: the shares of its second and
+    /// third corner.
+    fn crosses(&self, from: DVec3, along: DVec3) -> Option<[f64; 2]> {
         let facing = self.normal.dot(along);
         let sign = if facing < 0.0 { -1.0 } else { 1.0 };
         let (facing, to_corner) = (facing.abs(), (self.corner - from) * sign);
@@ -243,7 +261,8 @@ impl Triangle {
         let v = moment.dot(self.edges[0]);
         let t = self.normal.dot(to_corner);
         // A segment in the triangle's plane sees it edge-on.
-        facing > 0.0 && u >= 0.0 && v >= 0.0 && u + v <= facing && t >= 0.0 && t <= facing
+        (facing > 0.0 && u >= 0.0 && v >= 0.0 && u + v <= facing && t >= 0.0 && t <= facing)
+            .then(|| [u / facing, v / facing])
     }
 }
 

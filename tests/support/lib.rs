@@ -7,6 +7,7 @@
 pub mod bench;
 pub mod compare;
 pub mod compile;
+pub mod cut_outs;
 pub mod device;
 pub mod draco;
 pub mod example;

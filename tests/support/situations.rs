@@ -26,7 +26,7 @@ pub fn looking(eye: [f64; 3], target: [f64; 3], yfov: f64) -> Camera {
 }
 
 /// A square lamp at `at` of this side that faces `target`.
-fn lamp(at: [f64; 3], target: [f64; 3], side: f64) -> RectangleLight {
+pub(crate) fn lamp(at: [f64; 3], target: [f64; 3], side: f64) -> RectangleLight {
     let (at, target) = (DVec3::from_array(at), DVec3::from_array(target));
     let towards = (target - at).normalize();
     let up = if towards.y.abs() > 0.99 { DVec3::NEG_Z } else { DVec3::Y };
@@ -47,7 +47,7 @@ impl Situation {
     }
 
     /// A floor of 8 m around the origin.
-    fn on_floor(light: impl Into<Light>, camera: Camera) -> Self {
+    pub(crate) fn on_floor(light: impl Into<Light>, camera: Camera) -> Self {
         Self::new(light, camera).and("floor", generate::ground(8.0), [0.0; 3])
     }
 
@@ -79,7 +79,7 @@ fn inside_out(mesh: Mesh) -> Mesh {
 }
 
 /// A standing sheet with two fronts, `width` along its x and `height` along its y, round the origin.
-fn sheet(width: f64, height: f64) -> Mesh {
+pub(crate) fn sheet(width: f64, height: f64) -> Mesh {
     let mut mesh = generate::quad(width, height);
     for p in mesh.positions.iter_mut().chain(&mut mesh.normals) {
         *p = [p[0], -p[2], p[1]];

@@ -7,6 +7,7 @@ mod accuracy;
 mod audit;
 mod audit_shapes;
 mod baseline;
+mod cut_outs;
 mod disc_light;
 mod forward;
 mod hierarchy;

@@ -259,9 +259,11 @@ fn beyond(
 ) -> ResourceId {
     let image = graph.image(image, FORMAT, [side, side], Owner::Transient);
     let Raster { cull, clear, compare } = raster_of(layer);
-    let fragment = match layer {
-        Layer::MiddleBack => module!("depth_layers/not_before.frag"),
-        _ => module!("depth_layers/beyond.frag"),
+    let (fragment, cut) = match layer {
+        Layer::MiddleBack => {
+            (module!("depth_layers/not_before.frag"), module!("depth_layers/not_before_cut.frag"))
+        }
+        _ => (module!("depth_layers/beyond.frag"), module!("depth_layers/beyond_cut.frag")),
     };
     graph.push(Pass {
         name,
@@ -273,6 +275,7 @@ fn beyond(
         work: Work::Raster {
             vertex: shaders::DEPTH_VERT,
             fragment: Some(fragment),
+            cut: Some([shaders::DEPTH_CUT_VERT, cut]),
             cull,
             target: Target::Depth { clear, compare },
             draw: Draw::Layer { layer, view },
@@ -299,6 +302,7 @@ pub(crate) fn draw(
         work: Work::Raster {
             vertex: shaders::DEPTH_VERT,
             fragment: None,
+            cut: Some([shaders::DEPTH_CUT_VERT, shaders::CUT_FRAG]),
             cull,
             target: Target::Depth { clear, compare },
             draw: Draw::Layer { layer, view },

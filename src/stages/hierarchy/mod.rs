@@ -39,13 +39,18 @@ const CODE_BITS: u32 = 30;
 /// The Morton cells along a side of a mesh's box.
 const CELLS: f64 = 1024.0;
 
+/// Stands beside a triangle's first corner where all of it blocks (`hierarchy/texels.glsl`).
+pub const WHOLE: f32 = 1.0;
+/// Stands beside a triangle's first corner where a texture says which parts of it block.
+pub const CUT_OUT: f32 = 2.0;
+
 /// The push constants of the passes that read a mesh's buffers (`hierarchy/mesh.glsl`).
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct MeshPush {
     /// Mesh space, moved so that the origin is at 0, to the hierarchy's space: a plane for each of x, y and z.
     pub rows: [[f32; 4]; 3],
-    /// The least corner of the mesh's box, in mesh space.
+    /// The least corner of the mesh's box, in mesh space; then [`WHOLE`] or [`CUT_OUT`].
     pub low: [f32; 4],
     /// Morton cells a unit of mesh space.
     pub cells: [f32; 4],
@@ -91,6 +96,55 @@ impl MeshPush {
     }
 }
 
+/// The push constants of the passes that read meshes that textures cut out (`hierarchy/cut_out_push.glsl`).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct CutOutPush {
+    /// The mesh's cut-out, `CutOutRecord` (`src/frame/cut_outs.rs`).
+    pub record: [u32; 12],
+    /// The place of the mesh's first triangle among those of all meshes.
+    pub first: u32,
+    /// How many triangles it has.
+    pub count: u32,
+    /// Where its indices begin, in indices.
+    pub indices: u32,
+    /// 16 or 32; 0 without indices.
+    pub index_bits: u32,
+    /// How many times textures are halved.
+    pub halved: u32,
+}
+
+impl CutOutPush {
+    /// For a mesh whose triangles are pushed so.
+    pub(crate) fn of_mesh(record: &impl Pod, mesh: &MeshPush) -> Self {
+        let MeshPush { first, count, indices, index_bits, .. } = *mesh;
+        let record = words_of(record);
+        Self { record, first, count, indices, index_bits, halved: 0 }
+    }
+
+    /// For a texture.
+    pub(crate) fn of_texture(record: &impl Pod, halved: u32) -> Self {
+        let record = words_of(record);
+        Self { record, first: 0, count: 0, indices: 0, index_bits: 0, halved }
+    }
+
+    /// The number of workgroups for a texture: an invocation for four texels.
+    pub(crate) fn groups(&self) -> [u32; 3] {
+        let [.., extent] = self.record;
+        groups(((extent & 0xffff) * (extent >> 16)).div_ceil(4))
+    }
+}
+
+/// The words of a record of 48 bytes.
+fn words_of(record: &impl Pod) -> [u32; 12] {
+    let mut words = [0; 12];
+    let bytes = bytemuck::bytes_of(record);
+    for (word, bytes) in words.iter_mut().zip(bytes.as_chunks().0) {
+        *word = u32::from_ne_bytes(*bytes);
+    }
+    words
+}
+
 /// The push constants of the passes over leaves and nodes (`hierarchy/topology.glsl`).
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -110,6 +164,10 @@ pub struct Sizes {
     pub capacity: u32,
     /// The triangles of this frame's meshes, those that fill leaves included.
     pub triangles: u32,
+    /// The texels of opacity textures that there is memory for; 0 where no mesh is ever cut out.
+    pub texels: u32,
+    /// The meshes of this frame that textures cut out.
+    pub cut_outs: u32,
 }
 
 impl Sizes {
@@ -131,6 +189,17 @@ pub struct Hierarchy {
     pub nodes: ResourceId,
     /// The triangles, leaf by leaf: R32G32B32A32_SFLOAT, three texels each.
     pub triangles: ResourceId,
+    /// What textures say of them; `None` where no mesh is ever cut out.
+    pub cut_outs: Option<CutOuts>,
+}
+
+/// What textures say of a hierarchy's triangles (`hierarchy/cut.glsl`).
+#[derive(Clone, Copy, Debug)]
+pub struct CutOuts {
+    /// The place in its texture and the texture of each triangle that one cuts out: R32G32B32A32_SFLOAT, three texels each.
+    pub places: ResourceId,
+    /// The opacities of all textures, four to a texel: R32_UINT.
+    pub opacities: ResourceId,
 }
 
 /// The workgroups of 64 invocations for a number of them, as `common/lists.glsl` numbers them.
@@ -162,16 +231,51 @@ fn pyramid(graph: &mut Graph, boxes: ResourceId, sizes: Sizes, need: &Need) {
     }
 }
 
+/// Declares an image of so many texels, whose content is valid until a mesh moves.
+fn image(graph: &mut Graph, name: &'static str, format: vk::Format, texels: u32) -> ResourceId {
+    let height = texels.div_ceil(1 << TEXELS_BITS).max(1);
+    let id = graph.image(name, format, [1 << TEXELS_BITS, height], crate::graph::Owner::Kept);
+    graph.keep_until(id, Until::Moved);
+    id
+}
+
+/// Adds the passes that copy opacity textures, and write where triangles lie in them.
+fn cut_outs(graph: &mut Graph, sizes: Sizes, places: ResourceId, need: &Need) -> CutOuts {
+    let none = graph.because("no texture cuts out a mesh that blocks");
+    let need = if sizes.cut_outs == 0 && need.is_yes() && sizes.triangles > 0 {
+        &Need::No(none)
+    } else {
+        need
+    };
+    let format = vk::Format::R32_UINT;
+    let opacities = image(graph, "hierarchy.opacities", format, sizes.texels.div_ceil(4));
+    let format = vk::Format::R32G32B32A32_SFLOAT;
+    let texels = 3 * sizes.capacity.next_multiple_of(LEAF);
+    let cut = image(graph, "hierarchy.cut_outs", format, texels);
+    graph.push(Pass {
+        name: "hierarchy.opacities",
+        uses: smallvec![Use::bound(0, opacities, Access::ImageWrite)],
+        push: Push::NONE,
+        work: Work::EachCutOut { shader: module!("hierarchy/opacities.comp"), textures: true },
+        need: *need,
+    });
+    graph.push(Pass {
+        name: "hierarchy.cut_outs",
+        uses: smallvec![
+            Use::bound(0, places, Access::BufferReadCompute),
+            Use::bound(1, cut, Access::ImageWrite),
+        ],
+        push: Push::NONE,
+        work: Work::EachCutOut { shader: module!("hierarchy/cut_outs.comp"), textures: false },
+        need: *need,
+    });
+    CutOuts { places: cut, opacities }
+}
+
 /// Adds the passes that build the hierarchy, and those that fit it to where the meshes are.
 pub(crate) fn declare(graph: &mut Graph, sizes: Sizes, need: &Need) -> Hierarchy {
     let Sizes { capacity, .. } = sizes;
     let (room, leaves) = (u64::from(capacity), u64::from(capacity.div_ceil(LEAF)));
-    let image = |graph: &mut Graph, name, format, texels: u32| {
-        let height = texels.div_ceil(1 << TEXELS_BITS).max(1);
-        let id = graph.image(name, format, [1 << TEXELS_BITS, height], crate::graph::Owner::Kept);
-        graph.keep_until(id, Until::Moved);
-        id
-    };
     let triangles = image(
         graph,
         "hierarchy.triangles",
@@ -243,5 +347,6 @@ pub(crate) fn declare(graph: &mut Graph, sizes: Sizes, need: &Need) -> Hierarchy
         ],
         need,
     ));
-    Hierarchy { nodes, triangles }
+    let cut_outs = (sizes.texels > 0).then(|| cut_outs(graph, sizes, places, need));
+    Hierarchy { nodes, triangles, cut_outs }
 }

@@ -2,7 +2,7 @@
 
 use super::line::LineContext;
 use crate::graph::{Access, Draw, Graph, Layer, Pass, Push, ResourceId, Target, Use, Work};
-use crate::shaders::module;
+use crate::shaders::{self, module};
 use crate::stages::depth_layers::{self, Raster};
 use crate::stages::visibility::grid;
 use bytemuck::{Pod, Zeroable};
@@ -140,6 +140,10 @@ fn drawn(
     ctx: &LineContext,
 ) -> Pass {
     let Raster { cull, clear, compare } = depth_layers::raster_of(layer);
+    let (vertex, cut_vertex) = match sample {
+        Some(_) => (module!("linear_light/sample.vert"), module!("linear_light/sample_cut.vert")),
+        None => (module!("linear_light/middle.vert"), module!("linear_light/middle_cut.vert")),
+    };
     let mut uses = smallvec![Use::fixed(image, Access::DepthTarget)];
     uses.extend(
         sample.map(|_| Use::bound(0, ctx.resources.layers.samples, Access::BufferReadVertex)),
@@ -155,12 +159,9 @@ fn drawn(
             nth: sample.map_or(-1, |nth| nth as i32),
         }),
         work: Work::Raster {
-            vertex: if sample.is_some() {
-                module!("linear_light/sample.vert")
-            } else {
-                module!("linear_light/middle.vert")
-            },
+            vertex,
             fragment: None,
+            cut: Some([cut_vertex, shaders::CUT_FRAG]),
             cull,
             target: Target::Depth { clear, compare },
             draw: Draw::Layer { layer, view: ctx.row },

@@ -147,6 +147,7 @@ fn skins(graph: &mut Graph, ctx: &LineContext, skins: &SkinSide) {
         work: Work::Raster {
             vertex: module!("linear_light/skins.vert"),
             fragment: Some(module!("linear_light/skins.frag")),
+            cut: None,
             cull: vk::CullModeFlags::NONE,
             target: Target::Depth { clear: 1.0, compare: vk::CompareOp::LESS },
             draw: Draw::Indirect { arguments: resources.draws, offset: skins.offset },

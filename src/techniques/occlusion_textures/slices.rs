@@ -251,6 +251,13 @@ fn draw(
                         module!("occlusion_textures/slice_lower.frag"),
                     ][nth],
                 ),
+                cut: Some([
+                    shaders::DEPTH_CUT_VERT,
+                    [
+                        module!("occlusion_textures/slice_cut.frag"),
+                        module!("occlusion_textures/slice_lower_cut.frag"),
+                    ][nth],
+                ]),
                 cull: raster.cull,
                 target: Target::Add,
                 draw: Draw::Layer { layer: drawn.layer, view: inputs.view },

@@ -263,6 +263,7 @@ pub(super) fn blend_map(
         work: Work::Raster {
             vertex: module!("soft_shadow_map/patch.vert"),
             fragment: Some(shaders::PATCH_FRAG),
+            cut: None,
             cull: vk::CullModeFlags::NONE,
             target: Target::Add,
             draw: Draw::Indirect { arguments, offset: 0 },

@@ -51,7 +51,7 @@ pub struct EmissionPush {
 }
 
 /// The shaders that there are more than one of: for a light with a texture or without, for one visible fraction or one of
-/// each color, for each number of samples.
+/// each color, for each number of samples, and for opacity textures.
 struct Shaders {
     tiles: Module,
     gather: Module,
@@ -60,34 +60,49 @@ struct Shaders {
 }
 
 impl Shaders {
-    fn of(settings: &Settings, inputs: &PassInputs) -> Self {
+    fn of(settings: &Settings, inputs: &PassInputs, cuts: bool) -> Self {
         let (tiles, gather) = match inputs.color {
             false => (module!("traced/tiles.comp"), module!("traced/gather.comp")),
             true => (module!("traced/tiles_color.comp"), module!("traced/gather_color.comp")),
         };
         let (rays, covers) = match (inputs.light_texture, inputs.color) {
             (None, _) => (
-                module!("traced/rays.comp"),
+                [module!("traced/rays.comp"), module!("traced/rays_cut.comp")],
                 [
-                    module!("traced/cover.comp"),
-                    module!("traced/cover_many.comp"),
-                    module!("traced/cover_most.comp"),
+                    [module!("traced/cover.comp"), module!("traced/cover_cut.comp")],
+                    [module!("traced/cover_many.comp"), module!("traced/cover_many_cut.comp")],
+                    [module!("traced/cover_most.comp"), module!("traced/cover_most_cut.comp")],
                 ],
             ),
             (Some(_), false) => (
-                module!("traced/rays_textured.comp"),
+                [module!("traced/rays_textured.comp"), module!("traced/rays_textured_cut.comp")],
                 [
-                    module!("traced/cover_textured.comp"),
-                    module!("traced/cover_many_textured.comp"),
-                    module!("traced/cover_most_textured.comp"),
+                    [
+                        module!("traced/cover_textured.comp"),
+                        module!("traced/cover_textured_cut.comp"),
+                    ],
+                    [
+                        module!("traced/cover_many_textured.comp"),
+                        module!("traced/cover_many_textured_cut.comp"),
+                    ],
+                    [
+                        module!("traced/cover_most_textured.comp"),
+                        module!("traced/cover_most_textured_cut.comp"),
+                    ],
                 ],
             ),
             (Some(_), true) => (
-                module!("traced/rays_color.comp"),
+                [module!("traced/rays_color.comp"), module!("traced/rays_color_cut.comp")],
                 [
-                    module!("traced/cover_color.comp"),
-                    module!("traced/cover_many_color.comp"),
-                    module!("traced/cover_most_color.comp"),
+                    [module!("traced/cover_color.comp"), module!("traced/cover_color_cut.comp")],
+                    [
+                        module!("traced/cover_many_color.comp"),
+                        module!("traced/cover_many_color_cut.comp"),
+                    ],
+                    [
+                        module!("traced/cover_most_color.comp"),
+                        module!("traced/cover_most_color_cut.comp"),
+                    ],
                 ],
             ),
         };
@@ -97,6 +112,7 @@ impl Shaders {
             Samples::Many => many,
             Samples::Most => most,
         };
+        let [cover, rays] = [cover, rays].map(|[whole, cut]| if cuts { cut } else { whole });
         Self { tiles, gather, cover, rays }
     }
 }
@@ -123,7 +139,7 @@ pub(super) fn declare(
 ) {
     let PassInputs { gbuffer, need, visibility, .. } = *inputs;
     let extent = gbuffer.extent;
-    let shaders = Shaders::of(settings, inputs);
+    let shaders = Shaders::of(settings, inputs, tree.cut_outs.is_some());
     let emission = inputs.light_texture.map(|texture| {
         let side = settings.samples.side();
         let format = vk::Format::R32G32B32A32_SFLOAT;
@@ -201,8 +217,12 @@ pub(super) fn declare(
         smallvec![read(0, slots), read(1, sums), update(2, entries)],
         need,
     ));
-    // What the passes use that sum what the samples emit.
-    let weighed = |uses: &[Use]| uses.iter().copied().chain(emission).collect::<Uses>();
+    // What the passes use that sum what the samples emit, and that look opacity textures up.
+    let cut = tree.cut_outs.map(|cut| [(9, cut.places), (10, cut.opacities)]);
+    let cut = cut.into_iter().flatten();
+    let cut = cut.map(|(binding, id)| Use::bound(binding, id, Access::SampledCompute));
+    let weighed =
+        |uses: &[Use]| uses.iter().copied().chain(emission).chain(cut.clone()).collect::<Uses>();
     let mut over_list = |name, shader, arguments, offset, uses: &[Use]| {
         let mut uses = of_frame(uses);
         uses.push(Use::fixed(arguments, Access::Indirect));
