@@ -12,15 +12,15 @@ layout(set = 1, binding = 1) uniform texture2D opacities;
 
 layout(location = 0) in vec2 place;
 layout(location = 1) flat in vec2 factor_and_cutoff;
-layout(location = 2) flat in uvec2 bits_and_mesh;
+layout(location = 2) flat in uvec2 bits_and_triangle;
 
 bool lets_through()
 {
-    Texels t = texels_at(place, textureSize(opacities, 0), bits_and_mesh.x);
+    Texels t = texels_at(place, textureSize(opacities, 0), bits_and_triangle.x);
     vec4 found = vec4(texelFetch(opacities, t.low, 0).w, texelFetch(opacities, ivec2(t.high.x, t.low.y), 0).w,
                       texelFetch(opacities, ivec2(t.low.x, t.high.y), 0).w, texelFetch(opacities, t.high, 0).w);
-    float even = even_number(floor(gl_FragCoord.xy), bits_and_mesh.y);
-    return !stops(between(t, found) * factor_and_cutoff.x, factor_and_cutoff.y, bits_and_mesh.x, even);
+    float even = even_number(floor(gl_FragCoord.xy), bits_and_triangle.y);
+    return !stops(between(t, found) * factor_and_cutoff.x, factor_and_cutoff.y, bits_and_triangle.x, even);
 }
 
 #endif

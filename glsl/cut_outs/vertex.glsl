@@ -13,7 +13,7 @@ layout(set = 1, binding = 0, std430) readonly buffer Coordinates { float coordin
 
 layout(location = 0) out vec2 place;
 layout(location = 1) flat out vec2 factor_and_cutoff;
-layout(location = 2) flat out uvec2 bits_and_mesh;
+layout(location = 2) flat out uvec2 bits_and_triangle;
 
 void hand_over_place()
 {
@@ -23,7 +23,8 @@ void hand_over_place()
     vec3 given = there ? vec3(coordinates[at], coordinates[at + 1u], 1.0) : vec3(0.0, 0.0, 1.0);
     place = vec2(dot(c.u.xyz, given), dot(c.v.xyz, given));
     factor_and_cutoff = vec2(c.v.w, c.u.w);
-    bits_and_mesh = uvec2(c.bits, uint(gl_InstanceIndex));
+    // A triangle has the number of its first vertex, and so have both halves of most quads.
+    bits_and_triangle = uvec2(c.bits, uint(gl_VertexIndex) + 0x10000u * uint(gl_InstanceIndex));
 }
 
 #endif

@@ -10,7 +10,7 @@ pub struct Choice {
     /// The technique, with its settings.
     pub technique: Technique,
     /// The promised mean error of the visible fraction over the pixels in shadow and penumbra, 0 to 1; `None` where
-    /// nothing can be shadowed.
+    /// nothing can be shadowed, and where nothing can be promised because meshes are drawn whole that textures cut out.
     pub error: Option<f64>,
     /// The expected time on the device, milliseconds; `None` where the table has none: for lines and polygons, and
     /// where nothing can be shadowed.

@@ -282,13 +282,18 @@ impl Auto {
         let technique = techniques()[chosen.candidate];
         let changed = state.technique.replace(technique).is_some_and(|before| before != technique);
         let (_, views) = nearest_views(Table::own(), &Features::of(s));
+        let drawn_whole = drawn_whole(s);
         Choice {
             technique,
-            error: Some(chosen.error),
+            error: drawn_whole.is_none().then_some(chosen.error),
             ms: Some(chosen.ms),
             nearest: views.first().map(|v| v.name.clone()),
             changed,
-            problem: budget.problem.clone().or_else(|| unmet(&chosen, expected, budget)),
+            problem: budget
+                .problem
+                .clone()
+                .or(drawn_whole)
+                .or_else(|| unmet(&chosen, expected, budget)),
             left_out: None,
         }
     }
@@ -313,20 +318,31 @@ impl Auto {
         state.candidate = None;
         state.expected = None;
         let changed = state.technique.replace(technique).is_some_and(|before| before != technique);
+        let drawn_whole = situation.and_then(drawn_whole);
         let met = error <= budget.max_error * 1.0001 || situation.is_none();
         let problem = (!met).then(|| {
             format!("no error below {error:.3} can be promised for a line or a polygon here")
         });
         Choice {
             technique,
-            error: situation.map(|_| error),
+            error: situation.filter(|_| drawn_whole.is_none()).map(|_| error),
             ms: None,
             nearest: None,
             changed,
-            problem: budget.problem.clone().or(problem),
+            problem: budget.problem.clone().or(drawn_whole).or(problem),
             left_out: None,
         }
     }
+}
+
+/// Why no error can be promised, as a sentence, where the node draws meshes whole that textures cut out.
+fn drawn_whole(s: &Situation) -> Option<String> {
+    (s.cut_out > 0).then(|| {
+        format!(
+            "no error can be promised: textures cut out {} meshes that are drawn whole; lend their textures",
+            s.cut_out
+        )
+    })
 }
 
 fn is_line(frame: &Frame) -> bool {

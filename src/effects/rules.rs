@@ -278,18 +278,29 @@ pub const RULES: [Rule; COUNT] = [
         name: "cut-outs",
         needed: "some mesh is cut out by a texture, or drawn by the host",
         bound: "0",
-        passes: "the host's draws in every layer; what the node draws it draws whole, and says so",
+        passes: "`cut_outs.write`, and lookups in every draw and ray; the host's draws; what no texture is lent for is drawn whole",
         soft: false,
-        judge: |case| where_present(case.situation.host_drawn + case.situation.cut_out > 0),
-        why: |Case { situation: s, .. }, needed| match (s.cut_out, needed) {
-            (0, true) => Why::from("the host draws ").and(s.host_drawn).and(" meshes"),
-            (0, false) => "no occluder is cut out by a texture, or drawn by the host".into(),
-            (count, _) => {
+        judge: |case| {
+            let Situation { host_drawn, cut_out, textured, .. } = case.situation;
+            where_present(host_drawn + cut_out + textured > 0)
+        },
+        why: |Case { situation: s, shows, .. }, needed| match (s.cut_out, s.translucent, s.textured)
+        {
+            _ if !needed => "no occluder is cut out by a texture, or drawn by the host".into(),
+            (0, 0, 0) => Why::from("the host draws ").and(s.host_drawn).and(" meshes"),
+            (0, count @ 1.., _) if !shows.translucent => Why::default()
+                .and(count)
+                .and(" meshes let a part of the light through, which is drawn as none"),
+            (0, _, count) => Why::default().and(count).and(" meshes have opacity textures"),
+            (count, ..) => {
                 Why::default().and(count).and(" meshes are cut out by textures, and drawn whole")
             }
         },
-        // The node has no textures of meshes: the host has to draw such a mesh.
-        simulated: |case| case.situation.cut_out == 0,
+        // Without a texture of the host's, only the host can draw what a texture cuts out.
+        simulated: |case| {
+            case.situation.cut_out == 0
+                && (case.situation.translucent == 0 || case.shows.translucent)
+        },
     },
     Rule {
         effect: Effect::Emission,

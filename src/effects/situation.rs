@@ -27,6 +27,10 @@ pub struct Situation {
     pub host_drawn: usize,
     /// The number of occluders that the node draws whole although a texture cuts holes into them.
     pub cut_out: usize,
+    /// The number of occluders that opacity textures cut out ([`MeshInstance::opacity`]).
+    pub textured: usize,
+    /// The number of those that let a part of the light through, because their texture has no cutoff.
+    pub translucent: usize,
     /// The number of the occluders' triangles, without those of meshes that the host draws.
     pub triangles: u64,
     /// The least and largest distance of occluders; the least is at least 1e-4 of the receivers' largest.
@@ -101,6 +105,8 @@ impl Situation {
             both: 0,
             host_drawn: 0,
             cut_out: 0,
+            textured: 0,
+            translucent: 0,
             triangles: 0,
             occluder_distances: [near, (map.far - behind).max(near)],
             receiver_distances: [nearest_receiver.max(near), shadowed.far.max(near)],
@@ -166,7 +172,10 @@ impl Situation {
     fn add(&mut self, mesh: &MeshInstance, placed: &LightBox) {
         let triangles = match mesh.geometry {
             Geometry::Buffers(buffers) => {
-                self.cut_out += usize::from(mesh.cut_out);
+                let through = mesh.opacity.map(|opacity| opacity.cutoff.is_none());
+                self.cut_out += usize::from(mesh.cut_out && through.is_none());
+                self.textured += usize::from(through.is_some());
+                self.translucent += usize::from(through == Some(true));
                 u64::from(buffers.count / 3)
             }
             Geometry::HostDrawn(_) => {

@@ -3,6 +3,7 @@
 use super::boxes::has_triangles;
 use super::check::bad;
 use crate::Error;
+use crate::graph::{Graph, Need};
 use crate::lent::{Geometry, MeshInstance, OpacityTexture, Wrap};
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
@@ -42,6 +43,15 @@ impl CutOuts {
     /// The texels that the textures of so many meshes have at least, and of this room.
     pub(super) fn all_texels(&self) -> u32 {
         self.texels.max(4 * self.meshes)
+    }
+
+    /// Declares the buffer of the meshes that are cut out, of which a frame has `count`, where there is room for any.
+    pub(super) fn declare(&self, graph: &mut Graph, count: u32, need: &Need) {
+        if self.meshes > 0 {
+            let none = Need::No(graph.because("no texture cuts out a mesh"));
+            let bytes = size_of::<CutOutRecord>() as u64 * u64::from(self.meshes);
+            graph.cut_outs(bytes, if count > 0 { need } else { &none });
+        }
     }
 
     /// Checks the room's ranges.

@@ -1,6 +1,6 @@
 //! The passes of a description, with one frame's numbers in them.
 
-use super::{CutOutRecord, Description, Space};
+use super::{Description, Space};
 use crate::RectangleLight;
 use crate::audit::passes::{self as audit, Audited};
 use crate::effects::{Effect, Verdicts};
@@ -188,6 +188,7 @@ pub(crate) fn all_passes(description: &Description, limits: Limits) -> Graph {
     let side = if description.occluder_maps.is_some() { maps.side } else { maps.largest() };
     let view = MapView { side, ..PLACEHOLDER };
     let served = vec![Served::all(view); room.most_served() as usize];
+    let texels = description.cut_outs.all_texels();
     let frame = FrameInputs {
         light: &RectangleLight::unit(),
         occluders: &served,
@@ -212,11 +213,7 @@ pub(crate) fn all_passes(description: &Description, limits: Limits) -> Graph {
         reach: None,
         cut_outs: 0,
         tree: (
-            Sizes {
-                capacity: description.capacity.triangles,
-                texels: description.cut_outs.all_texels(),
-                ..Sizes::default()
-            },
+            Sizes { texels, capacity: description.capacity.triangles, ..Sizes::default() },
             Space::default(),
         ),
     };
@@ -251,11 +248,7 @@ pub(super) fn build(
         &needs.each().map(|n| graph.need(n));
     // A hard shadow may stand in for the technique.
     let shadowed = if hard.is_yes() { hard } else { need };
-    if description.cut_outs.meshes > 0 {
-        let bytes = size_of::<CutOutRecord>() as u64 * u64::from(description.cut_outs.meshes);
-        let none = Need::No(graph.because("no texture cuts out a mesh"));
-        graph.cut_outs(bytes, if frame.cut_outs > 0 { shadowed } else { &none });
-    }
+    description.cut_outs.declare(graph, frame.cut_outs, shadowed);
     let count = frame.occluders.len();
     let side = frame.occluders[0].map.side;
     let one = graph.because("one view serves every receiver");

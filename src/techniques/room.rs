@@ -110,6 +110,8 @@ pub struct Shows {
     pub slices: Option<bool>,
     /// Whether the rays read a third depth map, of what the eye sees.
     pub eye_layer: bool,
+    /// Whether meshes that let a part of the light through cast the shadow of that part.
+    pub translucent: bool,
     /// The technique's treatment of noise.
     pub noise: Noise,
 }
@@ -134,6 +136,7 @@ impl Shows {
         self_shadowing: true,
         slices: None,
         eye_layer: false,
+        translucent: true,
         noise: Noise::None,
     };
 }

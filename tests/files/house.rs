@@ -337,6 +337,11 @@ fn a_pass_is_followed_in_few_files() {
         }
     }
     assert!(passes.len() > 50, "{} passes", passes.len());
-    let many: Vec<_> = passes.iter().filter(|(_, files)| files.len() > FILES_A_PASS).collect();
+    // What looks opacity textures up is the same in every pass, and followed once.
+    let is_once = |file: &&PathBuf| {
+        file.starts_with("glsl/cut_outs") || file.ends_with("glsl/hierarchy/cut.glsl")
+    };
+    let count = |files: &BTreeSet<PathBuf>| files.iter().filter(|file| !is_once(file)).count();
+    let many: Vec<_> = passes.iter().filter(|(_, files)| count(files) > FILES_A_PASS).collect();
     assert!(many.is_empty(), "more than {FILES_A_PASS} files:\n{many:#?}");
 }

@@ -41,7 +41,8 @@ impl Room for Settings {
     }
 
     fn shows(&self) -> Shows {
-        Shows::SOFT
+        // The gaps between its texels are filled, and with them those that let a part of the light through.
+        Shows { translucent: false, ..Shows::SOFT }
     }
 
     fn maps(&self) -> Maps {
