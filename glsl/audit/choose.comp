@@ -44,8 +44,11 @@ bool may_hide(Pyramid p, uint triangle, vec3 size)
     vec4 of_corners = start + vec4(dot(n, p.corner[0]), dot(n, p.corner[1]), dot(n, p.corner[2]), dot(n, p.corner[3]));
     float least = min(min(of_corners.x, of_corners.y), min(of_corners.z, of_corners.w));
     float most = max(max(of_corners.x, of_corners.y), max(of_corners.z, of_corners.w));
-    bool before = of_tip >= -allowed && least >= allowed;
-    bool behind = of_tip <= allowed && most <= -allowed;
+    // A tip that is as good as in the plane is on its own surface, on the side from which the viewer sees it.
+    vec3 to_viewer = frame.towards.w > 0.0 ? frame.eye.xyz - p.tip : frame.towards.xyz;
+    float side = abs(of_tip) > allowed ? of_tip : dot(n, to_viewer);
+    bool before = side >= 0.0 && least >= allowed;
+    bool behind = side <= 0.0 && most <= -allowed;
     return inside && !before && !behind;
 }
 
