@@ -137,9 +137,20 @@ impl Buffer {
     ) -> Outcome<Self> {
         let bytes: &[u8] = bytemuck::cast_slice(data);
         let mut new = Self::new(gpu, name, bytes.len() as u64, usage, MemoryLocation::CpuToGpu)?;
-        let mapped = new.allocation.mapped_slice_mut().ok_or("the buffer is not mapped")?;
-        mapped[..bytes.len()].copy_from_slice(bytes);
+        new.write(&[bytes])?;
         Ok(new)
+    }
+
+    /// Writes these bytes, one behind the other, to the buffer's start; no running frame may read it.
+    pub fn write(&mut self, parts: &[&[u8]]) -> Outcome<()> {
+        let mut left = self.allocation.mapped_slice_mut().ok_or("the buffer is not mapped")?;
+        for part in parts {
+            let (first, rest) =
+                left.split_at_mut_checked(part.len()).ok_or("the buffer is full")?;
+            first.copy_from_slice(part);
+            left = rest;
+        }
+        Ok(())
     }
 
     /// The buffer's content; no running frame may write it.
