@@ -3,11 +3,13 @@
 use crate::Outcome;
 use crate::device::Gpu;
 use crate::gbuffer::Push;
+use crate::posing::{PosingPass, Skinned};
 use crate::resources::Buffer;
 use crate::world::Object;
 use antumbra::lent::MeshBounds;
 use ash::vk;
 use glam::{DMat3, DMat4};
+use gpu_allocator::MemoryLocation;
 
 /// One vertex: what the G-buffer's pipeline reads. The node reads the positions alone, by stride.
 #[repr(C)]
@@ -28,14 +30,16 @@ pub struct Model {
     /// Red, green, blue and the role, as the mask stores it.
     pub albedo_role: [u8; 4],
     pub double_sided: bool,
-    /// Least and largest corner of the mesh, the jelly's swing included.
+    /// Least and largest corner of the mesh: the jelly's swing included, or around this frame's pose.
     pub bounds: MeshBounds,
+    /// What writes the vertices each frame; `None` where they stay.
+    pub skinned: Option<Skinned>,
     pub object: Object,
 }
 
 impl Model {
     /// Uploads an object.
-    pub fn new(gpu: &mut Gpu, object: Object) -> Outcome<Self> {
+    pub fn new(gpu: &mut Gpu, posing: &PosingPass, mut object: Object) -> Outcome<Self> {
         let mesh = &object.mesh;
         let vertices: Vec<Vertex> = mesh
             .positions
@@ -48,13 +52,22 @@ impl Model {
         let role = object.role.mask();
         let [r, g, b] = object.albedo;
         use vk::BufferUsageFlags as Usage;
+        let drawn = Usage::VERTEX_BUFFER | Usage::STORAGE_BUFFER;
+        let (vertices, skinned) = match object.skin.take() {
+            None => (Buffer::with(gpu, "vertices", &vertices, drawn)?, None),
+            Some(skin) => {
+                let bytes = size_of_val(vertices.as_slice()) as u64;
+                let usage = drawn | Usage::TRANSFER_SRC;
+                let posed = Buffer::new(gpu, "posed", bytes, usage, MemoryLocation::GpuOnly)?;
+                let rest: &[[f32; 6]] = bytemuck::cast_slice(&vertices);
+                let skinned = Skinned::new(gpu, posing, (skin, rest), &posed)?;
+                (posed, Some(skinned))
+            }
+        };
+        let mesh = &object.mesh;
         Ok(Self {
-            vertices: Buffer::with(
-                gpu,
-                "vertices",
-                &vertices,
-                Usage::VERTEX_BUFFER | Usage::STORAGE_BUFFER,
-            )?,
+            vertices,
+            skinned,
             indices: Buffer::with(
                 gpu,
                 "indices",
@@ -67,6 +80,15 @@ impl Model {
             double_sided: mesh.double_sided,
             object,
         })
+    }
+
+    /// Poses the model for the frame of a slot at a time, where it has joints; the slot's last frame must be done.
+    pub fn pose(&mut self, slot: usize, seconds: f64) -> Outcome<()> {
+        let Some(skinned) = &mut self.skinned else { return Ok(()) };
+        if let Some(bounds) = skinned.pose(slot, seconds)? {
+            self.bounds = bounds;
+        }
+        Ok(())
     }
 
     /// The model's transform at a time.
@@ -92,5 +114,8 @@ impl Model {
     pub fn destroy(self, gpu: &mut Gpu) {
         self.vertices.destroy(gpu);
         self.indices.destroy(gpu);
+        if let Some(skinned) = self.skinned {
+            skinned.destroy(gpu);
+        }
     }
 }

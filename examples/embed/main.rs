@@ -3,7 +3,7 @@
 //! `cargo run --release --example embed -- --out out/embed`
 //!
 //! No window: twelve frames of a light that goes round, resized half way, a few of them written as
-//! PNG. This file is the engine's story, in order; `shadows` is all that it does for its soft shadows;
+//! PNG; or, with `--walk`, sixty of a figure that walks, posed on the device. This file is the engine's story, in order; `shadows` is all that it does for its soft shadows;
 //! the rest is an engine in raw ash, and would be there without shadows too:
 //!
 //! ```text
@@ -11,24 +11,29 @@
 //!   resources  images, buffers, barriers               geometry   vertex and index buffers
 //!   gbuffer    draws depth, albedo, normal, mask       jelly      a mesh that moves in its shader
 //!   compose    visibility × unshadowed irradiance      frames     two frames in flight
+//!   posing     poses meshes on the device              skin       what they hang on, and their box
+//!   figure     a figure that walks
 //! ```
 
 #![allow(unsafe_code, reason = "an engine calls Vulkan")]
 
 mod compose;
 mod device;
+mod figure;
 mod files;
 mod frames;
 mod gbuffer;
 mod geometry;
 mod jelly;
+mod posing;
 #[cfg(test)]
 mod refusals;
 mod resources;
 mod shadows;
+mod skin;
 mod world;
 
-use antumbra::{BorderBarriers, LightIndex, ResourceBytes, Retired, Slot};
+use antumbra::{BorderBarriers, LightIndex, ResourceBytes, Retired, Slot, Technique};
 use ash::vk;
 use clap::Parser;
 use compose::ComposePass;
@@ -36,6 +41,7 @@ use device::Gpu;
 use frames::{FRAMES_IN_FLIGHT, FrameNotes, Frames};
 use gbuffer::{GBuffer, GBufferPass};
 use geometry::Model;
+use posing::PosingPass;
 use resources::{COLOR_DRAWN, COMPOSE_READS, COMPOSE_WRITES, COPY_READS, Image, barrier};
 use shadows::Shadows;
 use std::path::PathBuf;
@@ -53,6 +59,9 @@ struct Options {
     /// A glTF scene with an area light, instead of the world that this example brings
     #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,
+    /// A figure that walks, posed on the device, instead of that world
+    #[arg(long, conflicts_with = "scene")]
+    walk: bool,
     /// The folder for the pictures, and visibility.exr and depth.exr of the last frame
     #[arg(long, value_name = "DIR", default_value = "out/embed")]
     out: PathBuf,
@@ -60,7 +69,7 @@ struct Options {
     #[arg(long, value_name = "WxH", default_value = "640x480", value_parser = parse_size)]
     size: [u32; 2],
     /// How many frames
-    #[arg(long, value_name = "N", default_value_t = 12)]
+    #[arg(long, value_name = "N", default_value_t = 12, default_value_if("walk", "true", "60"))]
     frames: u64,
     /// How many times everything is resized on the way; with more than one, the last is back to --size
     #[arg(long, value_name = "N", default_value_t = 1)]
@@ -113,21 +122,23 @@ fn run(options: &Options) -> Outcome<()> {
     // ---- Set up -----------------------------------------------------------------------------
     let mut world = match &options.scene {
         Some(path) => World::from_file(path, options.size)?,
+        None if options.walk => World::walk()?,
         None => World::built_in(),
     };
     let mut gpu = Gpu::new(options.validate)?;
+    let posing_pass = PosingPass::new(&gpu)?;
     let gbuffer_pass = GBufferPass::new(&gpu)?;
     let compose_pass = ComposePass::new(&gpu)?;
     let mut frames = Frames::new(&gpu)?;
-    let models = std::mem::take(&mut world.objects)
+    let mut models = std::mem::take(&mut world.objects)
         .into_iter()
-        .map(|object| Model::new(&mut gpu, object))
+        .map(|object| Model::new(&mut gpu, &posing_pass, object))
         .collect::<Outcome<Vec<_>>>()?;
     let mut extent = options.size;
     let mut targets = make_targets(&gbuffer_pass, &mut gpu, extent)?;
     let border_barriers =
         if options.host_barriers { BorderBarriers::Host } else { BorderBarriers::Node };
-    let mut shadows = Shadows::new(&mut gpu, extent, border_barriers)?;
+    let mut shadows = Shadows::new(&mut gpu, extent, Technique::default(), border_barriers)?;
 
     println!("{}", gpu.name);
     println!("frame  size      plan µs  record µs  passes  GPU ms  node MB");
@@ -161,8 +172,12 @@ fn run(options: &Options) -> Outcome<()> {
             });
         }
 
-        // ---- Plan ---------------------------------------------------------------------------
+        // ---- Pose ---------------------------------------------------------------------------
+        // The processor says where joints are and how large the box around them is; the device does the rest.
         let seconds = number as f64 / 12.0;
+        models.iter_mut().try_for_each(|model| model.pose(slot, seconds))?;
+
+        // ---- Plan ---------------------------------------------------------------------------
         let last = number + 1 == options.frames;
         // In the last frame the light looks at the sky: the plan is one pass then.
         let light = world.light(seconds, number > 0 && last)?;
@@ -175,17 +190,19 @@ fn run(options: &Options) -> Outcome<()> {
             gbuffer,
             seconds,
             slot,
+            revision: world.revision(&models),
         };
         let started = Instant::now();
-        let plan = shadows.plan(&seen)?;
+        shadows.plan(&seen)?;
         let plan_time = started.elapsed();
 
         // ---- Record -------------------------------------------------------------------------
         let copies = if last { 3 } else { 1 };
         let cmd = frames.begin(&mut gpu, slot, extent, copies)?;
+        posing_pass.record(&gpu, cmd, slot, &models);
         gbuffer_pass.record(&gpu, cmd, &seen);
         let started = Instant::now();
-        shadows.record(&gpu, cmd, &plan, &seen)?;
+        shadows.record(&gpu, cmd, &seen)?;
         let record_time = started.elapsed();
 
         // What the node was lent, and visibility, are ready to be fetched, as the frame says. The
@@ -211,7 +228,7 @@ fn run(options: &Options) -> Outcome<()> {
             extent,
             plan: plan_time,
             record: record_time,
-            passes: plan.plan().steps.len(),
+            passes: shadows.planned().map_or(0, |plan| plan.plan().steps.len()),
         };
         frames.submit(&gpu, slot, &out[..copies], notes)?;
     }
@@ -236,6 +253,7 @@ fn run(options: &Options) -> Outcome<()> {
     frames.destroy(&mut gpu);
     compose_pass.destroy(&gpu);
     gbuffer_pass.destroy(&gpu);
+    posing_pass.destroy(&gpu);
     match gpu.destroy() {
         0 => println!("{resizes} resizes; all memory was given back"),
         bytes => return Err(format!("{bytes} bytes were never given back").into()),

@@ -10,8 +10,8 @@ use crate::resources::{COLOR_DRAWN, COMPOSE_READS, DEPTH_DRAWN, Image};
 use crate::world::Seen;
 use antumbra::graph::Scope;
 use antumbra::{
-    BorderBarriers, Description, Error, Frame, FramePlan, Geometry, Host, HostImage, MeshBuffers,
-    MeshInstance, ShadowNode, Slot, Visibility,
+    BorderBarriers, Description, Error, Frame, FramePlan, FramePlans, Geometry, Host, HostImage,
+    MeshBuffers, MeshInstance, ShadowNode, Slot, Technique, Visibility,
 };
 use ash::vk;
 
@@ -20,10 +20,18 @@ pub struct Shadows {
     pub node: ShadowNode,
     jelly: JellyPipelines,
     border_barriers: BorderBarriers,
+    /// The meshes and the plan of the last frame, whose memory the next one takes.
+    meshes: Vec<MeshInstance>,
+    plans: FramePlans,
 }
 
 impl Shadows {
-    pub fn new(gpu: &mut Gpu, extent: [u32; 2], border_barriers: BorderBarriers) -> Outcome<Self> {
+    pub fn new(
+        gpu: &mut Gpu,
+        extent: [u32; 2],
+        technique: Technique,
+        border_barriers: BorderBarriers,
+    ) -> Outcome<Self> {
         // Lend the device. The node never creates or submits anything behind the engine's back.
         // SAFETY: the handles belong together and live until the engine's end, behind the node; what
         // each frame lends is alive, in the said state, until the frame's fence is signalled; a slot
@@ -42,38 +50,44 @@ impl Shadows {
             mask_format: Some(gbuffer::MASK),
             normals: Some(gbuffer::NORMALS),
             position_strides: vec![STRIDE],
+            technique,
             ..Description::new(extent)
         };
         // Its memory comes from the engine's allocator. A device that it cannot run on is refused with
         // all that is missing, in one sentence.
         let node = ShadowNode::new(host, &mut gpu.allocator, description)?;
         let jelly = JellyPipelines::new(gpu, &node)?;
-        Ok(Self { node, jelly, border_barriers })
+        let (meshes, plans) = (Vec::new(), FramePlans::new());
+        Ok(Self { node, jelly, border_barriers, meshes, plans })
     }
 
     /// Plans the node's work for this frame.
-    pub fn plan(&self, seen: &Seen) -> Result<FramePlan, Error> {
+    pub fn plan(&mut self, seen: &Seen) -> Result<(), Error> {
         let meshes = seen.models.iter().zip(0..).map(|(model, n)| mesh(model, n, seen.seconds));
-        let meshes: Vec<_> = meshes.collect();
+        self.meshes.clear();
+        self.meshes.extend(meshes);
         let depth = lend(&seen.gbuffer.depth, DEPTH_DRAWN);
         let slot = Slot(seen.slot as u32);
-        self.node.plan(&Frame {
+        let frame = Frame {
             mask: Some(lend(&seen.gbuffer.mask, COLOR_DRAWN)),
             normals: Some(lend(&seen.gbuffer.plane, COLOR_DRAWN)),
             visibility: Visibility::Own { before: COMPOSE_READS, after: COMPOSE_READS },
             border_barriers: self.border_barriers,
-            ..Frame::new(slot, *seen.light, seen.clip_from_world.inverse(), &meshes, depth)
-        })
+            // While it stays, so do the node's maps: it must change with every pose.
+            revision: seen.revision,
+            ..Frame::new(slot, *seen.light, seen.clip_from_world.inverse(), &self.meshes, depth)
+        };
+        self.node.plan_all(&[frame], &mut self.plans)
+    }
+
+    /// The plan of this frame.
+    pub fn planned(&self) -> Option<&FramePlan> {
+        self.plans.all().first()
     }
 
     /// Records it, between the G-buffer and whoever reads visibility.
-    pub fn record(
-        &mut self,
-        gpu: &Gpu,
-        cmd: vk::CommandBuffer,
-        plan: &FramePlan,
-        seen: &Seen,
-    ) -> Result<(), Error> {
+    pub fn record(&mut self, gpu: &Gpu, cmd: vk::CommandBuffer, seen: &Seen) -> Result<(), Error> {
+        let Some(plan) = self.plans.all().first() else { return Ok(()) };
         // Only where the engine chose to record the barriers itself.
         let host = self.border_barriers == BorderBarriers::Host;
         let place = |barrier| {

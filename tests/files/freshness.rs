@@ -186,9 +186,13 @@ fn a_shader_that_does_not_compile_says_where() {
 /// The hosts bring their own shaders, compiled beside their sources.
 #[test]
 fn the_hosts_modules_are_fresh_too() {
-    for folder in ["examples/embed/shaders", "examples/embed_vk_graph/src/shaders"] {
+    let three = "vertex, fragment and compose";
+    for (folder, count, names) in [
+        ("examples/embed/shaders", 4, "vertex, fragment, compose and posing"),
+        ("examples/embed_vk_graph/src/shaders", 3, three),
+    ] {
         let path = glsl_root().join("..").join(folder);
-        assert_eq!(check_beside(&path), 3, "{folder}: vertex, fragment and compose");
+        assert_eq!(check_beside(&path), count, "{folder}: {names}");
     }
 }
 
