@@ -32,7 +32,7 @@ struct Slot {
 }
 
 /// Bytes of an image of a size, 4 a pixel.
-fn bytes_of([width, height]: [u32; 2]) -> usize {
+pub fn bytes_of([width, height]: [u32; 2]) -> usize {
     width as usize * height as usize * 4
 }
 

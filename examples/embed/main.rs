@@ -31,6 +31,8 @@ mod refusals;
 mod resources;
 mod shadows;
 mod skin;
+#[cfg(test)]
+mod walk;
 mod world;
 
 use antumbra::{BorderBarriers, LightIndex, ResourceBytes, Retired, Slot, Technique};

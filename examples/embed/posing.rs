@@ -40,7 +40,7 @@ pub struct PosingPass {
 
 /// A skin on the device, and the pose that it has there.
 pub struct Skinned {
-    skin: Skin,
+    pub skin: Skin,
     push: Push,
     /// Vertices at rest, influences and targets.
     inputs: [Buffer; 3],
@@ -49,7 +49,7 @@ pub struct Skinned {
     pool: vk::DescriptorPool,
     sets: Vec<vk::DescriptorSet>,
     /// The pose that the vertex buffer has once the last recorded frame is done, and the next one.
-    pose: Pose,
+    pub pose: Pose,
     next: Pose,
     /// Counts the poses that differed from the one before: 0 before the first.
     revision: u64,
@@ -223,7 +223,8 @@ impl Skinned {
             return Ok(None);
         }
         self.revision += 1;
-        self.pose.clone_from(&self.next);
+        self.pose.joints.copy_from_slice(&self.next.joints);
+        self.pose.weights.copy_from_slice(&self.next.weights);
         self.poses[slot].write(&[
             bytemuck::cast_slice(&self.pose.joints),
             bytemuck::cast_slice(&self.pose.weights),

@@ -87,8 +87,8 @@ impl Skin {
         if hangs.len() != vertices {
             return Err(format!("{} of {vertices} vertices hang on joints", hangs.len()).into());
         }
-        for (nth, of) in targets.iter().map(Vec::len).enumerate().filter(|(_, of)| *of != vertices)
-        {
+        if let Some(nth) = targets.iter().position(|of| of.len() != vertices) {
+            let of = targets[nth].len();
             return Err(format!("target {nth} moves {of} of {vertices} vertices").into());
         }
         let most = hangs.iter().map(Vec::len).max().unwrap_or(0);

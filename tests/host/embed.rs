@@ -1,6 +1,7 @@
 //! The embed example: an engine of its own, under the validation layer, resized half way.
 
 use antumbra_tests::example::{build_example, folder};
+use antumbra_tests::layer::{Checks, run};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
@@ -35,4 +36,35 @@ fn node_barriers_and_host_barriers_give_the_same_pictures() {
     let host = pictures(&program, "embed-host", &["--host-barriers"]);
     assert!(node.len() >= 2, "a picture before the resize and one behind it");
     assert!(node == host, "the pictures differ");
+}
+
+/// A figure walks for sixty frames through a resize, posed on the device: the layer, which looks at hazards between the
+/// frames in flight too, has nothing to say, and the pictures do not depend on who places the border's barriers.
+#[test]
+fn a_figure_walks_for_sixty_frames() {
+    let program = build_example("embed");
+    let walk = |name: &str, options: &[&str]| {
+        let out = folder(name);
+        let path = out.to_string_lossy();
+        let arguments = [&["--walk", "--size", "200x150", "--out", &path], options].concat();
+        let walked = run(&program, &arguments, Checks::Submits.if_validating());
+        assert!(walked.ok && walked.messages.is_empty(), "{walked:?}");
+        assert!(walked.said.contains("\n   59  "), "{}", walked.said);
+        let last = std::fs::read(out.join("frame_59.png")).unwrap();
+        let visibility = std::fs::read(out.join("visibility.exr")).unwrap();
+        std::fs::remove_dir_all(out).unwrap();
+        (last, visibility)
+    };
+    let node = walk("embed-walk", &[]);
+    let host = walk("embed-walk-host", &["--host-barriers"]);
+    assert!(node == host, "the pictures differ");
+}
+
+#[test]
+fn a_walk_is_not_a_scene_of_a_file() {
+    let program = build_example("embed");
+    let output = Command::new(program).args(["--walk", "--scene", "a.glb"]).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(!output.status.success() && said.contains("--walk"), "{said}");
+    assert!(said.contains("--scene"), "{said}");
 }
