@@ -41,10 +41,11 @@ fn truth(vertices: &[[f32; 6]]) -> Truth {
 
 /// The mean error over shadow and penumbra, in percent.
 fn error(truth: &Truth, shown: &Shown) -> f64 {
-    // A pixel on an edge may go to either triangle: compared are those at which the engine has drawn the traced one.
+    // A pixel on an edge may go to either triangle: compared are those at which the engine has drawn the traced one. A driver
+    // moves corners by up to a sixteenth of a pixel, which is 3 mm of the ground, a thousandth of its distance and depth.
     let pixels = truth.depth.iter().zip(&shown.depth);
     let same: Vec<bool> =
-        pixels.map(|(own, depth)| (own - f64::from(*depth)).abs() < 1e-4 * own).collect();
+        pixels.map(|(own, depth)| (own - f64::from(*depth)).abs() < 2e-3 * own).collect();
     let drawn = shown.depth.iter().filter(|depth| **depth > 0.0).count();
     let agree = same.iter().filter(|same| **same).count();
     assert!(drawn > 5_000 && 100 * agree > 98 * drawn, "{agree} of {drawn} pixels");
@@ -57,8 +58,8 @@ const TIMES: [f64; 4] = [0.0, 1.5, 3.0, 4.5];
 
 /// Each technique errs at the walking figure as at the figure at rest in the same place: the device poses the vertices of
 /// the one and of the other, and the node knows of neither how it came about. What differs is the shape of the shadow, in
-/// which arms and legs are apart: by up to 1.22 times the error of a frame as measured at twelve of them, and 1.08 times
-/// in the mean. A third more than at rest is allowed for a frame, and a fifth for the mean.
+/// which arms and legs are apart: as measured by up to 1.27 times the error of a frame, and 1.11 times in the mean. A third
+/// more than at rest is allowed for a frame, and a fifth for the mean.
 ///
 /// An engine whose revision stays has the shadow of an earlier pose, which shows; that of the frame before adds no more than
 /// 0.9 points, so it is bits that tell whether a shadow is stale (`no_shadow_is_stale`).
