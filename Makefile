@@ -49,7 +49,8 @@ programs := $(patsubst tests/%/main.rs,%,$(wildcard tests/*/main.rs)) \
     $(basename $(notdir $(wildcard benches/tests/*.rs benches/*/tests/*.rs)))
 # Where one driver is named, no other need be there.
 test_once := $(CARGO) test --workspace --lib $(patsubst %,--test %,$(filter-out $(if $(ANTUMBRA_DRIVER),two_drivers),$(once)))
-# The embed example's own tests are what the node says to an engine that gets something wrong.
+# The embed example's own tests are what the node says to an engine that gets something wrong, and the walk of a figure that
+# an engine poses on the device.
 test_on_device := $(CARGO) test --workspace $(patsubst %,--test %,$(filter-out $(once),$(programs))) --example embed
 # Cargo must not look for the job server of the make above.
 without_make := env -u MAKEFLAGS -u MFLAGS

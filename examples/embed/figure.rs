@@ -9,7 +9,7 @@ use std::f64::consts::{PI, TAU};
 const HIPS: usize = 0;
 const CHEST: usize = 1;
 const HEAD: usize = 2;
-/// Those of the left side; the right side's follow each.
+// The left side's joints: that of the right side is the next of each.
 const ARM: usize = 3;
 const FOREARM: usize = 5;
 const THIGH: usize = 7;
@@ -38,7 +38,7 @@ const SKELETON: [(usize, [f64; 3]); 13] = [
 const SOLE: f64 = 0.045;
 const FOOT_ENDS: [[f64; 3]; 2] = [[0.1, SOLE, -0.05], [0.1, SOLE, 0.14]];
 
-/// Walking: cycles of two steps a second, and metres a second.
+/// The walk's cycles of two steps each, and its metres, a second.
 const CYCLES: f64 = 0.55;
 const SPEED: f64 = 0.8;
 

@@ -15,8 +15,8 @@ use antumbra::lent::MeshBounds;
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 
-/// Buffers of `posing.comp`: rest, influences, targets, pose, posed.
-const BINDINGS: usize = 5;
+/// Buffers of `posing.comp`: rest, influences, pose, posed.
+const BINDINGS: usize = 4;
 
 /// Vertices of a workgroup.
 const GROUP: u32 = 64;
@@ -42,8 +42,8 @@ pub struct PosingPass {
 pub struct Skinned {
     pub skin: Skin,
     push: Push,
-    /// Vertices at rest, influences and targets.
-    inputs: [Buffer; 3],
+    /// Vertices at rest with what targets add to them, and influences.
+    inputs: [Buffer; 2],
     /// The pose of each frame in flight, which the processor writes.
     poses: Vec<Buffer>,
     pool: vk::DescriptorPool,
@@ -60,7 +60,7 @@ pub struct Skinned {
 impl PosingPass {
     pub fn new(gpu: &Gpu) -> Outcome<Self> {
         let device = &gpu.device;
-        let bindings = [0, 1, 2, 3, 4].map(|binding| {
+        let bindings = [0, 1, 2, 3].map(|binding| {
             vk::DescriptorSetLayoutBinding::default()
                 .binding(binding)
                 .descriptor_type(vk::DescriptorType::STORAGE_BUFFER)
@@ -156,14 +156,12 @@ impl Skinned {
         posed: &Buffer,
     ) -> Outcome<Self> {
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
-        let mut targets: Vec<[f32; 3]> = skin.targets.iter().flatten().flatten().copied().collect();
-        if targets.is_empty() {
-            targets.push([0.0; 3]); // no buffer is empty
-        }
+        let added = skin.targets.iter().flatten();
+        let added = added.map(|&[[x, y, z], [u, v, w]]| [x, y, z, u, v, w]);
+        let vertices: Vec<[f32; 6]> = rest.iter().copied().chain(added).collect();
         let inputs = [
-            Buffer::with(gpu, "rest", rest, storage)?,
+            Buffer::with(gpu, "rest", &vertices, storage)?,
             Buffer::with(gpu, "influences", &skin.influences, storage)?,
-            Buffer::with(gpu, "targets", &targets, storage)?,
         ];
         let pose = skin.rest();
         let bytes = (16 * (3 * pose.joints.len() + pose.weights.len().div_ceil(4))) as u64;
@@ -186,7 +184,7 @@ impl Skinned {
         // SAFETY: the pool is as large as these sets.
         let sets = unsafe { gpu.device.allocate_descriptor_sets(&allocate) }?;
         for (&set, of_slot) in sets.iter().zip(&poses) {
-            let all = [&inputs[0], &inputs[1], &inputs[2], of_slot, posed];
+            let all = [&inputs[0], &inputs[1], of_slot, posed];
             let infos = all.map(|buffer| {
                 [vk::DescriptorBufferInfo::default().buffer(buffer.raw).range(vk::WHOLE_SIZE)]
             });

@@ -10,14 +10,13 @@ struct Influence {
     float weight; // those of one vertex add up to 1
 };
 
-// A vertex is six floats, here and in the vertex buffers that are drawn: its position, then its normal.
+// A vertex is six floats, here and in the vertex buffers that are drawn: its position, then its normal. Behind all vertices
+// at rest follows what each morph target adds to them. (Every device has the four storage buffers of this pass.)
 layout(std430, set = 0, binding = 0) readonly buffer Rest { float rest[]; };
 layout(std430, set = 0, binding = 1) readonly buffer Influences { Influence influences[]; };
-// What each morph target adds, six floats a vertex, target behind target.
-layout(std430, set = 0, binding = 2) readonly buffer Targets { float targets[]; };
 // Three rows of each joint's matrix, from the rest pose to this frame's, then the targets' weights, four a vector.
-layout(std430, set = 0, binding = 3) readonly buffer Pose { vec4 pose[]; };
-layout(std430, set = 0, binding = 4) writeonly buffer Posed { float posed[]; };
+layout(std430, set = 0, binding = 2) readonly buffer Pose { vec4 pose[]; };
+layout(std430, set = 0, binding = 3) writeonly buffer Posed { float posed[]; };
 
 layout(push_constant) uniform Push {
     uint vertices;
@@ -37,9 +36,9 @@ void main()
     vec3 normal = vec3(rest[at + 3], rest[at + 4], rest[at + 5]);
     for (uint target = 0; target < push.targets; ++target) {
         float weight = pose[3 * push.joints + target / 4][target % 4];
-        uint from = 6 * push.vertices * target + at;
-        position += weight * vec3(targets[from], targets[from + 1], targets[from + 2]);
-        normal += weight * vec3(targets[from + 3], targets[from + 4], targets[from + 5]);
+        uint added = 6 * push.vertices * (target + 1) + at;
+        position += weight * vec3(rest[added], rest[added + 1], rest[added + 2]);
+        normal += weight * vec3(rest[added + 3], rest[added + 4], rest[added + 5]);
     }
 
     vec4 rows[3] = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));
