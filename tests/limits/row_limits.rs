@@ -112,9 +112,14 @@ fn modules(pass: &Pass) -> Vec<antumbra::shaders::Module> {
     match pass.work {
         Work::Dispatch { shader, .. }
         | Work::Indirect { shader, .. }
-        | Work::EachMesh { shader } => vec![shader],
-        Work::Constants { .. } | Work::FrameNumber => Vec::new(),
-        Work::Raster { vertex, fragment, .. } => std::iter::once(vertex).chain(fragment).collect(),
+        | Work::EachMesh { shader }
+        | Work::EachCutOut { shader, .. } => vec![shader],
+        Work::Constants { .. } | Work::FrameNumber | Work::CutOuts => Vec::new(),
+        Work::Raster { vertex, fragment, cut, .. } => {
+            // The pipelines for cut-out meshes are there where the pass reads these.
+            let cut = cut.filter(|_| pass.uses.iter().any(|u| u.binding == Some(15)));
+            std::iter::once(vertex).chain(fragment).chain(cut.into_iter().flatten()).collect()
+        }
     }
 }
 

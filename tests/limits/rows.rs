@@ -1,9 +1,10 @@
 //! Every row of every graph against its SPIR-V: bindings, push constants, workgroups.
 
+use antumbra::frame::CutOuts;
 use antumbra::graph::{Draw, Graph, INVOCATIONS, PUSH_BYTES, Pass, Work};
 use antumbra::shaders::Module;
 use antumbra::stages::depth_layers::DepthPush;
-use antumbra::stages::hierarchy::MeshPush;
+use antumbra::stages::hierarchy::{CutOutPush, MeshPush};
 use antumbra::{Description, LightTexture, frame};
 use antumbra_tests::example::root;
 use antumbra_tests::headers;
@@ -12,6 +13,7 @@ use antumbra_tests::permutations;
 use antumbra_tests::reflect::{Binding, Interface, reflect};
 use ash::vk;
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Mutex;
 
 /// One description for every set of rows there is.
 fn descriptions() -> Vec<(String, Description)> {
@@ -71,12 +73,17 @@ fn descriptions() -> Vec<(String, Description)> {
                 lent_visibility: occluder_maps.is_some(),
                 ..Description::new([641, 479])
             };
-            all.push((
-                format!(
-                    "{words}, mask {mask_format:?}, maps {occluder_maps:?}, texture {texture:?}"
-                ),
-                description,
-            ));
+            let name = format!(
+                "{words}, mask {mask_format:?}, maps {occluder_maps:?}, texture {texture:?}"
+            );
+            if occluder_maps.is_none() && mask_format.is_none() {
+                let cut_outs = CutOuts { meshes: 3, texels: 1000 };
+                all.push((
+                    format!("{name}, cut-outs"),
+                    Description { cut_outs, ..description.clone() },
+                ));
+            }
+            all.push((name, description));
         }
     }
     for words in ["technique=hard", "technique=pcss taps=8"] {
@@ -84,6 +91,11 @@ fn descriptions() -> Vec<(String, Description)> {
         let mask_format = Some(vk::Format::R8_UNORM);
         let description =
             Description { technique: settings(words), mask_format, audit: 1000, ..plain };
+        let cut_outs = CutOuts { meshes: 3, texels: 1000 };
+        all.push((
+            format!("{words}, audited, cut-outs"),
+            Description { cut_outs, ..description.clone() },
+        ));
         all.push((format!("{words}, audited"), description));
     }
     all
@@ -97,14 +109,35 @@ fn modules(pass: &Pass) -> Vec<Module> {
     match pass.work {
         Work::Dispatch { shader, .. }
         | Work::Indirect { shader, .. }
-        | Work::EachMesh { shader } => vec![shader],
-        Work::Constants { .. } | Work::FrameNumber => Vec::new(),
-        Work::Raster { vertex, fragment, .. } => std::iter::once(vertex).chain(fragment).collect(),
+        | Work::EachMesh { shader }
+        | Work::EachCutOut { shader, .. } => vec![shader],
+        Work::Constants { .. } | Work::FrameNumber | Work::CutOuts => Vec::new(),
+        Work::Raster { vertex, fragment, cut, .. } => {
+            // The pipelines for cut-out meshes are there where the pass reads these.
+            let cut = cut.filter(|_| pass.uses.iter().any(|u| u.binding == Some(15)));
+            std::iter::once(vertex).chain(fragment).chain(cut.into_iter().flatten()).collect()
+        }
     }
 }
 
+/// A module's interface, reflected once.
 fn interface(module: Module) -> Interface {
-    reflect(module.spirv).unwrap_or_else(|e| panic!("{}: {e}", module.path))
+    static KNOWN: Mutex<BTreeMap<&str, Interface>> = Mutex::new(BTreeMap::new());
+    let mut known = KNOWN.lock().unwrap();
+    let reflect = || reflect(module.spirv).unwrap_or_else(|e| panic!("{}: {e}", module.path));
+    known.entry(module.path).or_insert_with(reflect).clone()
+}
+
+/// What set 1 of a pass holds of each mesh: positions and indices; or texture coordinates, an opacity texture and indices.
+fn set_of_mesh(pass: &Pass) -> &'static [vk::DescriptorType] {
+    const BUFFER: vk::DescriptorType = vk::DescriptorType::STORAGE_BUFFER;
+    match pass.work {
+        Work::EachMesh { .. } => &[BUFFER; 2],
+        Work::EachCutOut { .. } => &[BUFFER, vk::DescriptorType::SAMPLED_IMAGE, BUFFER],
+        // The indices are for compute shaders alone.
+        Work::Raster { cut: Some(_), .. } => &[BUFFER, vk::DescriptorType::SAMPLED_IMAGE],
+        _ => &[],
+    }
 }
 
 /// What a row and its shaders disagree on.
@@ -116,20 +149,16 @@ fn disagreements(graph: &Graph, pass: &Pass) -> Vec<String> {
             pass.push.bytes().len().max(size_of::<DepthPush>())
         }
         Work::EachMesh { .. } => size_of::<MeshPush>(),
+        Work::EachCutOut { .. } => size_of::<CutOutPush>(),
         _ => pass.push.bytes().len(),
     };
     for module in modules(pass) {
         let shader = interface(module);
-        // Set 1 has the host's positions and indices.
-        let of_mesh = |b: &&Binding| matches!(pass.work, Work::EachMesh { .. }) && b.set == 1;
-        let buffers = vk::DescriptorType::STORAGE_BUFFER;
-        if shader
-            .bindings
-            .iter()
-            .filter(of_mesh)
-            .any(|b| b.binding > 1 || b.writes || b.kind != buffers)
-        {
-            found.push(format!("{}: set 1 is no mesh", module.path));
+        let of_mesh = |b: &&Binding| b.set == 1 && !set_of_mesh(pass).is_empty();
+        for b in shader.bindings.iter().filter(of_mesh) {
+            if b.writes || set_of_mesh(pass).get(b.binding as usize) != Some(&b.kind) {
+                found.push(format!("{}: set 1 is no mesh", module.path));
+            }
         }
         for b in shader.bindings.iter().filter(|b| !of_mesh(b)) {
             seen.insert(b.binding);
@@ -190,6 +219,7 @@ fn disagreements(graph: &Graph, pass: &Pass) -> Vec<String> {
         (vk::DescriptorType::SAMPLED_IMAGE, 16),
     ] {
         let bound = pass.uses.iter().filter(|u| u.access.descriptor() == Some(kind)).count();
+        let bound = bound + set_of_mesh(pass).iter().filter(|of_mesh| **of_mesh == kind).count();
         let targets =
             pass.uses.iter().filter(|u| u.access == antumbra::graph::Access::ColorTarget).count();
         if targets > antumbra::graph::COLOR_ATTACHMENTS {
