@@ -2,8 +2,9 @@
 
 use allocation_counter::measure;
 use antumbra::LightIndex;
-use antumbra::frame::{Limits, plan, plan_all};
+use antumbra::frame::{CutOuts, Limits, plan, plan_all};
 use antumbra::graph::{MeshList, Scope};
+use antumbra::lent::OpacityTexture;
 use antumbra::scene::{Role, Scene, generate};
 use antumbra::truth::{Exact, PolygonLight, Receiver};
 use antumbra::{
@@ -78,12 +79,20 @@ fn planning_takes_no_memory_after_the_first_frame() {
         ("technique=traced", 0),
     ] {
         let plain = Description::new([64; 2]);
-        let description = Description { technique: settings(words), lights: 4, audit, ..plain };
+        let cut_outs = CutOuts { meshes: 8, texels: 100 };
+        let technique = settings(words);
+        let description = Description { technique, lights: 4, audit, cut_outs, ..plain };
         for stays in [false, true] {
             let mut plans = FramePlans::new();
             // To and fro: where more meshes matter than ever before, their list grows.
             for (nth, moment) in [2, 1, 0, 1, 2, 1, 0].into_iter().enumerate() {
-                let meshes = meshes(if stays { 0.0 } else { 0.05 * f64::from(moment) });
+                let mut meshes = meshes(if stays { 0.0 } else { 0.05 * f64::from(moment) });
+                // Every fourth cube is cut out, by two textures in turn.
+                for (nth, mesh) in meshes.iter_mut().enumerate().skip(1).step_by(4) {
+                    let view = vk::ImageView::from_raw(10 + nth as u64 % 8);
+                    let coordinates = vk::Buffer::from_raw(5);
+                    mesh.opacity = Some(OpacityTexture::new(view, [16, 9], coordinates));
+                }
                 // The weights of round lights are made anew for each plan of traced.
                 let with_sun = !words.contains("traced");
                 let frames = frames(&meshes, moment, stays, with_sun);
