@@ -1,4 +1,4 @@
-// Entry of the pass audit.trace (src/audit/passes.rs).
+// Entry of the passes audit.trace and audit.trace_cut (src/audit/passes.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require

@@ -1,4 +1,4 @@
-// Entry of the pass traced.cover (src/techniques/traced/passes.rs).
+// Entry of the passes traced.cover and traced.cover_cut (src/techniques/traced/passes.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require

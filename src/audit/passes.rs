@@ -183,16 +183,16 @@ pub(crate) fn declare(
         write(6, parts),
         Use::fixed(arguments, Access::Indirect),
     ]);
-    let shader = match tree.cut_outs {
-        None => module!("audit/trace.comp"),
-        Some(cut) => {
-            uses.push(Use::bound(7, cut.places, Access::SampledCompute));
-            uses.push(Use::bound(8, cut.opacities, Access::SampledCompute));
-            module!("audit/trace_cut.comp")
-        }
+    let [whole, cut] = tree.needs(graph, need);
+    let mut trace = |name, shader, uses, need| {
+        let work = Work::Indirect { shader, arguments, offset: 0 };
+        graph.push(Pass { name, uses, push: light, work, need });
     };
-    let work = Work::Indirect { shader, arguments, offset: 0 };
-    graph.push(Pass { name: "audit.trace", uses, push: light, work, need: *need });
+    trace("audit.trace", module!("audit/trace.comp"), uses.clone(), whole);
+    if let Some(cut_outs) = tree.cut_outs {
+        uses.extend(cut_outs.bound(7));
+        trace("audit.trace_cut", module!("audit/trace_cut.comp"), uses, cut);
+    }
     let push = Push::new(&ListPush { candidates, blocks: pixel_blocks, pixels });
     let (name, shader) = ("audit.errors", module!("audit/errors.comp"));
     let uses = smallvec![read(0, listed), read(1, parts), write(2, errors)];

@@ -193,13 +193,40 @@ pub struct Hierarchy {
     pub cut_outs: Option<CutOuts>,
 }
 
+impl Hierarchy {
+    /// The needs of a pass that looks no opacity textures up, and of one that does and takes its place where a frame has
+    /// any; both where the frame is none.
+    pub(crate) fn needs(&self, graph: &mut Graph, need: &Need) -> [Need; 2] {
+        match self.cut_outs.map(|cut_outs| cut_outs.there) {
+            Some(Some(true)) if need.is_yes() => {
+                let why = "textures cut out meshes that block, and are looked up by another pass";
+                [Need::No(graph.because(why)), *need]
+            }
+            Some(Some(false)) if need.is_yes() => {
+                [*need, Need::No(graph.because("no texture cuts out a mesh that blocks"))]
+            }
+            _ => [*need; 2],
+        }
+    }
+}
+
 /// What textures say of a hierarchy's triangles (`hierarchy/cut.glsl`).
 #[derive(Clone, Copy, Debug)]
 pub struct CutOuts {
+    /// Whether the frame has any; `None` for no frame.
+    there: Option<bool>,
     /// The place in its texture and the texture of each triangle that one cuts out: R32G32B32A32_SFLOAT, three texels each.
     pub places: ResourceId,
     /// The opacities of all textures, four to a texel: R32_UINT.
     pub opacities: ResourceId,
+}
+
+impl CutOuts {
+    /// What a pass binds from a binding on.
+    pub(crate) fn bound(&self, first: u8) -> [Use; 2] {
+        let of = |nth, id| Use::bound(first + nth, id, Access::SampledCompute);
+        [of(0, self.places), of(1, self.opacities)]
+    }
 }
 
 /// The workgroups of 64 invocations for a number of them, as `common/lists.glsl` numbers them.
@@ -242,11 +269,8 @@ fn image(graph: &mut Graph, name: &'static str, format: vk::Format, texels: u32)
 /// Adds the passes that copy opacity textures, and write where triangles lie in them.
 fn cut_outs(graph: &mut Graph, sizes: Sizes, places: ResourceId, need: &Need) -> CutOuts {
     let none = graph.because("no texture cuts out a mesh that blocks");
-    let need = if sizes.cut_outs == 0 && need.is_yes() && sizes.triangles > 0 {
-        &Need::No(none)
-    } else {
-        need
-    };
+    let there = (sizes.triangles > 0).then_some(sizes.cut_outs > 0);
+    let need = if there == Some(false) && need.is_yes() { &Need::No(none) } else { need };
     let format = vk::Format::R32_UINT;
     let opacities = image(graph, "hierarchy.opacities", format, sizes.texels.div_ceil(4));
     let format = vk::Format::R32G32B32A32_SFLOAT;
@@ -269,7 +293,7 @@ fn cut_outs(graph: &mut Graph, sizes: Sizes, places: ResourceId, need: &Need) ->
         work: Work::EachCutOut { shader: module!("hierarchy/cut_outs.comp"), textures: false },
         need: *need,
     });
-    CutOuts { places: cut, opacities }
+    CutOuts { there, places: cut, opacities }
 }
 
 /// Adds the passes that build the hierarchy, and those that fit it to where the meshes are.

@@ -55,12 +55,13 @@ pub struct EmissionPush {
 struct Shaders {
     tiles: Module,
     gather: Module,
-    cover: Module,
-    rays: Module,
+    /// Without opacity textures that cut out triangles, and with them.
+    cover: [Module; 2],
+    rays: [Module; 2],
 }
 
 impl Shaders {
-    fn of(settings: &Settings, inputs: &PassInputs, cuts: bool) -> Self {
+    fn of(settings: &Settings, inputs: &PassInputs) -> Self {
         let (tiles, gather) = match inputs.color {
             false => (module!("traced/tiles.comp"), module!("traced/gather.comp")),
             true => (module!("traced/tiles_color.comp"), module!("traced/gather_color.comp")),
@@ -112,7 +113,6 @@ impl Shaders {
             Samples::Many => many,
             Samples::Most => most,
         };
-        let [cover, rays] = [cover, rays].map(|[whole, cut]| if cuts { cut } else { whole });
         Self { tiles, gather, cover, rays }
     }
 }
@@ -139,7 +139,7 @@ pub(super) fn declare(
 ) {
     let PassInputs { gbuffer, need, visibility, .. } = *inputs;
     let extent = gbuffer.extent;
-    let shaders = Shaders::of(settings, inputs, tree.cut_outs.is_some());
+    let shaders = Shaders::of(settings, inputs);
     let emission = inputs.light_texture.map(|texture| {
         let side = settings.samples.side();
         let format = vk::Format::R32G32B32A32_SFLOAT;
@@ -217,23 +217,19 @@ pub(super) fn declare(
         smallvec![read(0, slots), read(1, sums), update(2, entries)],
         need,
     ));
-    // What the passes use that sum what the samples emit, and that look opacity textures up.
-    let cut = tree.cut_outs.map(|cut| [(9, cut.places), (10, cut.opacities)]);
-    let cut = cut.into_iter().flatten();
-    let cut = cut.map(|(binding, id)| Use::bound(binding, id, Access::SampledCompute));
-    let weighed =
-        |uses: &[Use]| uses.iter().copied().chain(emission).chain(cut.clone()).collect::<Uses>();
-    let mut over_list = |name, shader, arguments, offset, uses: &[Use]| {
+    // What the passes use that sum what the samples emit.
+    let weighed = |uses: &[Use]| uses.iter().copied().chain(emission).collect::<Uses>();
+    let over_list = |graph: &mut Graph, name, shader, (arguments, offset), uses: &[Use], need| {
         let mut uses = of_frame(uses);
         uses.push(Use::fixed(arguments, Access::Indirect));
         let work = Work::Indirect { shader, arguments, offset };
-        graph.push(Pass { name, uses, push: Push::NONE, work, need: *need });
+        graph.push(Pass { name, uses, push: Push::NONE, work, need });
     };
     over_list(
+        graph,
         "traced.gather",
         shaders.gather,
-        arguments,
-        0,
+        (arguments, 0),
         &[
             image(3, tree.nodes),
             image(4, tree.triangles),
@@ -242,31 +238,31 @@ pub(super) fn declare(
             write(7, lists),
             shown(8),
         ],
+        *need,
     );
-    over_list(
-        "traced.cover",
-        shaders.cover,
-        entries,
-        SHADOWED,
-        &weighed(&[
-            image(3, tree.triangles),
-            read(4, slots),
-            read(5, entries),
-            read(6, lists),
-            shown(7),
-        ]),
-    );
-    over_list(
-        "traced.rays",
-        shaders.rays,
-        arguments,
-        16,
-        &weighed(&[
-            image(3, tree.nodes),
-            image(4, tree.triangles),
-            read(5, slots),
-            read(6, entries),
-            shown(7),
-        ]),
-    );
+    let cover = weighed(&[
+        image(3, tree.triangles),
+        read(4, slots),
+        read(5, entries),
+        read(6, lists),
+        shown(7),
+    ]);
+    let rays = weighed(&[
+        image(3, tree.nodes),
+        image(4, tree.triangles),
+        read(5, slots),
+        read(6, entries),
+        shown(7),
+    ]);
+    // A frame runs those that look opacity textures up, or those that do not.
+    let [whole, cut] = tree.needs(graph, need);
+    let [of_cover, of_rays] = [(entries, SHADOWED), (arguments, 16)];
+    over_list(graph, "traced.cover", shaders.cover[0], of_cover, &cover, whole);
+    over_list(graph, "traced.rays", shaders.rays[0], of_rays, &rays, whole);
+    if let Some(cut_outs) = tree.cut_outs {
+        let with = |uses: Uses| -> Uses { uses.into_iter().chain(cut_outs.bound(9)).collect() };
+        let (cover, rays) = (with(cover), with(rays));
+        over_list(graph, "traced.cover_cut", shaders.cover[1], of_cover, &cover, cut);
+        over_list(graph, "traced.rays_cut", shaders.rays[1], of_rays, &rays, cut);
+    }
 }
