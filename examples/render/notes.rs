@@ -9,7 +9,8 @@ use antumbra::scene::{AreaLight, Scene};
 
 /// One line each, for standard error.
 pub fn of(options: &Options, scene: &Scene, lights: &[Drawn]) -> Vec<String> {
-    let mut notes: Vec<String> = unpromised(options).into_iter().collect();
+    let mut notes = scene.notes.clone();
+    notes.extend(unpromised(options));
     for drawn in lights {
         let Drawn { light, choice, plan, .. } = *drawn;
         let left_out = choice.and_then(|c| c.left_out.as_ref());

@@ -213,6 +213,7 @@ impl Report<'_> {
             ("memory", memory.into()),
             ("triangles", self.scene.triangles().into()),
             ("lights", self.lights.len().into()),
+            ("notes", json!(self.scene.notes)),
         ];
         report.extend(more.map(|(key, value)| (key.to_string(), value)));
         if let Some(error) = &self.measured {

@@ -189,6 +189,8 @@ pub struct Scene {
     pub camera: Option<Camera>,
     /// All of the file's cameras with their nodes' names, in the order of the nodes.
     pub cameras: Vec<(String, Camera)>,
+    /// What the scene's file says and this reading of it leaves out, a sentence each; a user should see them.
+    pub notes: Vec<String>,
 }
 
 /// An axis-aligned box in world space, in metres.

@@ -12,6 +12,8 @@ mod punctual;
 mod refusals;
 mod round_lights;
 mod sizes;
+mod texture_parts;
+mod textures;
 
 use antumbra::Error;
 use antumbra::scene::{Scene, from_gltf, from_gltf_bytes};

@@ -206,10 +206,7 @@ impl<'a> Buffers<'a> {
         let bytes = match (&buffer.uri, cell.get()) {
             (_, Some(bytes)) => bytes.as_slice(),
             (Some(uri), None) => {
-                let bytes = match uri.strip_prefix("data:") {
-                    Some(data) => decode(data).map(Rc::new),
-                    None => self.file(uri),
-                };
+                let bytes = self.resource(uri);
                 let bytes = bytes.map_err(|problem| format!("buffers[{index}]: {problem}"))?;
                 cell.get_or_init(|| bytes).as_slice()
             }
@@ -225,6 +222,14 @@ impl<'a> Buffers<'a> {
                 bytes.len()
             )
         })
+    }
+
+    /// The bytes of a data URI, or of a file beside the scene's.
+    pub fn resource(&self, uri: &str) -> Result<Rc<Vec<u8>>, Problem> {
+        match uri.strip_prefix("data:") {
+            Some(data) => decode(data).map(Rc::new),
+            None => self.file(uri),
+        }
     }
 
     /// The bytes of a file beside the scene's.

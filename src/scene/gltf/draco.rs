@@ -2,7 +2,7 @@
 //! own, and one buffer view holds them all.
 
 use super::Problem;
-use super::json::{Compressed, Root, shortened};
+use super::json::{Compressed, Root, in_a_line};
 use super::room::Room;
 use draco_core::{DataType, DecodeLimits, DecoderBuffer, FaceIndex, Mesh, MeshDecoder};
 use std::cell::{OnceCell, RefCell};
@@ -67,8 +67,8 @@ pub(super) fn mark(root: &mut Root) {
         };
         mark(primitive.indices, draco.buffer_view, None);
         for (name, accessor) in primitive.attributes.all() {
-            if let Some(id) = draco.attributes.get(name) {
-                mark(accessor, draco.buffer_view, Some(*id));
+            if let Some(id) = draco.attributes.get(&name) {
+                mark(Some(accessor), draco.buffer_view, Some(*id));
             }
         }
     }
@@ -86,13 +86,6 @@ fn decoded(stream: &[u8], room: u64) -> Result<Mesh, Problem> {
         .decode(&mut buffer, &mut mesh)
         .map_err(|e| format!("its Draco stream is wrong: {}", in_a_line(&e.to_string())))?;
     Ok(mesh)
-}
-
-/// A decoder's message as a part of a sentence.
-fn in_a_line(message: &str) -> String {
-    let words: Vec<&str> = message.split(|c: char| c.is_whitespace() || c.is_control()).collect();
-    let words = words.into_iter().filter(|word| !word.is_empty());
-    shortened(&words.collect::<Vec<_>>().join(" "))
 }
 
 /// The bytes of all of a mesh.

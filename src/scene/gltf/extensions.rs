@@ -3,6 +3,7 @@
 use super::Problem;
 use crate::error::quoted;
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 use serde_json::Value;
 #[cfg(feature = "draco")]
 use std::collections::BTreeMap;
@@ -82,6 +83,13 @@ pub(super) struct NodeExtensions {
     pub instancing: Option<Instancing>,
     #[serde(rename = "KHR_lights_punctual")]
     pub punctual: Option<PunctualOfNode>,
+}
+
+/// The extensions of a material that may let light through.
+#[derive(Debug, Deserialize)]
+pub(super) struct MaterialExtensions {
+    #[serde(rename = "KHR_materials_transmission")]
+    pub transmission: Option<IgnoredAny>,
 }
 
 /// The light at a node.

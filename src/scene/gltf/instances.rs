@@ -11,16 +11,20 @@ use glam::{DMat4, DQuat, DVec3};
 /// have at most, since nodes may share accessors.
 const BYTES_AN_INSTANCE: u64 = 4;
 
+/// The bytes of a file for each instance that a mesh is beside two, since nodes share a mesh of many surfaces.
+const BYTES_A_PART: u64 = 16;
+
 /// The places of a node's mesh, in the order of its instances. Nodes of a file share a limit.
 pub(super) struct Places<'a> {
     root: &'a Root,
     buffers: &'a Buffers<'a>,
     made: u64,
+    parts: u64,
 }
 
 impl<'a> Places<'a> {
     pub fn new(root: &'a Root, buffers: &'a Buffers<'a>) -> Self {
-        Self { root, buffers, made: 0 }
+        Self { root, buffers, made: 0, parts: 0 }
     }
 
     /// The transforms from the mesh's space to the world: one, or as many as the node has instances.
@@ -88,6 +92,21 @@ impl<'a> Places<'a> {
                 ))
             })
             .collect()
+    }
+
+    /// Counts the instances that a node is because its mesh is in parts, one for each kind of its surfaces.
+    pub fn split(&mut self, placed: &Placed, [places, parts]: [usize; 2]) -> Result<(), Problem> {
+        let more = places.saturating_mul(parts.saturating_sub(2));
+        self.parts = self.parts.saturating_add(more as u64);
+        if self.parts <= self.buffers.held() / BYTES_A_PART {
+            return Ok(());
+        }
+        Err(format!(
+            "{}: with it the meshes' surfaces of different kinds make {} instances, which is more than one for \
+             {BYTES_A_PART} bytes of file and buffers; fewer nodes must share a mesh of so many materials",
+            nodes::label(self.root, placed.node),
+            self.parts
+        ))
     }
 
     fn open<const N: usize>(

@@ -5,11 +5,12 @@
 //! as the file gives it: whoever follows one checks it (see [`at`]).
 
 use super::Problem;
+use super::attributes::Attributes;
 #[cfg(feature = "draco")]
 use super::extensions::PrimitiveExtensions;
 #[cfg(feature = "meshopt")]
 use super::extensions::ViewExtensions;
-use super::extensions::{self, NodeExtensions, RootExtensions};
+use super::extensions::{self, MaterialExtensions, NodeExtensions, RootExtensions};
 use crate::error::quoted;
 use serde::Deserialize;
 use serde_json::Value;
@@ -130,37 +131,6 @@ pub(super) struct Primitive {
     pub extensions: Option<Box<PrimitiveExtensions>>,
 }
 
-#[derive(Debug, Deserialize)]
-pub(super) struct Attributes {
-    #[serde(rename = "POSITION")]
-    pub position: Option<usize>,
-    #[serde(rename = "NORMAL")]
-    pub normal: Option<usize>,
-    #[serde(rename = "JOINTS_0")]
-    pub joints_0: Option<usize>,
-    #[serde(rename = "WEIGHTS_0")]
-    pub weights_0: Option<usize>,
-    #[serde(rename = "JOINTS_1")]
-    pub joints_1: Option<usize>,
-    #[serde(rename = "WEIGHTS_1")]
-    pub weights_1: Option<usize>,
-}
-
-#[cfg(feature = "draco")]
-impl Attributes {
-    /// Each of them by its name.
-    pub fn all(&self) -> [(&'static str, Option<usize>); 6] {
-        [
-            ("POSITION", self.position),
-            ("NORMAL", self.normal),
-            ("JOINTS_0", self.joints_0),
-            ("WEIGHTS_0", self.weights_0),
-            ("JOINTS_1", self.joints_1),
-            ("WEIGHTS_1", self.weights_1),
-        ]
-    }
-}
-
 /// What a morph target adds.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord)]
 #[serde(rename_all = "UPPERCASE")]
@@ -196,12 +166,14 @@ pub(super) struct Material {
     pub double_sided: bool,
     /// `OPAQUE` where it is not there.
     pub alpha_mode: Option<String>,
+    pub extensions: Option<Box<MaterialExtensions>>,
 }
 
 impl Material {
-    /// Whether its alpha cuts holes into triangles, or lets light through.
+    /// Whether it may stop less than all light: [`super::surfaces`] reads how much, and where.
     pub fn cuts(&self) -> bool {
-        self.alpha_mode.as_deref().is_some_and(|mode| mode != "OPAQUE")
+        let transmits = self.extensions.as_ref().is_some_and(|e| e.transmission.is_some());
+        transmits || self.alpha_mode.as_deref().is_some_and(|mode| mode != "OPAQUE")
     }
 }
 
@@ -314,6 +286,13 @@ pub(super) fn shortened(message: &str) -> String {
     let start: String = message.chars().take(first).collect();
     let end: String = message.chars().skip(length - last).collect();
     format!("{start}…{end}")
+}
+
+/// A decoder's message as a part of a sentence.
+pub(super) fn in_a_line(message: &str) -> String {
+    let words: Vec<&str> = message.split(|c: char| c.is_whitespace() || c.is_control()).collect();
+    let words = words.into_iter().filter(|word| !word.is_empty());
+    shortened(&words.collect::<Vec<_>>().join(" "))
 }
 
 /// The place of the item of a name, or of a number, among those that the file calls `what`.

@@ -12,20 +12,26 @@
 
 mod accessor;
 mod animation;
+mod attributes;
 mod buffers;
 #[cfg(feature = "draco")]
 mod draco;
 mod extensions;
 mod extras;
+mod images;
 mod instances;
 mod json;
 #[cfg(feature = "meshopt")]
 mod meshopt;
 mod nodes;
+mod notes;
+mod placing;
 mod pose;
 mod punctual;
 #[cfg(any(feature = "draco", feature = "meshopt"))]
 mod room;
+mod source;
+mod surfaces;
 mod triangles;
 
 use super::{Bounds, Instance, Mesh, Scene};
@@ -47,9 +53,13 @@ const MAX_COORDINATE: f64 = 1e9;
 ///
 /// - Triangles, strips and fans of the default scene (the first, where none is the default; all
 ///   nodes, where there is no scene; [`from_gltf_as`] takes another), each node an instance; points and lines are passed over.
-///   A mesh that mixes single- and double-sided materials becomes two instances of one name.
-/// - Textures are not read. A mesh of whose materials one is not opaque (`alphaMode`) is marked
-///   [`Mesh::cut_out`](super::Mesh::cut_out), and its triangles count whole.
+///   A mesh that mixes single- and double-sided materials, or such as stop light differently, becomes an instance for each,
+///   of one name.
+/// - Where a surface stops light, and how much of it, is what its alpha says (`alphaMode` `MASK` or `BLEND`), and its
+///   transmission (KHR_materials_transmission): of the textures that take part, PNG, JPEG and WebP images are read into
+///   [`Scene::opacity_maps`]. A mesh whose texture cannot be read is [`Mesh::cut_out`](super::Mesh::cut_out) without a map
+///   and counts whole, and [`Scene::notes`] says why. It names the alpha of a vertex's color too, which
+///   is passed over.
 /// - Positions and normals may be integers (KHR_mesh_quantization). A node may place its mesh many times
 ///   (EXT_mesh_gpu_instancing); all are instances of the node's name. Nodes that are not visible, and what is below them,
 ///   have neither triangles nor lights (KHR_node_visibility).
@@ -161,7 +171,7 @@ fn parse(bytes: &[u8], folder: &Path, options: &GltfOptions) -> Result<Scene, Pr
     }
     let buffers = buffers::Buffers::new(&root, bytes.len(), chunk, folder);
     let (all_placed, worlds) = nodes::placed(&root)?;
-    let mut meshes = Meshes::new(&root, &buffers, &worlds);
+    let mut meshes = Meshes::new(&root, &buffers, text, &worlds);
     let mut places = instances::Places::new(&root, &buffers);
     let mut scene = Scene::default();
 
@@ -181,7 +191,8 @@ fn parse(bytes: &[u8], folder: &Path, options: &GltfOptions) -> Result<Scene, Pr
             Some(origin) => vec![DMat4::from_translation(origin)],
             None => places.of(placed)?,
         };
-        let name = nodes::name_of_instances(&root, placed.node, worlds.len());
+        places.split(placed, [worlds.len(), found.len()])?;
+        let name = nodes::name_of_instances(&root, placed.node, [worlds.len(), found.len()]);
         for (world, mesh) in worlds.iter().flat_map(|w| found.clone().map(move |mesh| (w, mesh))) {
             let world_from_mesh = *world * DMat4::from_translation(meshes.origins[mesh]);
             within_reach(&world_from_mesh, &meshes.boxes[mesh])
@@ -207,6 +218,9 @@ fn parse(bytes: &[u8], folder: &Path, options: &GltfOptions) -> Result<Scene, Pr
         scene.lights.extend(light);
     }
     scene.meshes = meshes.read;
+    let surfaces = meshes.reader.surfaces;
+    scene.opacity_maps = surfaces.maps;
+    scene.notes = surfaces.notes.sentences();
     Ok(scene)
 }
 
@@ -230,10 +244,15 @@ struct Meshes<'a> {
 }
 
 impl<'a> Meshes<'a> {
-    fn new(root: &'a json::Root, buffers: &'a buffers::Buffers<'a>, worlds: &'a [DMat4]) -> Self {
+    fn new(
+        root: &'a json::Root,
+        buffers: &'a buffers::Buffers<'a>,
+        text: &'a [u8],
+        worlds: &'a [DMat4],
+    ) -> Self {
         Self {
             root,
-            reader: triangles::Reader::new(root, buffers),
+            reader: triangles::Reader::new(root, buffers, text),
             read: Vec::new(),
             boxes: Vec::new(),
             origins: Vec::new(),

@@ -31,11 +31,13 @@ pub(super) fn name(root: &Root, node: usize) -> String {
 /// The most characters of a name that more than one instance has: each keeps a copy.
 const SHARED_NAME: usize = 64;
 
-/// The name of a node's instances, of which there are `count`.
-pub(super) fn name_of_instances(root: &Root, node: usize, count: usize) -> String {
+/// The name of a node's instances: of a mesh at so many places, in so many parts.
+pub(super) fn name_of_instances(root: &Root, node: usize, [places, parts]: [usize; 2]) -> String {
     let name = name(root, node);
     match name.char_indices().nth(SHARED_NAME) {
-        Some((end, _)) if count > 1 => format!("{}…", name.get(..end).unwrap_or_default()),
+        Some((end, _)) if places > 1 || parts > 2 => {
+            format!("{}…", name.get(..end).unwrap_or_default())
+        }
         _ => name,
     }
 }

@@ -36,7 +36,7 @@ fn triangles_beyond_the_limit_are_refused_before_they_are_made() {
     // As of a file so long that its length is no limit.
     let buffers = Buffers::new(&root, 5 * most, Some(&bytes), Path::new("."));
     let read = |limit| {
-        let mut reader = Reader::with_limit(&root, &buffers, limit);
+        let mut reader = Reader::with_limit(&root, &buffers, b"{}", limit);
         let shape = reader.shape(0, &Pose::default()).unwrap();
         reader.read(0, &shape, None)
     };

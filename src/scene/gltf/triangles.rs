@@ -2,53 +2,18 @@
 
 use super::Problem;
 use super::accessor::{Indices, Vectors};
+use super::attributes::Attributes;
 use super::buffers::Buffers;
 use super::json::{self, Root, at};
+use super::placing::Placing;
 use super::pose::{Pose, Posed, Posing, Skin};
-use crate::error::quoted;
+use super::source::{Coordinates, Label, Placed, Source, Topology};
+use super::surfaces::{Cover, Surface, Surfaces};
 use crate::scene::Mesh;
-use glam::DVec3;
-use std::fmt;
 use std::rc::Rc;
 
 /// The most triangles that a file's meshes may hold together, each mesh counted once: 3 GB at worst.
 const MAX_TRIANGLES: usize = 1 << 25;
-
-/// The normal of a triangle without area, which no pixel shows.
-const ANY_NORMAL: DVec3 = DVec3::Y;
-
-/// The topology that makes triangles of a primitive's corners.
-#[derive(Clone, Copy, PartialEq)]
-enum Topology {
-    List,
-    Strip,
-    Fan,
-}
-
-impl Topology {
-    /// The number of triangles that `corners` corners make.
-    fn triangles(self, corners: usize) -> Result<usize, Problem> {
-        match self {
-            Self::List if !corners.is_multiple_of(3) => {
-                Err(format!("it has {corners} corners; a list of triangles has a multiple of 3"))
-            }
-            Self::List => Ok(corners / 3),
-            Self::Strip | Self::Fan if corners < 3 => {
-                Err(format!("it has {corners} corners; a strip or fan of triangles has 3 or more"))
-            }
-            Self::Strip | Self::Fan => Ok(corners - 2),
-        }
-    }
-
-    /// The corners of triangle `t` (glTF 2.0 §3.7.2.1).
-    fn corners(self, t: usize) -> [usize; 3] {
-        match self {
-            Self::List => [3 * t, 3 * t + 1, 3 * t + 2],
-            Self::Strip => [t, t + 1 + t % 2, t + 2 - t % 2],
-            Self::Fan => [t + 1, t + 2, 0],
-        }
-    }
-}
 
 /// The members of a mesh that its triangles depend on: meshes that differ in names and colors alone have one shape.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -64,7 +29,9 @@ pub(super) struct PrimitiveShape {
     normal: Option<usize>,
     indices: Option<usize>,
     double_sided: bool,
-    cut_out: bool,
+    cover: Cover,
+    /// Where its opacity map lies, and the accessor of its texture coordinates.
+    placing: Option<Box<(Placing, Option<usize>)>>,
     posing: Posing,
 }
 
@@ -80,36 +47,49 @@ pub(super) struct Reader<'a> {
     limit: usize,
     made: usize,
     placed: Placed,
+    /// How much light materials stop.
+    pub surfaces: Surfaces<'a>,
 }
 
 impl<'a> Reader<'a> {
-    pub fn new(root: &'a Root, buffers: &'a Buffers<'a>) -> Self {
-        Self::with_limit(root, buffers, MAX_TRIANGLES)
+    /// A reader of a file whose JSON is `text`.
+    pub fn new(root: &'a Root, buffers: &'a Buffers<'a>, text: &'a [u8]) -> Self {
+        Self::with_limit(root, buffers, text, MAX_TRIANGLES)
     }
 
     /// A reader that refuses what goes past `triangles` in all.
-    pub fn with_limit(root: &'a Root, buffers: &'a Buffers<'a>, triangles: usize) -> Self {
-        Self { root, buffers, limit: triangles, made: 0, placed: Placed::default() }
+    pub fn with_limit(
+        root: &'a Root,
+        buffers: &'a Buffers<'a>,
+        text: &'a [u8],
+        triangles: usize,
+    ) -> Self {
+        let surfaces = Surfaces::new(root, buffers, text);
+        Self { root, buffers, limit: triangles, made: 0, placed: Placed::default(), surfaces }
     }
 
     /// The shape of `meshes[index]` in a pose, which does not depend on its name.
-    pub fn shape(&self, index: usize, pose: &Pose) -> Result<Shape, Problem> {
+    pub fn shape(&mut self, index: usize, pose: &Pose) -> Result<Shape, Problem> {
         let mesh = at(&self.root.meshes, index, "meshes", || "a node".into())?;
         let shape = |(i, primitive): (usize, &json::Primitive)| {
-            let material = match primitive.material {
+            let label = Label::new(mesh, index, i);
+            let attributes = &primitive.attributes;
+            let (double_sided, surface) = match primitive.material {
                 Some(m) => {
-                    let owner = || Label::new(mesh, index, i).to_string();
-                    Some(at(&self.root.materials, m, "materials", owner)?)
+                    let material = at(&self.root.materials, m, "materials", || label.to_string())?;
+                    (material.double_sided, self.surface(m, attributes, &label))
                 }
-                None => None,
+                None => (false, Surface::WHOLE),
             };
+            let placing = |of: Placing| Box::new((of, attributes.coordinates(of.set)));
             Ok(PrimitiveShape {
                 mode: primitive.mode.unwrap_or(4),
-                position: primitive.attributes.position,
-                normal: primitive.attributes.normal,
+                position: attributes.position,
+                normal: attributes.normal,
                 indices: primitive.indices,
-                double_sided: material.is_some_and(|m| m.double_sided),
-                cut_out: material.is_some_and(json::Material::cuts),
+                double_sided,
+                cover: surface.cover,
+                placing: surface.placing.map(placing),
                 posing: Posing::of(pose, primitive),
             })
         };
@@ -118,8 +98,21 @@ impl<'a> Reader<'a> {
         Ok(Shape { primitives: primitives?, skin: pose.skin })
     }
 
+    /// The surface of a primitive that has `materials[material]`.
+    fn surface(&mut self, material: usize, attributes: &Attributes, label: &Label) -> Surface {
+        let surface = self.surfaces.of(material);
+        let color = attributes.color.and_then(|color| self.root.accessors.get(color));
+        let fades = self.root.materials.get(material).is_some_and(|of| of.alpha_mode.is_some());
+        if !(fades && color.is_some_and(|color| color.kind == "VEC4")) {
+            return surface;
+        }
+        let notes = &mut self.surfaces.notes;
+        notes.tell(format!("{label} has an alpha in its COLOR_0, which is passed over"));
+        if surface == Surface::WHOLE { Surface::UNKNOWN } else { surface }
+    }
+
     /// The triangles of `meshes[index]`, which looks like this: what is single-sided, then what is
-    /// double-sided, either of which may be missing.
+    /// double-sided, and of each what stops all light, then what stops less.
     /// `skin` is that of its pose.
     pub fn read(
         &mut self,
@@ -132,31 +125,39 @@ impl<'a> Reader<'a> {
         for (i, primitive) in shape.primitives.iter().enumerate() {
             sources.extend(self.open(primitive, skin, Label::new(mesh, index, i))?);
         }
-        let mut sides = Vec::new();
-        for double_sided in [false, true] {
-            let side = || sources.iter().filter(|s| s.double_sided == double_sided);
+        sources.sort_by_key(Source::kind);
+        let mut parts = Vec::new();
+        for alike in sources.chunk_by(|a, b| a.kind() == b.kind()) {
+            let Some((double_sided, cover)) = alike.first().map(Source::kind) else { continue };
+            let opacity_map = match cover {
+                Cover::Map(map) => Some(map),
+                Cover::Whole | Cover::Unknown => None,
+            };
             let mut mesh = Mesh {
                 double_sided,
-                cut_out: side().any(|source| source.cut_out),
+                cut_out: cover != Cover::Whole,
+                opacity_map,
                 ..Mesh::default()
             };
-            mesh.indices.reserve_exact(side().map(|source| 3 * source.triangles).sum());
-            let vertices = side().map(Source::most_vertices).sum();
+            mesh.indices.reserve_exact(alike.iter().map(|source| 3 * source.triangles).sum());
+            let vertices = alike.iter().map(Source::most_vertices).sum();
             mesh.positions.reserve_exact(vertices);
             mesh.normals.reserve_exact(vertices);
-            for source in side() {
+            mesh.texture_coordinates.reserve_exact(opacity_map.map_or(0, |_| vertices));
+            for source in alike {
                 source.append_to(&mut mesh, &mut self.placed)?;
             }
             // Where primitives use a part of what they share.
             if mesh.positions.len() < vertices / 2 {
                 mesh.positions.shrink_to_fit();
                 mesh.normals.shrink_to_fit();
+                mesh.texture_coordinates.shrink_to_fit();
             }
             if !mesh.indices.is_empty() {
-                sides.push(mesh);
+                parts.push(mesh);
             }
         }
-        Ok(sides)
+        Ok(parts)
     }
 
     /// Opens a primitive's accessors; `None` where it draws no triangles.
@@ -214,162 +215,49 @@ impl<'a> Reader<'a> {
                 self.made
             ));
         }
-        Ok(Some(Source {
+        let mut source = Source {
             double_sided: shape.double_sided,
-            cut_out: shape.cut_out,
+            cover: shape.cover,
             topology,
             triangles,
             positions,
             normals,
             posed,
             indices,
+            coordinates: None,
             label,
-        }))
-    }
-}
-
-/// A primitive as a sentence names it: `mesh "bunny", primitive 2`, the latter where there are several.
-#[derive(Clone, Copy)]
-struct Label<'a> {
-    mesh: &'a json::Mesh,
-    index: usize,
-    primitive: usize,
-}
-
-impl<'a> Label<'a> {
-    fn new(mesh: &'a json::Mesh, index: usize, primitive: usize) -> Self {
-        Self { mesh, index, primitive }
-    }
-}
-
-impl fmt::Display for Label<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.mesh.name.as_deref() {
-            Some(name) if !name.is_empty() => write!(f, "mesh {}", quoted(name)),
-            _ => write!(f, "mesh {}", self.index),
-        }?;
-        match self.mesh.primitives.len() {
-            1 => Ok(()),
-            _ => write!(f, ", primitive {}", self.primitive),
-        }
-    }
-}
-
-/// The places of a primitive's vertices in its mesh. One table serves all primitives and is never cleared, so that a
-/// primitive's time depends on its corners alone, however many vertices it shares with others.
-struct Placed {
-    /// The number of a vertex that was placed, or 0. Numbers rise from primitive to primitive, so that
-    /// those of earlier ones are too low to be mistaken for the present one's.
-    numbers: Vec<u32>,
-    next: u32,
-}
-
-impl Default for Placed {
-    fn default() -> Self {
-        Self { numbers: Vec::new(), next: 1 }
-    }
-}
-
-/// A primitive's opened accessors.
-struct Source<'a> {
-    double_sided: bool,
-    cut_out: bool,
-    topology: Topology,
-    triangles: usize,
-    positions: Vectors<'a, 3>,
-    normals: Option<Vectors<'a, 3>>,
-    posed: Posed<'a>,
-    indices: Option<Indices<'a>>,
-    label: Label<'a>,
-}
-
-impl Source<'_> {
-    /// The number of vertices that the primitive's triangles may share; 0 with flat normals, which differ from triangle
-    /// to triangle.
-    fn shared(&self) -> usize {
-        if self.normals.is_some() { self.positions.len() } else { 0 }
-    }
-
-    fn most_vertices(&self) -> usize {
-        let corners = 3 * self.triangles;
-        if self.normals.is_some() { corners.min(self.shared()) } else { corners }
-    }
-
-    fn append_to(&self, mesh: &mut Mesh, placed: &mut Placed) -> Result<(), Problem> {
-        // Primitives often share one accessor of which each uses a part, so only what is used is copied.
-        if placed.numbers.len() < self.shared() {
-            placed.numbers.resize(self.shared(), 0);
-        }
-        let shared = placed.numbers.get_mut(..self.shared()).unwrap_or_default();
-        // Both below 3 · MAX_TRIANGLES.
-        let (first, before) = (placed.next, mesh.positions.len() as u32);
-        for t in 0..self.triangles {
-            let mut vertices = [0; 3];
-            let mut points = [[0.0; 3]; 3];
-            for (k, corner) in self.topology.corners(t).into_iter().enumerate() {
-                (vertices[k], points[k]) = self.vertex(corner)?;
-            }
-            let flat = face_normal(points);
-            for (vertex, point) in vertices.into_iter().zip(points) {
-                let known = shared.get_mut(vertex as usize);
-                if let Some(number) = known.as_deref().filter(|number| **number >= first) {
-                    mesh.indices.push(before + (number - first));
-                    continue;
+        };
+        if let Some((placing, accessor)) = shape.placing.as_deref() {
+            match self.coordinates(*accessor, *placing, &source) {
+                Ok(coordinates) => source.coordinates = Some(Box::new(coordinates)),
+                Err(problem) => {
+                    self.surfaces.notes.tell(format!(
+                        "{label}: {problem}, so that where its texture cuts it is not known; it counts whole"
+                    ));
+                    source.cover = Cover::Unknown;
                 }
-                if let Some(number) = known {
-                    *number = placed.next;
-                }
-                mesh.indices.push(before + (placed.next - first));
-                placed.next += 1;
-                mesh.positions.push(point);
-                mesh.normals.push(self.normal(vertex, flat)?);
             }
         }
-        Ok(())
+        Ok(Some(source))
     }
 
-    /// The index and the position of a corner's vertex.
-    fn vertex(&self, corner: usize) -> Result<(u32, [f32; 3]), Problem> {
-        let vertex = match &self.indices {
-            Some(indices) => indices.get(corner),
-            None => u32::try_from(corner).ok(),
-        };
-        let point = vertex.and_then(|v| Some((v, self.positions.get(v as usize)?)));
-        let Some((vertex, point)) = point else {
-            return Err(format!(
-                "{}: its corner {corner} is vertex {}, and it has {} positions",
-                self.label,
-                vertex.unwrap_or(u32::MAX),
-                self.positions.len()
-            ));
-        };
-        let point = self.posed.position(vertex as usize, point);
-        let point = point.map_err(|e| format!("{}: {e}", self.label))?;
-        if point.iter().all(|c| c.is_finite()) {
-            Ok((vertex, point))
-        } else {
-            Err(format!(
-                "{}: its position {vertex} is {point:?}; positions must be finite numbers",
-                self.label
-            ))
+    /// Where an opacity map lies on a primitive, each of whose corners has a place in it.
+    fn coordinates(
+        &self,
+        accessor: Option<usize>,
+        placing: Placing,
+        of: &Source<'a>,
+    ) -> Result<Coordinates<'a>, Problem> {
+        let name = || format!("TEXCOORD_{}", placing.set);
+        let accessor = accessor.ok_or_else(|| format!("it has no {}", name()))?;
+        let vectors = Vectors::open(self.root, self.buffers, accessor, true, &name)?;
+        let coordinates = Coordinates { vectors, placing };
+        for corner in 0..of.corners() {
+            let place = of.vertex_of(corner).map(|vertex| coordinates.get(vertex));
+            if place.is_some_and(|place| !place.iter().all(|at| at.is_finite())) {
+                return Err(format!("its {} has no finite number for corner {corner}", name()));
+            }
         }
+        Ok(coordinates)
     }
-
-    /// The vertex's unit normal; its triangle's where the file has none, or one without direction.
-    fn normal(&self, vertex: u32, flat: DVec3) -> Result<[f32; 3], Problem> {
-        let given = self.normals.as_ref().and_then(|normals| normals.get(vertex as usize));
-        let posed = given.map(|normal| self.posed.normal(vertex as usize, normal)).transpose();
-        let posed = posed.map_err(|e| format!("{}: {e}", self.label))?;
-        Ok(posed
-            .and_then(|n| DVec3::from_array(n.map(f64::from)).try_normalize())
-            .unwrap_or(flat)
-            .as_vec3()
-            .to_array())
-    }
-}
-
-/// The unit normal on the side from which the corners are counter-clockwise.
-fn face_normal(points: [[f32; 3]; 3]) -> DVec3 {
-    let [a, b, c] = points.map(|p| DVec3::from_array(p.map(f64::from)));
-    (b - a).cross(c - a).try_normalize().unwrap_or(ANY_NORMAL)
 }

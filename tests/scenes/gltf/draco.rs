@@ -1,6 +1,7 @@
 //! Meshes that were compressed by Draco.
 
 use super::posed::{assert_close_by, points};
+use super::textures::{alphas, base};
 use super::*;
 use antumbra_tests::draco::{Attribute, BITS, compressed};
 use draco_core::{DataType, GeometryAttributeType};
@@ -102,6 +103,40 @@ fn every_kind_of_stream_is_the_mesh_that_it_was_made_of() {
     }
     // The kinds are kinds.
     assert!(lengths[0] != lengths[1] && lengths[1] < lengths[2], "{lengths:?}");
+}
+
+/// Where a texture lies is in the stream too.
+#[test]
+fn a_compressed_texture_coordinate_is_as_it_was() {
+    let (points, triangles) = grid(6);
+    let bytes = floats(&points);
+    let places: Vec<u8> =
+        points.iter().flat_map(|p| [p[0], 1.0 - p[1]]).flat_map(f32::to_le_bytes).collect();
+    for speed in [0, 10] {
+        let stream = compressed(
+            &[
+                of_floats(GeometryAttributeType::Position, &bytes),
+                (GeometryAttributeType::TexCoord, DataType::Float32, 2, places.as_slice()),
+            ],
+            &triangles,
+            speed,
+        );
+        let counts = [points.len(), 3 * triangles.len()];
+        let (mut file, mut primitives) =
+            file_of(&stream, &[POSITION, ("TEXCOORD_0", "VEC2", 5126)], counts);
+        primitives[0]["material"] = json!(0);
+        let mut members = required();
+        members["images"] = json!([{"bufferView": file.view(&alphas(&[0, 255]))}]);
+        members["textures"] = json!([{"source": 0}]);
+        members["materials"] = json!([base("MASK", json!({}))]);
+        let scene = file.scene(&primitives, members).unwrap();
+        let mesh = &scene.meshes[0];
+        assert_eq!((mesh.opacity_map, mesh.texture_coordinates.len()), (Some(0), counts[1]));
+        for (place, point) in mesh.texture_coordinates.iter().zip(&mesh.positions) {
+            let off = [place[0] - point[0], 1.0 - place[1] - point[1]];
+            assert!(off.iter().all(|off| off.abs() < 1e-3), "{place:?} at {point:?}");
+        }
+    }
 }
 
 /// Joints and weights are integers in the stream; the largest stands for 1 where the accessor is normalized.

@@ -245,7 +245,9 @@ fn double_sided_materials_part_a_mesh_in_two() {
         {"attributes": attributes, "mode": 6, "material": 1},
         {"attributes": attributes, "mode": 6, "material": 0},
     ]);
-    let materials = json!([{"doubleSided": true}, {"alphaMode": "BLEND"}]);
+    let faded = json!({"baseColorFactor": [1, 1, 1, 0.5]});
+    let materials =
+        json!([{"doubleSided": true}, {"alphaMode": "BLEND", "pbrMetallicRoughness": faded}]);
     let scene = file.scene(&primitives, json!({"materials": materials})).unwrap();
     let found: Vec<_> =
         scene.meshes.iter().map(|m| (m.double_sided, m.indices.len() / 3)).collect();

@@ -2,6 +2,7 @@
 
 use super::draco::grid;
 use super::posed::{assert_close_by, points};
+use super::textures::{alphas, base};
 use super::*;
 use ::meshopt::encoding::{
     EncodeExpMode, encode_filter_exp, encode_filter_oct, encode_filter_quat,
@@ -215,6 +216,39 @@ fn what_is_wrong_with_a_view_is_a_sentence() {
         let found = file.scene(&primitives, members(&file, &[ext])).unwrap_err();
         assert!(found.contains(&format!("cannot be \"{mode}\"")), "{found}");
     }
+}
+
+/// Places in a texture, and the texture's own bytes, which nobody compresses so, may be in such views.
+#[test]
+fn texture_coordinates_and_images_may_be_compressed() {
+    let mut file = File::default();
+    let places = [[0u16, 0], [65_535, 0], [65_535, 65_535], [0, 65_535]];
+    let stream = encode_vertex_buffer(&SQUARE).unwrap();
+    let positions = view(&mut file, &stream, "ATTRIBUTES", [4, 12], EXTENSIONS[0]);
+    let stream = encode_vertex_buffer(&places).unwrap();
+    let coordinates = view(&mut file, &stream, "ATTRIBUTES", [4, 4], EXTENSIONS[1]);
+    let coordinates = file.accessor(json!({
+        "bufferView": coordinates, "componentType": 5123, "normalized": true, "type": "VEC2", "count": 4
+    }));
+    let mut image = alphas(&[0, 255]);
+    image.resize(image.len().next_multiple_of(4), 0);
+    let words: Vec<[u8; 4]> = image.chunks(4).map(|word| word.try_into().unwrap()).collect();
+    let stream = encode_vertex_buffer(&words).unwrap();
+    let image = view(&mut file, &stream, "ATTRIBUTES", [words.len(), 4], EXTENSIONS[0]);
+    let positions = accessor(&mut file, positions, [json!("VEC3"), json!(5126)], 4);
+    let primitives = json!([{
+        "attributes": {"POSITION": positions, "TEXCOORD_0": coordinates},
+        "indices": file.indices(&TWO_TRIANGLES), "material": 0,
+    }]);
+    let mut members = members(&file, &EXTENSIONS);
+    members["images"] = json!([{"bufferView": image}]);
+    members["textures"] = json!([{"source": 0}]);
+    members["materials"] = json!([base("MASK", json!({}))]);
+    let scene = file.scene(&primitives, members).unwrap();
+    assert!(scene.notes.is_empty(), "{:?}", scene.notes);
+    assert_eq!(scene.opacity_maps[0].texels, [0, 255]);
+    let expected = TWO_TRIANGLES.map(|i| places[i as usize].map(|c| f32::from(c / 65_535)));
+    assert_eq!(scene.meshes[0].texture_coordinates, expected);
 }
 
 /// The file that `tests/files/untrusted` and the fuzzer break; `ANTUMBRA_WRITE_SEED=1` writes it anew.

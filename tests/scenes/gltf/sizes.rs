@@ -41,7 +41,9 @@ fn meshes_of_the_same_triangles_are_one() {
         primitives[0]["material"] = json!(material);
         json!({"name": format!("shape {material}"), "primitives": primitives})
     };
-    let materials = json!([{}, {"doubleSided": true}, {"alphaMode": "MASK"}, {"name": "red"}]);
+    let glass =
+        json!({"alphaMode": "BLEND", "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0]}});
+    let materials = json!([{}, {"doubleSided": true}, glass, {"name": "red"}]);
     let members = json!({
         "materials": materials,
         "meshes": [mesh(0), mesh(1), mesh(2), mesh(3), mesh(1)],
