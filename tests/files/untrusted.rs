@@ -3,6 +3,7 @@
 //! promised of them.
 
 mod hostile;
+mod images;
 mod json;
 mod parts;
 mod seed;
@@ -29,9 +30,13 @@ const BYTES_BESIDE: u64 = 1 << 20;
 /// Opens a file that is as long as this with its buffers, within its share of the memory; says what of
 /// it was taken at once.
 fn within_memory<T>(bytes: usize, open: impl FnOnce() -> T) -> (T, u64) {
+    within(BYTES_PER_BYTE * bytes as u64 + BYTES_BESIDE, bytes, open)
+}
+
+/// Opens a file of so many bytes within so much memory.
+fn within<T>(allowed: u64, bytes: usize, open: impl FnOnce() -> T) -> (T, u64) {
     let mut opened = None;
     let most = measure(|| opened = Some(open())).bytes_max;
-    let allowed = BYTES_PER_BYTE * bytes as u64 + BYTES_BESIDE;
     assert!(most <= allowed, "{most} bytes of memory for {bytes} bytes of file");
     (opened.unwrap(), most)
 }
@@ -93,7 +98,9 @@ fn break_it(seed: &Seed, files: usize, kinds: usize) {
             for i in 0..CHUNK.min(files - chunk * CHUNK) {
                 let file = seed.broken(&mut random);
                 let _kept = Kept(&file, format!("broken-{chunk}-{i}-{}", seed.name));
-                own.add(within_memory(file.len(), || whole::open(&file).map(drop)).0);
+                let allowed = BYTES_PER_BYTE * file.len() as u64 + BYTES_BESIDE;
+                let open = || whole::open(&file).map(|scene| images::check(&scene));
+                own.add(within(allowed + images::room(&file), file.len(), open).0);
             }
         }
         let mut all = all.lock().unwrap();
@@ -125,10 +132,10 @@ fn seeds(folder: &str) -> Vec<Seed> {
 #[test]
 fn small_files_broken_in_two_hundred_thousand_ways() {
     let seeds = seeds("fuzz/seeds");
-    assert_eq!(seeds.len(), 4);
+    assert_eq!(seeds.len(), 5);
     for seed in &seeds {
-        // A stream has fewer sentences of its own.
-        let is_stream = ["draco", "meshopt"].iter().any(|of| seed.name.contains(of));
+        // A stream has fewer sentences of its own, and an image none that refuses the file.
+        let is_stream = ["draco", "meshopt", "textures"].iter().any(|of| seed.name.contains(of));
         let (files, kinds) = if is_stream { (50_000, 100) } else { (100_000, 200) };
         break_it(seed, files, kinds);
     }
@@ -188,9 +195,13 @@ fn deep_files_need_no_deep_stack() {
         let unread = format!(r#","textures":{}"#, deep(open, close));
         let extras = format!(r#"{{"mesh":0,"extras":{}}}"#, deep(open, close));
         let nodes = deep(open, close);
-        files.push(Parts { other: unread, ..Parts::default() });
+        files.push(Parts { other: unread.clone(), ..Parts::default() });
         files.push(Parts { nodes: extras, ..Parts::default() });
         files.push(Parts { nodes, ..Parts::default() });
+        // Where a material cuts, textures are read, and what is wrong with them is a note.
+        let cut = format!(r#"{unread},"materials":[{{"alphaMode":"BLEND"}}]"#);
+        let meshes = parts::mesh(r#"{"attributes":{"POSITION":0},"indices":1,"material":0}"#);
+        files.push(Parts { other: cut, meshes, ..Parts::default() });
     }
     // Each node the only child of the one before: this one loads.
     let links: String = (1..DEEP).map(|i| format!(r#"{{"children":[{i}]}},"#)).collect();
@@ -199,8 +210,8 @@ fn deep_files_need_no_deep_stack() {
         let opened: Vec<_> = files.iter().map(|parts| whole::open(&parts.file())).collect();
         let loaded: Vec<bool> = opened.iter().map(Result::is_ok).collect();
         // Of what is not read it is enough that it is closed; the rest is too deep, and the last no depth.
-        let unread = [true, false, false];
-        let never = [false; 3];
+        let unread = [true, false, false, true];
+        let never = [false; 4];
         assert_eq!(loaded, [&unread[..], &unread, &never, &never, &[true]].concat());
     };
     let thread = std::thread::Builder::new().stack_size(LITTLE_STACK).spawn(open_all).unwrap();
@@ -288,7 +299,11 @@ fn models_of_other_makers() {
     }
     let (mut whole_ones, mut broken_ones) = (Outcome::default(), Outcome::default());
     let check = |opened: Result<Scene, antumbra::Error>| {
-        let checked = opened.map(|scene| whole::check(&scene)).map_err(|e| e.to_string());
+        let checked = opened.map(|scene| {
+            images::check(&scene);
+            whole::check(&scene);
+        });
+        let checked = checked.map_err(|e| e.to_string());
         checked.inspect_err(|sentence| whole::check_sentence(sentence))
     };
     for path in &paths {
@@ -296,13 +311,14 @@ fn models_of_other_makers() {
             .unwrap()
             .map(|entry| entry.unwrap().metadata().unwrap().len() as usize)
             .sum();
-        let opened = check(within_memory(beside, || from_gltf(path)).0);
+        let room = |file: &[u8]| BYTES_PER_BYTE * beside as u64 + BYTES_BESIDE + images::room(file);
+        let file = std::fs::read(path).unwrap();
+        let opened = check(within(room(&file), beside, || from_gltf(path)).0);
         match &opened {
             Ok(()) => println!("{}: it loads", path.display()),
             Err(sentence) => println!("{sentence}"),
         }
         whole_ones.add(opened);
-        let file = std::fs::read(path).unwrap();
         let mut random = Random::new(file.len() as u64);
         let seed = Seed::read(path);
         // Of those with buffers in files of their own.
@@ -320,7 +336,8 @@ fn models_of_other_makers() {
             };
             let _kept = Kept(&broken, "broken-model".into());
             let open = || from_gltf_bytes(&broken, path);
-            broken_ones.add(check(within_memory(beside + broken.len(), open).0));
+            let allowed = room(&broken) + BYTES_PER_BYTE * broken.len() as u64;
+            broken_ones.add(check(within(allowed, beside + broken.len(), open).0));
         }
     }
     let loaded = whole_ones.loaded;

@@ -13,7 +13,7 @@ type Change = fn(&mut Parts);
 pub const REFUSED: &str = "primitives that share too much";
 
 /// What a file tries, and how.
-pub const FILES: [(&str, Change); 35] = [
+pub const FILES: [(&str, Change); 40] = [
     // What JSON is read into.
     ("empty nodes", |parts| add(&mut parts.nodes, &list("{}"))),
     ("instances", |parts| parts.nodes = list(r#"{"mesh":0}"#)),
@@ -133,6 +133,43 @@ pub const FILES: [(&str, Change); 35] = [
         parts.nodes = list(r#"{"mesh":0}"#);
         add(&mut parts.nodes, r#"{"extras":{"area_light":"sun","angular_size":0.01}}"#);
     }),
+    // What stops a part of the light.
+    ("as much as they may with texture coordinates, and instances of two sides", |parts| {
+        let strip = strip_of(parts, LONG / 8);
+        let placed =
+            parts.accessor(r#""bufferView":0,"componentType":5121,"type":"VEC2","count":3"#);
+        let textured = strip.replacen("}", &format!(r#","TEXCOORD_0":{placed}}},"material":1"#), 1);
+        parts.meshes = mesh(&listed(6, |_| textured.clone()));
+        parts.nodes = list(r#"{"mesh":0}"#);
+        two_sides(parts);
+        parts.other = format!(r#","materials":[{{"doubleSided":true}},{}]"#, faded(1));
+    }),
+    ("meshes of a constant map each", |parts| {
+        let surfaces = LONG / 160;
+        parts.meshes = listed(surfaces, |i| mesh(&of_material(i)));
+        parts.nodes = listed(surfaces, |i| format!(r#"{{"mesh":{i}}}"#));
+        parts.other = format!(r#","materials":[{}]"#, listed(surfaces, faded));
+    }),
+    ("nodes of a mesh in as many parts as there may be", |parts| {
+        // A place is 25 parts more than two, of which a node's bytes allow less than one.
+        let nodes = LONG / 16 / 25;
+        parts.meshes = mesh(&listed(27, of_material));
+        parts.nodes = listed(nodes, |_| r#"{"mesh":0}"#.into());
+        parts.other =
+            format!(r#","materials":[{}],"unread":"{}""#, listed(27, faded), "u".repeat(LONG));
+    }),
+    ("materials, textures, samplers and images", |parts| {
+        parts.meshes = mesh(&of_material(0));
+        let lists = ["textures", "samplers", "images"];
+        let lists = lists.map(|name| format!(r#","{name}":[{}]"#, list("{}")));
+        parts.other = format!(r#","materials":[{},{}]{}"#, faded(1), list("{}"), lists.concat());
+    }),
+    ("materials that are wrong", |parts| {
+        let surfaces = LONG / 64;
+        parts.meshes = mesh(&listed(surfaces, of_material));
+        parts.other =
+            format!(r#","materials":[{}]"#, listed(surfaces, |_| r#"{"alphaMode":""}"#.into()));
+    }),
     // What buffers are made of.
     ("a data URI", |parts| {
         parts.bin.resize(LONG, 0);
@@ -156,6 +193,20 @@ fn two_sides(parts: &mut Parts) {
     let other = format!(r#",{{"attributes":{{"POSITION":{POSITIONS}}},"material":0}}]}}"#);
     parts.meshes = parts.meshes.replacen("]}", &other, 1);
     parts.other = r#","materials":[{"doubleSided":true}]"#.into();
+}
+
+/// The triangle with a material.
+fn of_material(index: usize) -> String {
+    let of = primitive(POSITIONS, INDICES);
+    of.replacen("{", &format!(r#"{{"material":{index},"#), 1)
+}
+
+/// A material that stops a part of the light, of 254 different ones.
+fn faded(index: usize) -> String {
+    let alpha = (index % 254) as f64 / 255.0;
+    format!(
+        r#"{{"alphaMode":"BLEND","pbrMetallicRoughness":{{"baseColorFactor":[1,1,1,{alpha:.3}]}}}}"#
+    )
 }
 
 /// A triangle for each byte, which shares no vertex.

@@ -2,7 +2,7 @@
 
 use super::textures::{PLACES, alphas, assert_told, base, png, scene, textured};
 use super::*;
-use image::ExtendedColorType::La8;
+use image::ExtendedColorType::{self, La8};
 
 /// An accessor of the square's places.
 fn places(file: &mut File, bytes: &[u8], component: u32, normalized: bool) -> usize {
@@ -295,4 +295,60 @@ fn notes_come_to_an_end() {
     assert_eq!(found.notes.len(), 33);
     assert_eq!(found.notes[32], "there would be 68 more notes on the file");
     assert_eq!(found.meshes.len(), 1);
+}
+
+/// The file that `tests/files/untrusted` and the fuzzer break; `ANTUMBRA_WRITE_SEED=1` writes it anew.
+#[test]
+fn the_fuzzers_seed_loads() {
+    let path = antumbra_tests::example::root().join("fuzz/seeds/textures.glb");
+    if std::env::var("ANTUMBRA_WRITE_SEED").is_ok() {
+        let steps: Vec<u8> = (0..64).map(|i| 4 * i).collect();
+        let pixels = |channels: usize| -> Vec<u8> {
+            steps.iter().flat_map(|step| vec![*step; channels]).collect()
+        };
+        let (mut jpeg, mut webp) = (Vec::new(), Vec::new());
+        let encoder = image::codecs::jpeg::JpegEncoder::new(&mut jpeg);
+        image::ImageEncoder::write_image(encoder, &pixels(1), 8, 8, ExtendedColorType::L8).unwrap();
+        let encoder = image::codecs::webp::WebPEncoder::new_lossless(&mut webp);
+        image::ImageEncoder::write_image(encoder, &pixels(4), 8, 8, ExtendedColorType::Rgba8)
+            .unwrap();
+        let (mut file, primitives, mut members) =
+            textured(&[png([8, 8], La8, &pixels(2)), jpeg, webp]);
+        let shorts: Vec<u8> = PLACES.as_flattened().iter().map(|c| (c * 255.0) as u8).collect();
+        let second = places(&mut file, &shorts, 5121, true);
+        members["textures"] = json!([
+            {"source": 0, "sampler": 0}, {"source": 1}, {"extensions": {"EXT_texture_webp": {"source": 2}}},
+            {"source": 3, "sampler": 1},
+        ]);
+        let inside = json!({"uri": data_uri(&alphas(&[0, 9])), "mimeType": "image/png"});
+        members["images"].as_array_mut().unwrap().push(inside);
+        members["samplers"] = json!([{"wrapS": 33071, "magFilter": 9728}, {"wrapT": 33648}]);
+        let mut faded = base("BLEND", json!({"doubleSided": true}));
+        faded["pbrMetallicRoughness"] = json!({
+            "baseColorFactor": [1, 1, 1, 0.5],
+            "baseColorTexture": {"index": 2, "texCoord": 1, "extensions": {"KHR_texture_transform": {
+                "offset": [0.5, 1], "rotation": 1, "scale": [2, 3], "texCoord": 0
+            }}},
+        });
+        members["materials"] = json!([
+            base("MASK", json!({"alphaCutoff": 0.3})),
+            faded,
+            {"extensions": {"KHR_materials_transmission":
+                {"transmissionFactor": 0.5, "transmissionTexture": {"index": 1, "texCoord": 1}}}},
+            {"alphaMode": "BLEND", "extensions": {"KHR_materials_pbrSpecularGlossiness":
+                {"diffuseFactor": [1, 1, 1, 0.9], "diffuseTexture": {"index": 3}}}},
+            {"alphaMode": "MASK", "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.1]}},
+        ]);
+        let with = |material: usize| {
+            let mut primitive = primitives[0].clone();
+            primitive["material"] = json!(material);
+            primitive["attributes"]["TEXCOORD_1"] = json!(second);
+            primitive
+        };
+        let root = file.root(&(0..5).map(with).collect(), members);
+        std::fs::write(&path, glb(&root, &file.bin)).unwrap();
+    }
+    let scene = from_gltf(&path).unwrap();
+    assert!(scene.notes.is_empty(), "{:?}", scene.notes);
+    assert_eq!((scene.meshes.len(), scene.opacity_maps.len()), (5, 5));
 }
