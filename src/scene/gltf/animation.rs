@@ -6,45 +6,43 @@
 use super::Problem;
 use super::accessor::Vectors;
 use super::buffers::Buffers;
-use super::json::{Root, at, by_name, from_json};
-use crate::error::quoted;
+use super::document::{Document, item};
+use super::json::{Root, at, by_name, shortened};
 use glam::DQuat;
+use gltf::json::animation::{Channel, Interpolation, Property, Sampler};
+use gltf::json::validation::Checked;
 use serde::Deserialize;
+use serde::de::IgnoredAny;
+use serde_json::Value;
+use serde_json::value::RawValue;
 use std::collections::BTreeSet;
 
-#[derive(Deserialize)]
-struct Animations {
+/// An animation, whose channels are read one by one: those of extensions have no node, and the crate has no such one.
+#[derive(Default, Deserialize)]
+struct Animation<'a> {
     #[serde(default)]
-    animations: Vec<Animation>,
+    name: Value,
+    #[serde(borrow, default)]
+    channels: Vec<&'a RawValue>,
+    #[serde(borrow, default)]
+    samplers: Vec<&'a RawValue>,
 }
 
+/// The part of a channel by which an extension's is known.
 #[derive(Deserialize)]
-struct Animation {
-    name: Option<String>,
-    #[serde(default)]
-    channels: Vec<Channel>,
-    #[serde(default)]
-    samplers: Vec<Sampler>,
-}
-
-#[derive(Deserialize)]
-struct Channel {
-    sampler: usize,
-    target: Target,
+struct Targeted {
+    target: Option<Target>,
 }
 
 #[derive(Deserialize)]
 struct Target {
-    /// A channel without a node is an extension's.
-    node: Option<usize>,
-    path: String,
+    node: Option<IgnoredAny>,
 }
 
-#[derive(Deserialize)]
-struct Sampler {
-    input: usize,
-    output: usize,
-    interpolation: Option<String>,
+/// An animation of the document.
+fn read<'a>(text: &'a RawValue, number: usize) -> Result<Animation<'a>, Problem> {
+    serde_json::from_str(text.get())
+        .map_err(|e| format!("animations[{number}] is wrong: {}", shortened(&e.to_string())))
 }
 
 /// What an animation makes of a member of a node.
@@ -64,45 +62,58 @@ impl Changes {
     pub fn at(
         root: &Root,
         buffers: &Buffers,
-        text: &[u8],
+        document: &Document,
         (name, time): (&str, f64),
     ) -> Result<Self, Problem> {
-        let Animations { animations } = from_json(text)?;
-        let names = animations.iter().map(|animation| animation.name.as_deref());
-        let number = by_name("animation", names, name)?;
+        let animations = || document.animations.iter().enumerate();
+        let names: Vec<Value> = animations()
+            .map(|(number, text)| read(text, number).map(|of| of.name).unwrap_or_default())
+            .collect();
+        let number = by_name("animation", names.iter().map(Value::as_str), name)?;
         if !time.is_finite() {
             return Err(format!("an animation has no time {time}"));
         }
-        let Some(animation) = animations.get(number) else { return Ok(Self(Vec::new())) };
+        let Some((number, text)) = animations().nth(number) else { return Ok(Self(Vec::new())) };
+        let animation = read(text, number)?;
         let mut rising = BTreeSet::new();
         let mut changes = Vec::new();
-        for (nth, channel) in animation.channels.iter().enumerate() {
+        for nth in 0..animation.channels.len() {
             let owner = |what: &'static str| {
                 move || format!("the {what} of channel {nth} of animation {number}")
             };
-            let Some(node) = channel.target.node else { continue };
+            let channels = &animation.channels;
+            let targeted: Targeted = item(channels, nth, "channels", owner("target"))?;
+            if targeted.target.is_some_and(|target| target.node.is_none()) {
+                continue;
+            }
+            let channel: Channel = item(channels, nth, "channels", owner("target"))?;
+            let node = channel.target.node.value();
             at(&root.nodes, node, "nodes", owner("target"))?;
-            let sampler = at(&animation.samplers, channel.sampler, "samplers", owner("target"))?;
-            let times = Vectors::<1>::open(root, buffers, sampler.input, false, &owner("input"))?;
-            if rising.insert(sampler.input) {
+            let sampler = channel.sampler.value();
+            let sampler: Sampler = item(&animation.samplers, sampler, "samplers", owner("target"))?;
+            let [input, of] = [sampler.input.value(), sampler.output.value()];
+            let times = Vectors::<1>::open(root, buffers, input, false, &owner("input"))?;
+            if rising.insert(input) {
                 rise(&times, &owner("input"))?;
             }
-            let keys = Keys::around(&times, time, sampler, &owner("input"))?;
+            let keys = Keys::around(&times, time, &sampler, &owner("input"))?;
             let output = owner("output");
-            let vectors = || Vectors::<3>::open(root, buffers, sampler.output, false, &output);
-            let change = match channel.target.path.as_str() {
-                "translation" => Change::Translation(keys.value(&vectors()?, &output)?),
-                "scale" => Change::Scale(keys.value(&vectors()?, &output)?),
-                "rotation" => {
-                    let of = Vectors::<4>::open(root, buffers, sampler.output, true, &output)?;
+            let vectors = || Vectors::<3>::open(root, buffers, of, false, &output);
+            let change = match channel.target.path {
+                Checked::Valid(Property::Translation) => {
+                    Change::Translation(keys.value(&vectors()?, &output)?)
+                }
+                Checked::Valid(Property::Scale) => Change::Scale(keys.value(&vectors()?, &output)?),
+                Checked::Valid(Property::Rotation) => {
+                    let of = Vectors::<4>::open(root, buffers, of, true, &output)?;
                     Change::Rotation(keys.rotation(&of, &output)?)
                 }
-                "weights" => {
-                    let of = Vectors::<1>::open(root, buffers, sampler.output, true, &output)?;
+                Checked::Valid(Property::MorphTargetWeights) => {
+                    let of = Vectors::<1>::open(root, buffers, of, true, &output)?;
                     Change::Weights(keys.weights(&of, times.len(), &output)?)
                 }
                 // Those of extensions, such as `pointer`.
-                _ => continue,
+                Checked::Invalid => continue,
             };
             changes.push((node, change));
         }
@@ -169,15 +180,14 @@ impl Keys {
         sampler: &Sampler,
         owner: &dyn Fn() -> String,
     ) -> Result<Self, Problem> {
-        let way = match sampler.interpolation.as_deref() {
-            None | Some("LINEAR") => Way::Linear,
-            Some("STEP") => Way::Step,
-            Some("CUBICSPLINE") => Way::Cubic,
-            Some(other) => {
+        let way = match sampler.interpolation {
+            Checked::Valid(Interpolation::Linear) => Way::Linear,
+            Checked::Valid(Interpolation::Step) => Way::Step,
+            Checked::Valid(Interpolation::CubicSpline) => Way::Cubic,
+            Checked::Invalid => {
                 return Err(format!(
-                    "{} is interpolated by {}, which glTF has not",
-                    owner(),
-                    quoted(other)
+                    "{} is interpolated by none of LINEAR, STEP and CUBICSPLINE, and glTF has no other",
+                    owner()
                 ));
             }
         };

@@ -3,8 +3,6 @@
 use super::Problem;
 use crate::error::quoted;
 use serde::Deserialize;
-use serde::de::IgnoredAny;
-use serde_json::Value;
 #[cfg(feature = "draco")]
 use std::collections::BTreeMap;
 
@@ -85,47 +83,10 @@ pub(super) struct NodeExtensions {
     pub punctual: Option<PunctualOfNode>,
 }
 
-/// The extensions of a material that may let light through.
-#[derive(Debug, Deserialize)]
-pub(super) struct MaterialExtensions {
-    #[serde(rename = "KHR_materials_transmission")]
-    pub transmission: Option<IgnoredAny>,
-}
-
 /// The light at a node.
 #[derive(Debug, Deserialize)]
 pub(super) struct PunctualOfNode {
     pub light: usize,
-}
-
-/// The extensions of the whole file.
-#[derive(Debug, Deserialize)]
-pub(super) struct RootExtensions {
-    #[serde(rename = "KHR_lights_punctual")]
-    pub punctual: Option<Punctuals>,
-}
-
-#[derive(Debug, Deserialize)]
-pub(super) struct Punctuals {
-    #[serde(default)]
-    pub lights: Vec<Punctual>,
-}
-
-/// A light without a size.
-#[derive(Debug, Deserialize)]
-pub(super) struct Punctual {
-    #[serde(rename = "type")]
-    pub kind: String,
-    #[serde(default = "white")]
-    pub color: [f64; 3],
-    /// Candela, or of a directional light lux; 1 where it is not there.
-    pub intensity: Option<f64>,
-    #[serde(default)]
-    pub extras: Value,
-}
-
-fn white() -> [f64; 3] {
-    [1.0; 3]
 }
 
 #[derive(Debug, Deserialize)]

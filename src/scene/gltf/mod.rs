@@ -2,10 +2,10 @@
 //!
 //! ```text
 //! bytes ─ buffers::split ─► JSON ─ json::parse ─► Root ─ nodes::placed ─► nodes in the world
-//!                  │                                                   │
-//!                  └► binary chunk ► buffers ► accessor ► triangles    ├► extras: light, role
-//!                                                             │        └► camera
-//!                                                             └────────────► Scene
+//!                  │                         └► Document ► surfaces        │
+//!                  └► binary chunk ► buffers ► accessor ► triangles        ├► extras: light, role
+//!                                                             │            └► camera
+//!                                                             └────────────────► Scene
 //! ```
 //! A file is a stranger's: whatever it says is an index, a length or a count is held against what
 //! there is before it is used, and anything wrong becomes one sentence that names the thing.
@@ -14,6 +14,7 @@ mod accessor;
 mod animation;
 mod attributes;
 mod buffers;
+mod document;
 #[cfg(feature = "draco")]
 mod draco;
 mod extensions;
@@ -157,6 +158,7 @@ fn read(path: &Path) -> Result<Vec<u8>, Problem> {
 fn parse(bytes: &[u8], folder: &Path, options: &GltfOptions) -> Result<Scene, Problem> {
     let (text, chunk) = buffers::split(bytes)?;
     let mut root = json::parse(text)?;
+    let document: document::Document = json::from_json(text)?;
     #[cfg(feature = "draco")]
     draco::mark(&mut root);
     if let Some(scene) = options.scene {
@@ -166,12 +168,12 @@ fn parse(bytes: &[u8], folder: &Path, options: &GltfOptions) -> Result<Scene, Pr
     if let Some(animation) = options.animation {
         // Nodes move before anything stands at them; what it reads of buffers is let go again.
         let buffers = buffers::Buffers::new(&root, bytes.len(), chunk, folder);
-        let changes = animation::Changes::at(&root, &buffers, text, animation)?;
+        let changes = animation::Changes::at(&root, &buffers, &document, animation)?;
         changes.apply(&mut root)?;
     }
     let buffers = buffers::Buffers::new(&root, bytes.len(), chunk, folder);
     let (all_placed, worlds) = nodes::placed(&root)?;
-    let mut meshes = Meshes::new(&root, &buffers, text, &worlds);
+    let mut meshes = Meshes::new(&root, &buffers, &document, &worlds);
     let mut places = instances::Places::new(&root, &buffers);
     let mut scene = Scene::default();
 
@@ -212,7 +214,7 @@ fn parse(bytes: &[u8], folder: &Path, options: &GltfOptions) -> Result<Scene, Pr
             json::at(&root.nodes, placed.node, "nodes", || nodes::label(&root, placed.node))?;
         // An area light is what a node with both was given on purpose.
         let light = match extras::light(&root, placed.node, &node.extras, &placed.world, &all)? {
-            None => punctual::light(&root, placed, &all, options.light_radius)?,
+            None => punctual::light((&root, &document), placed, &all, options.light_radius)?,
             light => light,
         };
         scene.lights.extend(light);
@@ -227,6 +229,7 @@ fn parse(bytes: &[u8], folder: &Path, options: &GltfOptions) -> Result<Scene, Pr
 /// The file's meshes, each read when a node first places it, and those that look the same once.
 struct Meshes<'a> {
     root: &'a json::Root,
+    document: &'a document::Document<'a>,
     reader: triangles::Reader<'a>,
     /// The meshes of the scene.
     read: Vec<Mesh>,
@@ -247,12 +250,13 @@ impl<'a> Meshes<'a> {
     fn new(
         root: &'a json::Root,
         buffers: &'a buffers::Buffers<'a>,
-        text: &'a [u8],
+        document: &'a document::Document<'a>,
         worlds: &'a [DMat4],
     ) -> Self {
         Self {
             root,
-            reader: triangles::Reader::new(root, buffers, text),
+            document,
+            reader: triangles::Reader::new(root, buffers, document),
             read: Vec::new(),
             boxes: Vec::new(),
             origins: Vec::new(),
@@ -309,7 +313,8 @@ impl<'a> Meshes<'a> {
             return Ok(Rc::clone(known));
         }
         let owner = || nodes::label(self.root, node);
-        let skin = pose::Skin::read(self.root, self.buffers, self.worlds, index, &owner)?;
+        let read = (self.root, self.document);
+        let skin = pose::Skin::read(read, self.buffers, self.worlds, index, &owner)?;
         let skin = Rc::new(skin);
         self.skins.insert(index, Rc::clone(&skin));
         Ok(skin)

@@ -53,7 +53,8 @@ pub(super) fn label(root: &Root, node: usize) -> String {
 /// The nodes of the default scene that something stands at, with their transforms, in the order of the file; and where
 /// there are skins, the transforms of all nodes to the world, which are 1 for those outside the scene.
 pub(super) fn placed(root: &Root) -> Result<(Vec<Placed>, Vec<DMat4>), Problem> {
-    let skinned = if root.skins.is_empty() { 0 } else { root.nodes.len() };
+    let is_skinned = root.nodes.iter().any(|node| node.skin.is_some());
+    let skinned = if is_skinned { root.nodes.len() } else { 0 };
     let mut worlds = vec![DMat4::IDENTITY; skinned];
     // The transforms of what has children, and whether it is hidden. They wait in a list, not on the call stack, which
     // a deep file could exhaust.

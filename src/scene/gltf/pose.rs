@@ -3,6 +3,7 @@
 use super::Problem;
 use super::accessor::Vectors;
 use super::buffers::Buffers;
+use super::document::{Document, item};
 use super::json::{Primitive, Root, Target, at};
 use super::nodes;
 use glam::{DMat3, DMat4, DVec3};
@@ -72,24 +73,24 @@ pub(super) struct Skin {
 impl Skin {
     /// `skins[index]`, where nodes stand as `worlds` says.
     pub fn read(
-        root: &Root,
+        (root, document): (&Root, &Document),
         buffers: &Buffers,
         worlds: &[DMat4],
         index: usize,
         owner: &dyn Fn() -> String,
     ) -> Result<Self, Problem> {
-        let skin = at(&root.skins, index, "skins", owner)?;
+        let skin: gltf::json::Skin = item(&document.skins, index, "skins", owner)?;
         let name = || format!("skins[{index}]");
         let bind = match skin.inverse_bind_matrices {
             Some(accessor) => {
                 let what = || format!("the inverseBindMatrices of {}", name());
-                Some(Vectors::<16>::open(root, buffers, accessor, false, &what)?)
+                Some(Vectors::<16>::open(root, buffers, accessor.value(), false, &what)?)
             }
             None => None,
         };
         let mut joints = Vec::with_capacity(skin.joints.len());
         for (nth, joint) in skin.joints.iter().enumerate() {
-            let world = at(worlds, *joint, "nodes", name)?;
+            let world = at(worlds, joint.value(), "nodes", name)?;
             let bind = match bind.as_ref().map(|bind| bind.get(nth)) {
                 None => DMat4::IDENTITY,
                 Some(Some(bind)) => DMat4::from_cols_array(&bind.map(f64::from)),
@@ -107,7 +108,7 @@ impl Skin {
             }
             joints.push(matrix);
         }
-        let first = skin.joints.first().and_then(|joint| worlds.get(*joint));
+        let first = skin.joints.first().and_then(|joint| worlds.get(joint.value()));
         let Some(origin) = first.map(|world| world.w_axis.truncate()) else {
             return Err(format!("{} has no joints", name()));
         };

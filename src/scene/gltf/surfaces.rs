@@ -1,12 +1,12 @@
 //! How much of the light the surfaces of a material stop, and where, as their alpha and their transmission say.
 //!
-//! The document, materials, textures, samplers and images, is the `gltf` crate's. It is read for what a triangle has alone,
-//! each item when it is first used: what is wrong with one stops no scene, and ends as a note.
+//! What is wrong with a material or a texture stops no scene, and ends as a note.
 
 use super::Problem;
 use super::buffers::Buffers;
+use super::document::{Document, item};
 use super::images::{self, Channel, Plane, Room};
-use super::json::{Root, at, from_json, shortened};
+use super::json::at;
 use super::notes::Notes;
 use super::placing::Placing;
 use crate::scene::{OpacityMap, Wrap};
@@ -15,9 +15,7 @@ use gltf::json::texture::{Info, MagFilter, Sampler, WrappingMode};
 use gltf::json::validation::Checked;
 use gltf::json::{Image, Material, Texture};
 use serde::Deserialize;
-use serde::de::DeserializeOwned;
 use serde_json::Value;
-use serde_json::value::RawValue;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
@@ -48,29 +46,20 @@ impl Surface {
     pub const UNKNOWN: Self = Self { cover: Cover::Unknown, placing: None };
 }
 
-/// The items of a file that say how surfaces look, each as text.
-#[derive(Default, Deserialize)]
-struct Document<'a> {
-    #[serde(borrow, default)]
-    materials: Vec<&'a RawValue>,
-    #[serde(borrow, default)]
-    textures: Vec<&'a RawValue>,
-    #[serde(borrow, default)]
-    samplers: Vec<&'a RawValue>,
-    #[serde(borrow, default)]
-    images: Vec<&'a RawValue>,
+/// How the triangles look that have a material.
+#[derive(Clone, Copy)]
+pub(super) struct Look {
+    pub double_sided: bool,
+    /// Whether its alpha counts.
+    pub fades: bool,
+    pub surface: Surface,
 }
 
-/// An item of a list, read.
-fn item<T: DeserializeOwned>(
-    items: &[&RawValue],
-    index: usize,
-    what: &str,
-    owner: &str,
-) -> Result<T, Problem> {
-    let text = at(items, index, what, || owner.into())?.get();
-    serde_json::from_str(text)
-        .map_err(|e| format!("{what}[{index}] is wrong: {}", shortened(&e.to_string())))
+/// What is read of a material in which something else is wrong.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct Sides {
+    double_sided: bool,
 }
 
 /// How much light a material stops: of one part of it, or of all.
@@ -102,11 +91,9 @@ enum Key {
 
 /// The surfaces of a file's materials, and the opacity maps that they have.
 pub(super) struct Surfaces<'a> {
-    root: &'a Root,
+    document: &'a Document<'a>,
     buffers: &'a Buffers<'a>,
-    text: &'a [u8],
-    document: Option<Document<'a>>,
-    known: BTreeMap<usize, Surface>,
+    known: BTreeMap<usize, Look>,
     planes: BTreeMap<(usize, Channel), Result<Rc<Plane>, Problem>>,
     places: BTreeMap<Key, usize>,
     room: Room,
@@ -115,13 +102,10 @@ pub(super) struct Surfaces<'a> {
 }
 
 impl<'a> Surfaces<'a> {
-    /// The surfaces of a file whose JSON is `text`.
-    pub fn new(root: &'a Root, buffers: &'a Buffers<'a>, text: &'a [u8]) -> Self {
+    pub fn new(document: &'a Document<'a>, buffers: &'a Buffers<'a>) -> Self {
         Self {
-            root,
+            document,
             buffers,
-            text,
-            document: None,
             known: BTreeMap::new(),
             planes: BTreeMap::new(),
             places: BTreeMap::new(),
@@ -131,33 +115,42 @@ impl<'a> Surfaces<'a> {
         }
     }
 
-    /// The surface of `materials[index]`.
-    pub fn of(&mut self, index: usize) -> Surface {
-        if !self.root.materials.get(index).is_some_and(|material| material.cuts()) {
-            return Surface::WHOLE;
-        }
+    /// The look of `materials[index]`, which `owner` refers to.
+    pub fn of(&mut self, index: usize, owner: impl FnOnce() -> String) -> Result<Look, Problem> {
         if let Some(known) = self.known.get(&index) {
-            return *known;
+            return Ok(*known);
         }
-        let surface = self.read(index).unwrap_or_else(|problem| {
+        let materials = &self.document.materials;
+        at(materials, index, "materials", owner)?;
+        let material = item::<Material>(materials, index, "materials", String::new);
+        let read = match &material {
+            Ok(material) => self.read(material, &format!("materials[{index}]")),
+            Err(problem) => Err(problem.clone()),
+        };
+        let surface = read.unwrap_or_else(|problem| {
             self.notes.tell(format!("{problem}; what has materials[{index}] counts whole"));
             Surface::UNKNOWN
         });
-        self.known.insert(index, surface);
-        surface
+        let look = match material {
+            Ok(of) => Look {
+                double_sided: of.double_sided,
+                fades: !matches!(of.alpha_mode, Checked::Valid(AlphaMode::Opaque)),
+                surface,
+            },
+            Err(_) => Look {
+                double_sided: item::<Sides>(materials, index, "materials", String::new)
+                    .is_ok_and(|sides| sides.double_sided),
+                fades: false,
+                surface,
+            },
+        };
+        self.known.insert(index, look);
+        Ok(look)
     }
 
-    fn read(&mut self, index: usize) -> Result<Surface, Problem> {
-        let name = format!("materials[{index}]");
-        if self.document.is_none() {
-            // Where it fails, it fails once.
-            self.document = Some(Document::default());
-            self.document = Some(from_json(self.text)?);
-        }
-        let materials = self.document.as_ref().map_or(&[][..], |document| &document.materials);
-        let material: Material = item(materials, index, "materials", "a mesh")?;
-        let alpha = self.alpha(&material, &name)?;
-        let transmission = self.transmission(&material, &name)?;
+    fn read(&mut self, material: &Material, name: &str) -> Result<Surface, Problem> {
+        let alpha = self.alpha(material, name)?;
+        let transmission = self.transmission(material, name)?;
         let both = match (alpha, transmission) {
             (Opacity::Even(a), Opacity::Even(b)) => Opacity::Even(a * b),
             (one, Opacity::Even(1.0)) | (Opacity::Even(1.0), one) => one,
@@ -242,12 +235,12 @@ impl<'a> Surfaces<'a> {
         ends: [f64; 2],
         name: &str,
     ) -> Result<Opacity, Problem> {
-        let Some(document) = &self.document else { return Ok(Opacity::Even(1.0)) };
+        let document = self.document;
         let index = info.index.value();
-        let texture: Texture = item(&document.textures, index, "textures", name)?;
+        let texture: Texture = item(&document.textures, index, "textures", || name.into())?;
         let name = format!("textures[{index}]");
         let sampler = match texture.sampler {
-            Some(of) => item(&document.samplers, of.value(), "samplers", &name)?,
+            Some(of) => item(&document.samplers, of.value(), "samplers", || name.clone())?,
             None => Sampler::default(),
         };
         let image = source(&texture)
@@ -255,7 +248,7 @@ impl<'a> Surfaces<'a> {
         let known = match self.planes.get(&(image, channel)) {
             Some(known) => known.clone(),
             None => {
-                let read = item::<Image>(&document.images, image, "images", &name);
+                let read = item::<Image>(&document.images, image, "images", || name);
                 let read = read
                     .and_then(|of| images::plane(&of, image, channel, self.buffers, &self.room))
                     .map(Rc::new);

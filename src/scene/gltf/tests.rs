@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
 use super::buffers::Buffers;
+use super::document::Document;
 use super::json::Root;
 use super::pose::Pose;
 use super::triangles::Reader;
@@ -35,8 +36,9 @@ fn triangles_beyond_the_limit_are_refused_before_they_are_made() {
     let root = root(&json!([{"byteLength": bytes.len()}]), bytes.len(), &members);
     // As of a file so long that its length is no limit.
     let buffers = Buffers::new(&root, 5 * most, Some(&bytes), Path::new("."));
+    let document = Document::default();
     let read = |limit| {
-        let mut reader = Reader::with_limit(&root, &buffers, b"{}", limit);
+        let mut reader = Reader::with_limit(&root, &buffers, &document, limit);
         let shape = reader.shape(0, &Pose::default()).unwrap();
         reader.read(0, &shape, None)
     };

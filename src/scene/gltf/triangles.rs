@@ -4,11 +4,12 @@ use super::Problem;
 use super::accessor::{Indices, Vectors};
 use super::attributes::Attributes;
 use super::buffers::Buffers;
+use super::document::Document;
 use super::json::{self, Root, at};
 use super::placing::Placing;
 use super::pose::{Pose, Posed, Posing, Skin};
 use super::source::{Coordinates, Label, Placed, Source, Topology};
-use super::surfaces::{Cover, Surface, Surfaces};
+use super::surfaces::{Cover, Look, Surface, Surfaces};
 use crate::scene::Mesh;
 use std::rc::Rc;
 
@@ -52,19 +53,18 @@ pub(super) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// A reader of a file whose JSON is `text`.
-    pub fn new(root: &'a Root, buffers: &'a Buffers<'a>, text: &'a [u8]) -> Self {
-        Self::with_limit(root, buffers, text, MAX_TRIANGLES)
+    pub fn new(root: &'a Root, buffers: &'a Buffers<'a>, document: &'a Document<'a>) -> Self {
+        Self::with_limit(root, buffers, document, MAX_TRIANGLES)
     }
 
     /// A reader that refuses what goes past `triangles` in all.
     pub fn with_limit(
         root: &'a Root,
         buffers: &'a Buffers<'a>,
-        text: &'a [u8],
+        document: &'a Document<'a>,
         triangles: usize,
     ) -> Self {
-        let surfaces = Surfaces::new(root, buffers, text);
+        let surfaces = Surfaces::new(document, buffers);
         Self { root, buffers, limit: triangles, made: 0, placed: Placed::default(), surfaces }
     }
 
@@ -75,10 +75,7 @@ impl<'a> Reader<'a> {
             let label = Label::new(mesh, index, i);
             let attributes = &primitive.attributes;
             let (double_sided, surface) = match primitive.material {
-                Some(m) => {
-                    let material = at(&self.root.materials, m, "materials", || label.to_string())?;
-                    (material.double_sided, self.surface(m, attributes, &label))
-                }
+                Some(material) => self.surface(material, attributes, &label)?,
                 None => (false, Surface::WHOLE),
             };
             let placing = |of: Placing| Box::new((of, attributes.coordinates(of.set)));
@@ -98,17 +95,23 @@ impl<'a> Reader<'a> {
         Ok(Shape { primitives: primitives?, skin: pose.skin })
     }
 
-    /// The surface of a primitive that has `materials[material]`.
-    fn surface(&mut self, material: usize, attributes: &Attributes, label: &Label) -> Surface {
-        let surface = self.surfaces.of(material);
+    /// Whether both sides are front faces of a primitive that has `materials[material]`, and its surface.
+    fn surface(
+        &mut self,
+        material: usize,
+        attributes: &Attributes,
+        label: &Label,
+    ) -> Result<(bool, Surface), Problem> {
+        let Look { double_sided, fades, surface } =
+            self.surfaces.of(material, || label.to_string())?;
         let color = attributes.color.and_then(|color| self.root.accessors.get(color));
-        let fades = self.root.materials.get(material).is_some_and(|of| of.alpha_mode.is_some());
         if !(fades && color.is_some_and(|color| color.kind == "VEC4")) {
-            return surface;
+            return Ok((double_sided, surface));
         }
         let notes = &mut self.surfaces.notes;
         notes.tell(format!("{label} has an alpha in its COLOR_0, which is passed over"));
-        if surface == Surface::WHOLE { Surface::UNKNOWN } else { surface }
+        let is_whole = surface == Surface::WHOLE;
+        Ok((double_sided, if is_whole { Surface::UNKNOWN } else { surface }))
     }
 
     /// The triangles of `meshes[index]`, which looks like this: what is single-sided, then what is

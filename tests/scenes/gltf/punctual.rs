@@ -65,7 +65,7 @@ fn punctual_lights_that_cannot_be_used_are_a_sentence() {
         let found = file.scene(&primitives, members).unwrap_err();
         assert!(found.contains("node \"lamp\"") && found.contains(sentence), "{found}");
     };
-    refused(json!({"type": "area"}), json!({}), "its light is a \"area\"");
+    refused(json!({"type": "area"}), json!({}), "lights[0] is of no type that there is");
     refused(
         json!({"type": "point"}),
         json!({"radius": "wide"}),
