@@ -59,6 +59,7 @@ fn load(options: &Options) -> Result<Scene, Stop> {
         scene: options.part.as_deref(),
         animation,
         light_radius: options.light_radius,
+        emissive: options.emissive,
     };
     let mut scene = from_gltf_as(&options.scene, &of).map_err(|e| no_gltf(&options.scene, e))?;
     for (node, role) in &options.roles {

@@ -53,6 +53,9 @@ struct Arguments {
     /// The radius in metres of the file's point and spot lights whose extras say none
     #[arg(long, value_name = "R", default_value_t = 0.0, hide_default_value = true)]
     light_radius: f64,
+    /// Makes area lights of the file's meshes that shine (emissiveFactor)
+    #[arg(long)]
+    emissive: bool,
     /// Overrides a node's role (occluder, receiver, both), repeatable
     #[arg(long = "role", value_name = "NODE=ROLE")]
     roles: Vec<String>,
@@ -96,6 +99,8 @@ pub struct Options {
     pub animation: Option<(String, f64)>,
     /// The radius of lights of the file that say none, metres.
     pub light_radius: f64,
+    /// Whether meshes that shine are lights.
+    pub emissive: bool,
     pub roles: Vec<(String, Role)>,
     pub repeat: u32,
     /// The pixels of each frame that are traced to measure its error; 0 for none.
@@ -207,6 +212,7 @@ pub fn parse(arguments: impl Iterator<Item = OsString>) -> Result<Options, Stop>
         part: a.part,
         animation: a.animation.map(|name| (name, a.time)),
         light_radius: a.light_radius,
+        emissive: a.emissive,
         roles,
         repeat: a.repeat,
         audit: a.audit,

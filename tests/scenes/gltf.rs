@@ -11,6 +11,7 @@ mod posed;
 mod punctual;
 mod refusals;
 mod round_lights;
+mod shining;
 mod sizes;
 mod texture_parts;
 mod textures;

@@ -36,6 +36,10 @@ pub(super) struct Document<'a> {
 pub(super) struct Extensions<'a> {
     #[serde(borrow, default, rename = "KHR_lights_punctual", deserialize_with = "lenient")]
     pub punctual: Lights<'a>,
+    #[serde(borrow, default, rename = "EXT_lights_area", deserialize_with = "lenient")]
+    pub ext_area: Lights<'a>,
+    #[serde(borrow, default, rename = "KHR_lights_area", deserialize_with = "lenient")]
+    pub khr_area: Lights<'a>,
 }
 
 #[derive(Default, Deserialize)]

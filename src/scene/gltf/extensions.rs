@@ -13,6 +13,8 @@ pub(super) const QUANTIZATION: &str = "KHR_mesh_quantization";
 const READ: &[&str] = &[
     QUANTIZATION,
     "KHR_node_visibility",
+    "EXT_lights_area",
+    "KHR_lights_area",
     "EXT_mesh_gpu_instancing",
     #[cfg(feature = "draco")]
     DRACO,
@@ -80,12 +82,23 @@ pub(super) struct NodeExtensions {
     #[serde(rename = "EXT_mesh_gpu_instancing")]
     pub instancing: Option<Instancing>,
     #[serde(rename = "KHR_lights_punctual")]
-    pub punctual: Option<PunctualOfNode>,
+    pub punctual: Option<LightOfNode>,
+    #[serde(rename = "EXT_lights_area")]
+    pub ext_area: Option<LightOfNode>,
+    #[serde(rename = "KHR_lights_area")]
+    pub khr_area: Option<LightOfNode>,
+}
+
+impl NodeExtensions {
+    /// Whether there is a light at the node.
+    pub fn shines(&self) -> bool {
+        self.punctual.is_some() || self.ext_area.is_some() || self.khr_area.is_some()
+    }
 }
 
 /// The light at a node.
 #[derive(Debug, Deserialize)]
-pub(super) struct PunctualOfNode {
+pub(super) struct LightOfNode {
     pub light: usize,
 }
 

@@ -21,7 +21,7 @@ use serde_json::Value;
 
 /// The shortest and longest side of a light in the world, in metres: techniques divide by its area,
 /// in f32 on the GPU, and multiply by it.
-const SIDES: [f64; 2] = [1e-6, 1e6];
+pub(super) const SIDES: [f64; 2] = [1e-6, 1e6];
 
 /// The largest difference of a node's scales along its axes, relative to them, and the largest cosine of the angles
 /// between these axes, for a light that must stay round: files write both as f32.
@@ -85,7 +85,7 @@ pub(super) fn unusable(error: Error) -> Problem {
 }
 
 /// A rectangle in the node's X and Y, or of a side of 0 a line along the other, or of two a point.
-fn rectangle(extras: &Value, world: &DMat4) -> Result<Light, Problem> {
+pub(super) fn rectangle(extras: &Value, world: &DMat4) -> Result<Light, Problem> {
     let (width, height) = (side(extras, "width")?, side(extras, "height")?);
     let center = center(world)?;
     let half_u = world.x_axis.truncate() * (0.5 * width);
@@ -110,13 +110,13 @@ fn rectangle(extras: &Value, world: &DMat4) -> Result<Light, Problem> {
 }
 
 /// A disk about the node's origin in its X and Y.
-fn disk(extras: &Value, world: &DMat4) -> Result<Light, Problem> {
+pub(super) fn disk(extras: &Value, world: &DMat4) -> Result<Light, Problem> {
     let (center, radius) = (center(world)?, radius(extras, world)?);
     Light::disc(center, emission(world), radius).map_err(unusable)
 }
 
 /// A sphere about the node's origin.
-fn sphere(extras: &Value, world: &DMat4) -> Result<Light, Problem> {
+pub(super) fn sphere(extras: &Value, world: &DMat4) -> Result<Light, Problem> {
     Light::sphere(center(world)?, radius(extras, world)?).map_err(unusable)
 }
 

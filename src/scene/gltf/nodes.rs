@@ -89,7 +89,7 @@ pub(super) fn placed(root: &Root) -> Result<(Vec<Placed>, Vec<DMat4>), Problem> 
         if !node.children.is_empty() {
             parents.push((world, hidden));
         }
-        let shines = node.extensions.as_ref().is_some_and(|e| e.punctual.is_some());
+        let shines = node.extensions.as_ref().is_some_and(|e| e.shines());
         if node.mesh.is_some() || node.camera.is_some() || shines || !node.extras.is_null() {
             placed.push(Placed { node: index, world, hidden });
         }

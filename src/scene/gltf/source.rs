@@ -2,6 +2,7 @@
 
 use super::Problem;
 use super::accessor::{Indices, Vectors};
+use super::emissive::Emission;
 use super::json;
 use super::placing::Placing;
 use super::pose::Posed;
@@ -106,6 +107,7 @@ impl Coordinates<'_> {
 pub(super) struct Source<'a> {
     pub double_sided: bool,
     pub cover: Cover,
+    pub emission: Option<Box<Emission>>,
     pub topology: Topology,
     pub triangles: usize,
     pub positions: Vectors<'a, 3>,
@@ -119,8 +121,8 @@ pub(super) struct Source<'a> {
 
 impl Source<'_> {
     /// What primitives of one mesh of the scene have in common.
-    pub fn kind(&self) -> (bool, Cover) {
-        (self.double_sided, self.cover)
+    pub fn kind(&self) -> (bool, Cover, Option<Emission>) {
+        (self.double_sided, self.cover, self.emission.as_deref().copied())
     }
 
     pub fn corners(&self) -> usize {

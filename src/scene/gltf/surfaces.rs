@@ -5,6 +5,7 @@
 use super::Problem;
 use super::buffers::Buffers;
 use super::document::{Document, item};
+use super::emissive::Emission;
 use super::images::{self, Channel, Plane, Room};
 use super::json::at;
 use super::notes::Notes;
@@ -23,9 +24,10 @@ use std::rc::Rc;
 const CUTOFF: f32 = 0.5;
 
 /// How much light a surface stops.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Cover {
     /// All of it.
+    #[default]
     Whole,
     /// Less in places that are not known.
     Unknown,
@@ -34,7 +36,7 @@ pub(super) enum Cover {
 }
 
 /// What a material makes of the triangles that have it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Surface {
     pub cover: Cover,
     /// Where its opacity map lies; `None` where that is the same everywhere.
@@ -46,13 +48,15 @@ impl Surface {
     pub const UNKNOWN: Self = Self { cover: Cover::Unknown, placing: None };
 }
 
-/// How the triangles look that have a material.
-#[derive(Clone, Copy)]
+/// How the triangles look that have a material, or none.
+#[derive(Clone, Copy, Default)]
 pub(super) struct Look {
     pub double_sided: bool,
     /// Whether its alpha counts.
     pub fades: bool,
     pub surface: Surface,
+    /// What it shines with, where that is to be read.
+    pub emission: Option<Emission>,
 }
 
 /// What is read of a material in which something else is wrong.
@@ -93,6 +97,8 @@ enum Key {
 pub(super) struct Surfaces<'a> {
     document: &'a Document<'a>,
     buffers: &'a Buffers<'a>,
+    /// Whether what shines is read.
+    emissive: bool,
     known: BTreeMap<usize, Look>,
     planes: BTreeMap<(usize, Channel), Result<Rc<Plane>, Problem>>,
     places: BTreeMap<Key, usize>,
@@ -102,10 +108,11 @@ pub(super) struct Surfaces<'a> {
 }
 
 impl<'a> Surfaces<'a> {
-    pub fn new(document: &'a Document<'a>, buffers: &'a Buffers<'a>) -> Self {
+    pub fn new(document: &'a Document<'a>, buffers: &'a Buffers<'a>, emissive: bool) -> Self {
         Self {
             document,
             buffers,
+            emissive,
             known: BTreeMap::new(),
             planes: BTreeMap::new(),
             places: BTreeMap::new(),
@@ -136,16 +143,37 @@ impl<'a> Surfaces<'a> {
                 double_sided: of.double_sided,
                 fades: !matches!(of.alpha_mode, Checked::Valid(AlphaMode::Opaque)),
                 surface,
+                emission: self.emission(&of, index),
             },
             Err(_) => Look {
                 double_sided: item::<Sides>(materials, index, "materials", String::new)
                     .is_ok_and(|sides| sides.double_sided),
                 fades: false,
                 surface,
+                emission: None,
             },
         };
         self.known.insert(index, look);
         Ok(look)
+    }
+
+    /// What a material shines with.
+    fn emission(&mut self, material: &Material, index: usize) -> Option<Emission> {
+        let of = material.extensions.as_ref().and_then(|e| e.emissive_strength.as_ref());
+        let strength = of.map_or(1.0, |of| of.emissive_strength.0);
+        let emission = Emission::new(material.emissive_factor.0, strength);
+        let emission = emission.filter(|_| self.emissive)?;
+        if material.emissive_texture.is_some() {
+            self.notes.tell(format!(
+                "materials[{index}] has an emissiveTexture, which is passed over: it shines as its factor says"
+            ));
+        }
+        if material.double_sided {
+            self.notes.tell(format!(
+                "materials[{index}] is double-sided, and what shines with it shines to its front alone"
+            ));
+        }
+        Some(emission)
     }
 
     fn read(&mut self, material: &Material, name: &str) -> Result<Surface, Problem> {

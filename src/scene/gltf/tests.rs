@@ -38,9 +38,11 @@ fn triangles_beyond_the_limit_are_refused_before_they_are_made() {
     let buffers = Buffers::new(&root, 5 * most, Some(&bytes), Path::new("."));
     let document = Document::default();
     let read = |limit| {
-        let mut reader = Reader::with_limit(&root, &buffers, &document, limit);
+        let mut reader = Reader::with_limit(&root, &buffers, (&document, false), limit);
         let shape = reader.shape(0, &Pose::default()).unwrap();
-        reader.read(0, &shape, None)
+        reader
+            .read(0, &shape, None)
+            .map(|parts| parts.into_iter().map(|(mesh, _)| mesh).collect::<Vec<_>>())
     };
     let found = read(4 * most).unwrap_err();
     assert!(found.starts_with("mesh \"shape\", primitive 4: its triangles exceed"), "{found}");

@@ -5,6 +5,7 @@ use super::accessor::{Indices, Vectors};
 use super::attributes::Attributes;
 use super::buffers::Buffers;
 use super::document::Document;
+use super::emissive::Emission;
 use super::json::{self, Root, at};
 use super::placing::Placing;
 use super::pose::{Pose, Posed, Posing, Skin};
@@ -33,6 +34,7 @@ pub(super) struct PrimitiveShape {
     cover: Cover,
     /// Where its opacity map lies, and the accessor of its texture coordinates.
     placing: Option<Box<(Placing, Option<usize>)>>,
+    emission: Option<Box<Emission>>,
     posing: Posing,
 }
 
@@ -53,18 +55,24 @@ pub(super) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    pub fn new(root: &'a Root, buffers: &'a Buffers<'a>, document: &'a Document<'a>) -> Self {
-        Self::with_limit(root, buffers, document, MAX_TRIANGLES)
+    /// A reader that reads what shines where it is to be lights.
+    pub fn new(
+        root: &'a Root,
+        buffers: &'a Buffers<'a>,
+        document: &'a Document<'a>,
+        emissive: bool,
+    ) -> Self {
+        Self::with_limit(root, buffers, (document, emissive), MAX_TRIANGLES)
     }
 
     /// A reader that refuses what goes past `triangles` in all.
     pub fn with_limit(
         root: &'a Root,
         buffers: &'a Buffers<'a>,
-        document: &'a Document<'a>,
+        (document, emissive): (&'a Document<'a>, bool),
         triangles: usize,
     ) -> Self {
-        let surfaces = Surfaces::new(document, buffers);
+        let surfaces = Surfaces::new(document, buffers, emissive);
         Self { root, buffers, limit: triangles, made: 0, placed: Placed::default(), surfaces }
     }
 
@@ -74,9 +82,9 @@ impl<'a> Reader<'a> {
         let shape = |(i, primitive): (usize, &json::Primitive)| {
             let label = Label::new(mesh, index, i);
             let attributes = &primitive.attributes;
-            let (double_sided, surface) = match primitive.material {
-                Some(material) => self.surface(material, attributes, &label)?,
-                None => (false, Surface::WHOLE),
+            let look = match primitive.material {
+                Some(material) => self.look(material, attributes, &label)?,
+                None => Look::default(),
             };
             let placing = |of: Placing| Box::new((of, attributes.coordinates(of.set)));
             Ok(PrimitiveShape {
@@ -84,9 +92,10 @@ impl<'a> Reader<'a> {
                 position: attributes.position,
                 normal: attributes.normal,
                 indices: primitive.indices,
-                double_sided,
-                cover: surface.cover,
-                placing: surface.placing.map(placing),
+                double_sided: look.double_sided,
+                cover: look.surface.cover,
+                placing: look.surface.placing.map(placing),
+                emission: look.emission.map(Box::new),
                 posing: Posing::of(pose, primitive),
             })
         };
@@ -95,34 +104,34 @@ impl<'a> Reader<'a> {
         Ok(Shape { primitives: primitives?, skin: pose.skin })
     }
 
-    /// Whether both sides are front faces of a primitive that has `materials[material]`, and its surface.
-    fn surface(
+    /// The look of a primitive that has `materials[material]`.
+    fn look(
         &mut self,
         material: usize,
         attributes: &Attributes,
         label: &Label,
-    ) -> Result<(bool, Surface), Problem> {
-        let Look { double_sided, fades, surface } =
-            self.surfaces.of(material, || label.to_string())?;
+    ) -> Result<Look, Problem> {
+        let look = self.surfaces.of(material, || label.to_string())?;
         let color = attributes.color.and_then(|color| self.root.accessors.get(color));
-        if !(fades && color.is_some_and(|color| color.kind == "VEC4")) {
-            return Ok((double_sided, surface));
+        if !(look.fades && color.is_some_and(|color| color.kind == "VEC4")) {
+            return Ok(look);
         }
         let notes = &mut self.surfaces.notes;
         notes.tell(format!("{label} has an alpha in its COLOR_0, which is passed over"));
-        let is_whole = surface == Surface::WHOLE;
-        Ok((double_sided, if is_whole { Surface::UNKNOWN } else { surface }))
+        let is_whole = look.surface == Surface::WHOLE;
+        let surface = if is_whole { Surface::UNKNOWN } else { look.surface };
+        Ok(Look { surface, ..look })
     }
 
     /// The triangles of `meshes[index]`, which looks like this: what is single-sided, then what is
-    /// double-sided, and of each what stops all light, then what stops less.
+    /// double-sided, and of each what stops all light, then what stops less; with what each shines with.
     /// `skin` is that of its pose.
     pub fn read(
         &mut self,
         index: usize,
         shape: &Shape,
         skin: Option<&Rc<Skin>>,
-    ) -> Result<Vec<Mesh>, Problem> {
+    ) -> Result<Vec<(Mesh, Option<Emission>)>, Problem> {
         let mesh = at(&self.root.meshes, index, "meshes", || "a node".into())?;
         let mut sources = Vec::new();
         for (i, primitive) in shape.primitives.iter().enumerate() {
@@ -131,7 +140,9 @@ impl<'a> Reader<'a> {
         sources.sort_by_key(Source::kind);
         let mut parts = Vec::new();
         for alike in sources.chunk_by(|a, b| a.kind() == b.kind()) {
-            let Some((double_sided, cover)) = alike.first().map(Source::kind) else { continue };
+            let Some((double_sided, cover, emission)) = alike.first().map(Source::kind) else {
+                continue;
+            };
             let opacity_map = match cover {
                 Cover::Map(map) => Some(map),
                 Cover::Whole | Cover::Unknown => None,
@@ -157,7 +168,7 @@ impl<'a> Reader<'a> {
                 mesh.texture_coordinates.shrink_to_fit();
             }
             if !mesh.indices.is_empty() {
-                parts.push(mesh);
+                parts.push((mesh, emission));
             }
         }
         Ok(parts)
@@ -221,6 +232,7 @@ impl<'a> Reader<'a> {
         let mut source = Source {
             double_sided: shape.double_sided,
             cover: shape.cover,
+            emission: shape.emission.clone(),
             topology,
             triangles,
             positions,
