@@ -113,7 +113,7 @@ uint row_stopped(Cut cut, Figure f, uint triangle, mat3 planes, vec3 middle, uin
         vec2 at = vec2(i, j) + vec2(float(j) + 0.5, CELLS.x - 0.5 - float(i)) / CELLS.yx;
         at = (at / CELLS * 2.0 - 1.0) * f.half_size;
         vec3 ray = middle + f.u * at.x + f.v * at.y;
-        stopped |= stops(cut, ray * planes, even_number(vec2(i, j), triangle)) ? 1u << i : 0u;
+        stopped |= stops(cut, ray * planes, even_number(vec2(i, j), triangle >> 1u)) ? 1u << i : 0u;
     }
     return stopped;
 }

@@ -75,18 +75,17 @@ bool stops(float opacity, float cutoff, uint bits, float even)
 
 // Numbers that are spread evenly over 0..1 among neighbours: multiples of two irrational numbers (Weyl 1916). Each of sixteen
 // kinds of triangle has two others, so that pairs and triples of numbers of one place are spread evenly, too: what lets
-// light through behind each other does so independently. A triangle is known by a number, however near to that of others.
+// light through behind each other does so independently. The number of a triangle tells its kind.
 float even_number(vec2 at, uint triangle)
 {
-    uint kind = triangle * 0x9e3779b9u >> 16u;
-    uint pair = kind >> 2u & 3u;
+    uint pair = triangle >> 2u & 3u;
     vec2 by = pair == 0u ? vec2(0.75487767, 0.56984029)
             : pair == 1u ? vec2(0.41421356, 0.73205081)
             : pair == 2u ? vec2(0.23606798, 0.64575131)
                          : vec2(0.31662479, 0.60555128);
-    by = (kind & 1u) != 0u ? by.yx : by;
-    by.y = (kind & 2u) != 0u ? -by.y : by.y;
-    return fract(dot(fract(at * by), vec2(1.0)) + float(kind >> 4u) / 4096.0);
+    by = (triangle & 1u) != 0u ? by.yx : by;
+    by.y = (triangle & 2u) != 0u ? -by.y : by.y;
+    return fract(dot(fract(at * by), vec2(1.0)) + float(triangle * 0x9e3779b9u >> 20u) / 4096.0);
 }
 
 #endif

@@ -23,8 +23,9 @@ void hand_over_place()
     vec3 given = there ? vec3(coordinates[at], coordinates[at + 1u], 1.0) : vec3(0.0, 0.0, 1.0);
     place = vec2(dot(c.u.xyz, given), dot(c.v.xyz, given));
     factor_and_cutoff = vec2(c.v.w, c.u.w);
-    // A triangle has the number of its first vertex, and so have both halves of most quads.
-    bits_and_triangle = uvec2(c.bits, uint(gl_VertexIndex) + 0x10000u * uint(gl_InstanceIndex));
+    // A triangle has the number of its first vertex, and so have both halves of most quads. Five is prime to the kinds of
+    // triangle, and to the four vertices of a quad.
+    bits_and_triangle = uvec2(c.bits, uint(gl_VertexIndex) + 5u * uint(gl_InstanceIndex));
 }
 
 #endif

@@ -34,7 +34,7 @@ float opacity_of(Cut cut, ivec2 at)
 }
 
 // Whether a ray is stopped that meets the triangle at these shares of its corners; `even` is spread evenly over 0..1 among
-// the rays.
+// the rays, and the same for both triangles of a leaf, which mostly are the halves of a quad.
 bool stops(Cut cut, vec3 shares, float even)
 {
     float sum = shares.x + shares.y + shares.z;

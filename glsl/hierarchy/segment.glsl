@@ -71,7 +71,7 @@ bool crosses(Segment s, uint triangle)
 #ifdef CUT
     if (hit && corner.w > CUT_FROM) {
         // Each edge's side is the share of the corner across from it.
-        hit = stops(cut_of(triangle), edges.yzx, even_number(ray_number, triangle));
+        hit = stops(cut_of(triangle), edges.yzx, even_number(ray_number, triangle >> 1u));
     }
 #endif
     return hit;

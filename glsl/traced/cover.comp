@@ -124,7 +124,7 @@ Mask with_hidden(Mask hidden, Mask more, uint nth, Triangle t, vec3 q, vec3 firs
                 vec2 at = vec2(number % SIDE, number / SIDE);
                 vec3 ray = first + vec3(at + TURN * vec2(at.y, -at.x), 0.0);
                 vec3 shares = vec3(dot(bc, ray), dot(ca, ray), dot(ab, ray));
-                stopped |= stops(cut, shares, even_number(at, nth)) ? 1u << bit : 0u;
+                stopped |= stops(cut, shares, even_number(at, nth >> 1u)) ? 1u << bit : 0u;
             }
             hidden = with_word(hidden, w, stopped);
         }

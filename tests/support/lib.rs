@@ -24,6 +24,7 @@ mod signature;
 pub mod situations;
 mod skip;
 pub mod tables;
+pub mod textured_file;
 
 pub use device::{TestDevice, device};
 pub use function::{Case, Function};
