@@ -113,17 +113,19 @@ uint row_stopped(Cut cut, Figure f, uint triangle, mat3 planes, vec3 middle, uin
         vec2 at = vec2(i, j) + vec2(float(j) + 0.5, CELLS.x - 0.5 - float(i)) / CELLS.yx;
         at = (at / CELLS * 2.0 - 1.0) * f.half_size;
         vec3 ray = middle + f.u * at.x + f.v * at.y;
-        stopped |= stops(cut, ray * planes, even_number(vec2(i, j), triangle >> 1u)) ? 1u << i : 0u;
+        uint cell = 1u << i;
+        bool stop = stops(cut, ray * planes, even_number(vec2(i, j), triangle >> 1u));
+        stopped |= stop ? cell : 0u;
     }
     return stopped;
 }
 
-uvec4 rows_stopped(Cut cut, Figure f, uint triangle, mat3 planes, vec3 middle, uvec4 cells, int j)
+// The jth row of cells.
+uint row_of(Cells cells, int j)
 {
-    return uvec4(row_stopped(cut, f, triangle, planes, middle, cells.x, j),
-                 row_stopped(cut, f, triangle, planes, middle, cells.y, j + 1),
-                 row_stopped(cut, f, triangle, planes, middle, cells.z, j + 2),
-                 row_stopped(cut, f, triangle, planes, middle, cells.w, j + 3));
+    uvec4 four = mix(mix(cells.a, cells.b, bvec4(j >= 4)), mix(cells.c, cells.d, bvec4(j >= 12)), bvec4(j >= 8));
+    uvec2 two = mix(four.xy, four.zw, bvec2((j & 2) != 0));
+    return mix(two.x, two.y, (j & 1) != 0);
 }
 #endif
 
@@ -164,10 +166,18 @@ Cells with_hidden(Cells hidden, Figure f, vec3 tip, vec3 middle, uint triangle)
     if (corner.w > CUT_FROM && !none) {
         Cut cut = cut_of(triangle);
         mat3 planes = mat3(bc, ca, ab);
-        more.a = rows_stopped(cut, f, triangle, planes, middle, more.a & ~hidden.a, 0);
-        more.b = rows_stopped(cut, f, triangle, planes, middle, more.b & ~hidden.b, 4);
-        more.c = rows_stopped(cut, f, triangle, planes, middle, more.c & ~hidden.c, 8);
-        more.d = rows_stopped(cut, f, triangle, planes, middle, more.d & ~hidden.d, 12);
+        Cells covered = more;
+        more = Cells(uvec4(0u), uvec4(0u), uvec4(0u), uvec4(0u));
+        // In a loop: some drivers compile each call anew, and for long.
+        for (int j = 0; j < ROWS; ++j) {
+            uint open = row_of(covered, j) & ~row_of(hidden, j);
+            uint row = row_stopped(cut, f, triangle, planes, middle, open, j);
+            uvec4 stopped = mix(uvec4(0u), uvec4(row), equal(ivec4(0, 1, 2, 3), ivec4(j & 3)));
+            more.a |= j / 4 == 0 ? stopped : uvec4(0u);
+            more.b |= j / 4 == 1 ? stopped : uvec4(0u);
+            more.c |= j / 4 == 2 ? stopped : uvec4(0u);
+            more.d |= j / 4 == 3 ? stopped : uvec4(0u);
+        }
     }
 #endif
     hidden.a |= more.a;

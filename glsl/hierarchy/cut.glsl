@@ -29,8 +29,8 @@ Cut cut_of(uint triangle)
 float opacity_of(Cut cut, ivec2 at)
 {
     uint nth = uint(at.y * cut.size.x + at.x);
-    uint word = texelFetch(opacities, texel(cut.first + nth / 4u), 0).x;
-    return float(word >> 8u * (nth % 4u) & 0xffu) / 255.0;
+    uint word = texelFetch(opacities, texel(cut.first + (nth >> 2u)), 0).x;
+    return float(word >> 8u * (nth & 3u) & 0xffu) / 255.0;
 }
 
 // Whether a ray is stopped that meets the triangle at these shares of its corners; `even` is spread evenly over 0..1 among

@@ -32,16 +32,22 @@ struct Triangle {
     vec3 b;
     vec3 c;
     float sharp; // the volume that a receiver spans with it, below which the receiver is in its plane
-    bool cut;    // whether a texture says which parts of it block
 };
 
-Triangle triangle_of(uint nth, vec3 middle)
+// A volume that no receiver spans with a triangle.
+const float NEVER = 3.0e38;
+
+// The triangle of a number, which hides nothing unless a texture cuts it out as is said.
+Triangle triangle_of(uint nth, vec3 middle, bool cut)
 {
     vec4 a = imageLoad(triangles, texel(3u * nth));
     vec4 b = imageLoad(triangles, texel(3u * nth + 1u));
     vec4 c = imageLoad(triangles, texel(3u * nth + 2u));
-    return Triangle(in_light_space(a.xyz) - middle, in_light_space(b.xyz) - middle, in_light_space(c.xyz) - middle,
-                    b.w * sharp.x + c.w * sharp.y, a.w > CUT_FROM);
+    float least = b.w * sharp.x + c.w * sharp.y;
+#ifdef CUT
+    least = a.w > CUT_FROM == cut ? least : NEVER;
+#endif
+    return Triangle(in_light_space(a.xyz) - middle, in_light_space(b.xyz) - middle, in_light_space(c.xyz) - middle, least);
 }
 
 // The light's samples that a triangle hides from a receiver at `q`, as bounds for each of the rows of samples; `first` is
@@ -101,38 +107,37 @@ Mask behind_plane(Triangle t, vec3 q, vec3 first, float word)
     return samples_between(bounds_of(own, own, own, false), word);
 }
 
-// The samples that are hidden with those that the triangle of a number hides; `first` is where the first sample is, from the
-// receiver at `q`, and `word` the number of the masks' first word.
-Mask with_hidden(Mask hidden, Mask more, uint nth, Triangle t, vec3 q, vec3 first, float word)
-{
 #ifdef CUT
-    if (t.cut) {
-        Cut cut = cut_of(nth);
-        vec3 a = t.a - q;
-        vec3 b = t.b - q;
-        vec3 c = t.c - q;
-        vec3 ab = cross(a, b);
-        vec3 bc = cross(b, c);
-        vec3 ca = cross(c, a);
-        for (int w = 0; w < MASK_WORDS; ++w) {
-            uint open = word_of(more, w) & ~word_of(hidden, w);
-            uint stopped = 0u;
-            while (open != 0u) {
-                int bit = findLSB(int(open));
-                open &= open - 1u;
-                int number = (int(word) + w) * 32 + bit;
-                vec2 at = vec2(number % SIDE, number / SIDE);
-                vec3 ray = first + vec3(at + TURN * vec2(at.y, -at.x), 0.0);
-                vec3 shares = vec3(dot(bc, ray), dot(ca, ray), dot(ab, ray));
-                stopped |= stops(cut, shares, even_number(at, nth >> 1u)) ? 1u << bit : 0u;
-            }
-            hidden = with_word(hidden, w, stopped);
+// The samples that are hidden with those that a triangle's texture stops on the way to the receiver at `q`, of those that the
+// triangle covers; `first` is where the first sample is, from there, and `word` the number of the masks' first word.
+Mask with_stopped(Mask hidden, Mask covered, uint nth, Triangle t, vec3 q, vec3 first, float word)
+{
+    Cut cut = cut_of(nth);
+    vec3 a = t.a - q;
+    vec3 b = t.b - q;
+    vec3 c = t.c - q;
+    vec3 ab = cross(a, b);
+    vec3 bc = cross(b, c);
+    vec3 ca = cross(c, a);
+    for (int w = 0; w < MASK_WORDS; ++w) {
+        uint open = word_of(covered, w) & ~word_of(hidden, w);
+        uint stopped = 0u;
+        while (open != 0u) {
+            int bit = findLSB(int(open));
+            open &= open - 1u;
+            int number = (int(word) + w) * 32 + bit;
+            vec2 at = vec2(number % SIDE, number / SIDE);
+            vec3 ray = first + vec3(at + TURN * vec2(at.y, -at.x), 0.0);
+            vec3 shares = vec3(dot(bc, ray), dot(ca, ray), dot(ab, ray));
+            uint of_bit = 1u << bit;
+            bool stop = stops(cut, shares, even_number(at, nth >> 1u));
+            stopped |= stop ? of_bit : 0u;
         }
-        return hidden;
+        hidden = with_word(hidden, w, stopped);
     }
-#endif
-    return either(hidden, more);
+    return hidden;
 }
+#endif
 
 // What all samples count for.
 SUM whole_light()
@@ -195,25 +200,37 @@ void main()
         Mask hidden0 = whole_mask(mine0 ? 0u : 0xffffffffu);
         Mask hidden1 = whole_mask(mine1 ? 0u : 0xffffffffu);
         for (uint i = 0u; i < entry.few && !(is_full(hidden0) && is_full(hidden1)); ++i) {
-            uint number = lists[entry.first + i];
-            Triangle t = triangle_of(number, middle);
-            hidden0 = with_hidden(hidden0, few_hidden_by(t, q0, first0, word), number, t, q0, first0, word);
-            hidden1 = with_hidden(hidden1, few_hidden_by(t, q1, first1, word), number, t, q1, first1, word);
+            Triangle t = triangle_of(lists[entry.first + i], middle, false);
+            hidden0 = either(hidden0, few_hidden_by(t, q0, first0, word));
+            hidden1 = either(hidden1, few_hidden_by(t, q1, first1, word));
         }
         for (uint i = crossing ? entry.many : 0u; i < entry.many && !(is_full(hidden0) && is_full(hidden1)); ++i) {
-            uint number = lists[entry.others + i];
-            Triangle t = triangle_of(number, middle);
-            hidden0 = with_hidden(hidden0, hidden_by(t, q0, first0, word), number, t, q0, first0, word);
-            hidden1 = with_hidden(hidden1, hidden_by(t, q1, first1, word), number, t, q1, first1, word);
+            Triangle t = triangle_of(lists[entry.others + i], middle, false);
+            hidden0 = either(hidden0, hidden_by(t, q0, first0, word));
+            hidden1 = either(hidden1, hidden_by(t, q1, first1, word));
         }
         for (uint i = crossing ? 0u : entry.many; i < entry.many && !(is_full(hidden0) && is_full(hidden1)); ++i) {
-            uint number = lists[entry.others + i];
-            Triangle t = triangle_of(number, middle);
-            Mask by0 = both(hidden_by(t, q0, first0, word), behind_plane(t, q0, first0, word));
-            Mask by1 = both(hidden_by(t, q1, first1, word), behind_plane(t, q1, first1, word));
-            hidden0 = with_hidden(hidden0, by0, number, t, q0, first0, word);
-            hidden1 = with_hidden(hidden1, by1, number, t, q1, first1, word);
+            Triangle t = triangle_of(lists[entry.others + i], middle, false);
+            hidden0 = either(hidden0, both(hidden_by(t, q0, first0, word), behind_plane(t, q0, first0, word)));
+            hidden1 = either(hidden1, both(hidden_by(t, q1, first1, word), behind_plane(t, q1, first1, word)));
         }
+#ifdef CUT
+        // Those that textures cut out come last, and to one place: some drivers compile each call anew, and for long.
+        for (uint i = 0u; i < entry.few + entry.many; ++i) {
+            bool few = i < entry.few;
+            uint number = lists[few ? entry.first + i : entry.others + i - entry.few];
+            Triangle t = triangle_of(number, middle, true);
+            for (int r = t.sharp == NEVER ? 2 : 0; r < 2; ++r) {
+                vec3 q = r == 0 ? q0 : q1;
+                vec3 first = r == 0 ? first0 : first1;
+                Mask covered = few ? few_hidden_by(t, q, first, word) : hidden_by(t, q, first, word);
+                covered = few || crossing ? covered : both(covered, behind_plane(t, q, first, word));
+                Mask hidden = with_stopped(r == 0 ? hidden0 : hidden1, covered, number, t, q, first, word);
+                hidden0 = r == 0 ? hidden : hidden0;
+                hidden1 = r == 0 ? hidden1 : hidden;
+            }
+        }
+#endif
         seen0 += seen_of(hidden0, m * MASK_WORDS);
         seen1 += seen_of(hidden1, m * MASK_WORDS);
     }

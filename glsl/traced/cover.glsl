@@ -106,13 +106,13 @@ bool is_full(Mask m)
 
 uint word_of(Mask m, int nth)
 {
-    return nth == 0 ? m.words.x : m.words.y;
+    return mix(m.words.x, m.words.y, nth != 0);
 }
 
 // The mask with more samples in its nth word.
 Mask with_word(Mask m, int nth, uint bits)
 {
-    m.words |= nth == 0 ? uvec2(bits, 0u) : uvec2(0u, bits);
+    m.words |= mix(uvec2(0u), uvec2(bits), equal(ivec2(0, 1), ivec2(nth)));
     return m;
 }
 
