@@ -3,6 +3,7 @@
 use super::Problem;
 use crate::error::quoted;
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 #[cfg(feature = "draco")]
 use std::collections::BTreeMap;
 
@@ -174,4 +175,28 @@ pub(super) struct Meshopt {
     pub count: u64,
     pub mode: String,
     pub filter: Option<String>,
+}
+
+/// What is read of a material in which something else is wrong.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct RestOfMaterial {
+    #[serde(default)]
+    pub double_sided: bool,
+    alpha_mode: Option<String>,
+    extensions: Option<RestOfExtensions>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct RestOfExtensions {
+    #[serde(rename = "KHR_materials_transmission")]
+    transmission: Option<IgnoredAny>,
+}
+
+impl RestOfMaterial {
+    /// Whether it stops all light, whatever is wrong.
+    pub fn is_whole(&self) -> bool {
+        let transmits = self.extensions.as_ref().is_some_and(|e| e.transmission.is_some());
+        !transmits && self.alpha_mode.as_deref().is_none_or(|mode| mode == "OPAQUE")
+    }
 }

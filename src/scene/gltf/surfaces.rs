@@ -6,6 +6,7 @@ use super::Problem;
 use super::buffers::Buffers;
 use super::document::{Document, item};
 use super::emissive::Emission;
+use super::extensions::RestOfMaterial;
 use super::images::{self, Channel, Plane, Room};
 use super::json::at;
 use super::notes::Notes;
@@ -15,7 +16,6 @@ use gltf::json::material::AlphaMode;
 use gltf::json::texture::{Info, MagFilter, Sampler, WrappingMode};
 use gltf::json::validation::Checked;
 use gltf::json::{Image, Material, Texture};
-use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -57,13 +57,6 @@ pub(super) struct Look {
     pub surface: Surface,
     /// What it shines with, where that is to be read.
     pub emission: Option<Emission>,
-}
-
-/// What is read of a material in which something else is wrong.
-#[derive(Deserialize)]
-#[serde(rename_all = "camelCase")]
-struct Sides {
-    double_sided: bool,
 }
 
 /// How much light a material stops: of one part of it, or of all.
@@ -130,31 +123,36 @@ impl<'a> Surfaces<'a> {
         let materials = &self.document.materials;
         at(materials, index, "materials", owner)?;
         let material = item::<Material>(materials, index, "materials", String::new);
-        let read = match &material {
-            Ok(material) => self.read(material, &format!("materials[{index}]")),
-            Err(problem) => Err(problem.clone()),
-        };
-        let surface = read.unwrap_or_else(|problem| {
-            self.notes.tell(format!("{problem}; what has materials[{index}] counts whole"));
-            Surface::UNKNOWN
-        });
         let look = match material {
-            Ok(of) => Look {
-                double_sided: of.double_sided,
-                fades: !matches!(of.alpha_mode, Checked::Valid(AlphaMode::Opaque)),
-                surface,
-                emission: self.emission(&of, index),
-            },
-            Err(_) => Look {
-                double_sided: item::<Sides>(materials, index, "materials", String::new)
-                    .is_ok_and(|sides| sides.double_sided),
-                fades: false,
-                surface,
-                emission: None,
-            },
+            Ok(of) => {
+                let read = self.read(&of, &format!("materials[{index}]"));
+                Look {
+                    double_sided: of.double_sided,
+                    fades: !matches!(of.alpha_mode, Checked::Valid(AlphaMode::Opaque)),
+                    surface: read.unwrap_or_else(|problem| self.unknown(index, &problem)),
+                    emission: self.emission(&of, index),
+                }
+            }
+            Err(problem) => {
+                let rest = item::<RestOfMaterial>(materials, index, "materials", String::new);
+                Look {
+                    double_sided: rest.as_ref().is_ok_and(|rest| rest.double_sided),
+                    surface: match rest {
+                        Ok(rest) if rest.is_whole() => Surface::WHOLE,
+                        _ => self.unknown(index, &problem),
+                    },
+                    ..Look::default()
+                }
+            }
         };
         self.known.insert(index, look);
         Ok(look)
+    }
+
+    /// The surface of a material of which not enough can be read.
+    fn unknown(&mut self, index: usize, problem: &str) -> Surface {
+        self.notes.tell(format!("{problem}; what has materials[{index}] counts whole"));
+        Surface::UNKNOWN
     }
 
     /// What a material shines with.

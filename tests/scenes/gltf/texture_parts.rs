@@ -148,6 +148,12 @@ fn what_cannot_be_read_is_told_and_counts_whole() {
     let mut wrong = blend();
     wrong["pbrMetallicRoughness"]["baseColorFactor"] = json!("red");
     assert_told(&scene(&[whole.clone()], wrong), &["materials[0] is wrong: invalid type"]);
+    // Where nothing cuts there is nothing to tell.
+    let mut opaque = json!({"doubleSided": true, "emissiveFactor": "bright"});
+    let found = scene(&[], opaque.clone());
+    assert!(found.notes.is_empty() && !found.meshes[0].cut_out && found.meshes[0].double_sided);
+    opaque["alphaMode"] = json!("BLEND");
+    assert!(scene(&[], opaque).meshes[0].cut_out);
     // Whatever the rest of the document is.
     for (key, value) in [
         ("textures", json!({"a": 1})),
@@ -337,8 +343,22 @@ fn the_fuzzers_seed_loads() {
                 {"transmissionFactor": 0.5, "transmissionTexture": {"index": 1, "texCoord": 1}}}},
             {"alphaMode": "BLEND", "extensions": {"KHR_materials_pbrSpecularGlossiness":
                 {"diffuseFactor": [1, 1, 1, 0.9], "diffuseTexture": {"index": 3}}}},
-            {"alphaMode": "MASK", "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.1]}},
+            {
+                "alphaMode": "MASK", "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.1]},
+                "emissiveFactor": [1, 0.5, 0], "emissiveTexture": {"index": 0},
+                "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 3}},
+            },
         ]);
+        members["extensions"] = json!({
+            "EXT_lights_area": {"lights": [{"type": "rect", "size": 0.5, "rect": {"aspect": 2}}]},
+            "KHR_lights_area": {"lights": [{"shape": "sphere", "radius": 0.25, "intensity": 3}]},
+        });
+        members["nodes"] = json!([
+            {"name": "thing", "mesh": 0},
+            {"name": "panel", "extensions": {"EXT_lights_area": {"light": 0}}},
+            {"name": "ball", "extensions": {"KHR_lights_area": {"light": 0}}},
+        ]);
+        members["scenes"] = json!([{"nodes": [0, 1, 2]}]);
         let with = |material: usize| {
             let mut primitive = primitives[0].clone();
             primitive["material"] = json!(material);
@@ -350,5 +370,5 @@ fn the_fuzzers_seed_loads() {
     }
     let scene = from_gltf(&path).unwrap();
     assert!(scene.notes.is_empty(), "{:?}", scene.notes);
-    assert_eq!((scene.meshes.len(), scene.opacity_maps.len()), (5, 5));
+    assert_eq!((scene.meshes.len(), scene.opacity_maps.len(), scene.lights.len()), (5, 5, 2));
 }
