@@ -313,7 +313,10 @@ fn models_of_other_makers() {
             .sum();
         let room = |file: &[u8]| BYTES_PER_BYTE * beside as u64 + BYTES_BESIDE + images::room(file);
         let file = std::fs::read(path).unwrap();
-        let opened = check(within(room(&file), beside, || from_gltf(path)).0);
+        let opened = within(room(&file), beside, || from_gltf(path)).0;
+        let notes = opened.as_ref().map_or(&[][..], |scene| &scene.notes);
+        notes.iter().for_each(|note| println!("{}: {note}", path.display()));
+        let opened = check(opened);
         match &opened {
             Ok(()) => println!("{}: it loads", path.display()),
             Err(sentence) => println!("{sentence}"),

@@ -1,11 +1,11 @@
 //! Images from strangers: those whose bytes are wrong, and those that unfold to a million times their length.
 
-use super::Kept;
-use super::seed::Random;
+use super::seed::{Random, Seed};
+use super::{BYTES_BESIDE, BYTES_PER_BYTE, Kept};
 use allocation_counter::measure;
-use antumbra::scene::{Scene, from_gltf_bytes};
+use antumbra::scene::{GltfOptions, Scene, from_gltf_as, from_gltf_bytes};
 use antumbra_harness::whole;
-use antumbra_tests::example::root;
+use antumbra_tests::example::{folder, root};
 use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::Path;
@@ -60,6 +60,38 @@ fn mend(png: &mut [u8]) {
         png[of..of + 4].copy_from_slice(&sum);
         at = of + 4;
     }
+}
+
+/// Files that are broken in what shines, and the rest of a file with textures: as lights they are held to what others are.
+#[test]
+fn what_shines_broken_in_ten_thousand_ways() {
+    const FILES: u64 = 10_000;
+    /// What the triangles take that are looked at for lights.
+    const LOOKED_AT: u64 = 32 << 20;
+    let seed = Seed::read(&root().join("fuzz/seeds/textures.glb")).unwrap();
+    let folder = folder("shining");
+    let path = folder.join("scene.glb");
+    let options = GltfOptions { emissive: true, ..GltfOptions::default() };
+    let (mut loaded, mut lights) = (0, 0);
+    for nth in 0..FILES {
+        let file = seed.broken(&mut Random::new(nth));
+        std::fs::write(&path, &file).unwrap();
+        let _kept = Kept(&file, format!("broken-{nth}-shining.glb"));
+        let taken = measure(|| match from_gltf_as(&path, &options) {
+            Ok(scene) => {
+                whole::check(&scene);
+                check(&scene);
+                loaded += 1;
+                lights += scene.lights.len();
+            }
+            Err(error) => whole::check_sentence(&error.to_string()),
+        });
+        let allowed = BYTES_PER_BYTE * file.len() as u64 + BYTES_BESIDE + room(&file) + LOOKED_AT;
+        assert!(taken.bytes_max <= allowed, "{} bytes", taken.bytes_max);
+    }
+    println!("{loaded} of {FILES} load, with {lights} lights");
+    assert!(loaded > FILES / 20 && lights as u64 > loaded, "{loaded} load, {lights} lights");
+    std::fs::remove_dir_all(&folder).unwrap();
 }
 
 /// How many files of each kind.
