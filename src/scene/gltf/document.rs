@@ -1,7 +1,7 @@
 //! The items of a glTF file that the `gltf` crate reads: materials, textures, samplers, images, skins, animations and lights.
 //!
 //! Each is text until something that is shown uses it, and is then read alone, with every index followed by
-//! [`at`](super::json::at): what is wrong with an item stops nothing that does not need it, and three bytes of a file,
+//! [`at`]: what is wrong with an item stops nothing that does not need it, and three bytes of a file,
 //! `{},`, are 16 of the memory and not the crate's 968 of a material.
 
 use super::Problem;

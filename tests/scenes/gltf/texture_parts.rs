@@ -3,6 +3,7 @@
 use super::textures::{PLACES, alphas, assert_told, base, png, scene, textured};
 use super::*;
 use image::ExtendedColorType::{self, La8};
+use std::slice::from_ref;
 
 /// An accessor of the square's places.
 fn places(file: &mut File, bytes: &[u8], component: u32, normalized: bool) -> usize {
@@ -143,11 +144,11 @@ fn what_cannot_be_read_is_told_and_counts_whole() {
     assert_told(&scene(&[cut_off], blend()), &["images[0] cannot be read"]);
     assert_told(&scene(&[vec![]], blend()), &["images[0] cannot be read"]);
     assert_told(&scene(&[], blend()), &["materials[0] refers to textures[0], and the file has 0"]);
-    let odd = scene(&[whole.clone()], base("GLITTER", json!({})));
+    let odd = scene(from_ref(&whole), base("GLITTER", json!({})));
     assert_told(&odd, &["the alphaMode of materials[0] is not OPAQUE, MASK or BLEND"]);
     let mut wrong = blend();
     wrong["pbrMetallicRoughness"]["baseColorFactor"] = json!("red");
-    assert_told(&scene(&[whole.clone()], wrong), &["materials[0] is wrong: invalid type"]);
+    assert_told(&scene(from_ref(&whole), wrong), &["materials[0] is wrong: invalid type"]);
     // Where nothing cuts there is nothing to tell.
     let mut opaque = json!({"doubleSided": true, "emissiveFactor": "bright"});
     let found = scene(&[], opaque.clone());
@@ -165,7 +166,7 @@ fn what_cannot_be_read_is_told_and_counts_whole() {
         ("images", json!([{"bufferView": 99}])),
         ("images", json!([{"uri": "data:,"}])),
     ] {
-        let (file, primitives, mut members) = textured(&[whole.clone()]);
+        let (file, primitives, mut members) = textured(from_ref(&whole));
         members["materials"] = json!([blend()]);
         members[key] = value;
         assert_told(&file.scene(&primitives, members).unwrap(), &["materials[0] counts whole"]);

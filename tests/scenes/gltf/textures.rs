@@ -5,6 +5,7 @@ use antumbra::scene::{Mesh, OpacityMap, Wrap};
 use image::ExtendedColorType::{self, La8, Rgb8, Rgba8};
 use image::ImageEncoder;
 use image::codecs::{jpeg::JpegEncoder, png::PngEncoder, webp::WebPEncoder};
+use std::slice::from_ref;
 
 /// Four places of the square's corners.
 pub const PLACES: [[f32; 2]; 4] = [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]];
@@ -40,7 +41,7 @@ pub fn textured(images: &[Vec<u8>]) -> (File, Value, Value) {
 /// The scene of the square with a material, and images.
 pub fn scene(images: &[Vec<u8>], material: Value) -> Scene {
     let (file, primitives, mut members) = textured(images);
-    members["materials"] = json!([material]);
+    members["materials"] = vec![material].into();
     file.scene(&primitives, members).unwrap()
 }
 
@@ -86,7 +87,7 @@ pub fn assert_told(scene: &Scene, words: &[&str]) {
 #[test]
 fn a_mask_is_cut_at_its_cutoff() {
     let image = alphas(&[0, 63, 128, 255]);
-    let found = scene(&[image.clone()], base("MASK", json!({"alphaCutoff": 0.25})));
+    let found = scene(from_ref(&image), base("MASK", json!({"alphaCutoff": 0.25})));
     let (mesh, map) = only(&found);
     assert_eq!((map.size, map.texels.as_slice()), ([4, 1], &[0, 63, 128, 255][..]));
     assert_eq!((map.cutoff, map.linear, map.wrap), (Some(0.25), true, [Wrap::Repeat; 2]));
@@ -95,15 +96,15 @@ fn a_mask_is_cut_at_its_cutoff() {
     assert_eq!(mesh.texture_coordinates, expected);
     assert_eq!(mesh.positions.len(), expected.len());
     // Half is the default, and a factor takes the cutoff up.
-    assert_eq!(only(&scene(&[image.clone()], base("MASK", json!({})))).1.cutoff, Some(0.5));
-    let fainter = scene(&[image.clone()], faded("MASK", 0.5, json!({"alphaCutoff": 0.25})));
+    assert_eq!(only(&scene(from_ref(&image), base("MASK", json!({})))).1.cutoff, Some(0.5));
+    let fainter = scene(from_ref(&image), faded("MASK", 0.5, json!({"alphaCutoff": 0.25})));
     assert_eq!((only(&fainter).1.cutoff, &only(&fainter).1.texels), (Some(0.5), &map.texels));
     // Where all texels are on one side of it there is nothing to look up.
     assert_whole(&scene(&[alphas(&[128, 200])], base("MASK", json!({}))));
-    assert_whole(&scene(&[image.clone()], base("MASK", json!({"alphaCutoff": 0.0}))));
+    assert_whole(&scene(from_ref(&image), base("MASK", json!({"alphaCutoff": 0.0}))));
     for nothing in [
         scene(&[alphas(&[0, 100])], base("MASK", json!({}))),
-        scene(&[image.clone()], base("MASK", json!({"alphaCutoff": 1.1}))),
+        scene(from_ref(&image), base("MASK", json!({"alphaCutoff": 1.1}))),
         scene(&[image], faded("MASK", 0.4, json!({}))),
     ] {
         let (mesh, map) = only(&nothing);
@@ -115,12 +116,12 @@ fn a_mask_is_cut_at_its_cutoff() {
 #[test]
 fn a_blended_surface_stops_as_much_as_its_alpha() {
     let image = alphas(&[0, 51, 255]);
-    let found = scene(&[image.clone()], base("BLEND", json!({})));
+    let found = scene(from_ref(&image), base("BLEND", json!({})));
     assert_eq!(
         (only(&found).1.texels.as_slice(), only(&found).1.cutoff),
         (&[0, 51, 255][..], None)
     );
-    let found = scene(&[image.clone()], faded("BLEND", 0.6, json!({})));
+    let found = scene(from_ref(&image), faded("BLEND", 0.6, json!({})));
     assert_eq!(only(&found).1.texels, [0, 31, 153]);
     let found = scene(&[image], faded("BLEND", 0.0, json!({})));
     assert_eq!(only(&found).1.texels, [0]);
@@ -162,12 +163,12 @@ fn glass_stops_what_it_does_not_transmit() {
     // Its red, whatever the alpha.
     let image = png([2, 1], Rgba8, &[255, 0, 0, 7, 51, 9, 9, 0]);
     let of = glass(json!({"transmissionFactor": 0.5, "transmissionTexture": {"index": 0}}));
-    assert_eq!(only(&scene(&[image.clone()], of.clone())).1.texels, [128, 230]);
+    assert_eq!(only(&scene(from_ref(&image), of.clone())).1.texels, [128, 230]);
     // Half of the light meets what is left.
     let mut half = of.clone();
     half["alphaMode"] = json!("BLEND");
     half["pbrMetallicRoughness"] = json!({"baseColorFactor": [1, 1, 1, 0.5]});
-    assert_eq!(only(&scene(&[image.clone()], half)).1.texels, [64, 115]);
+    assert_eq!(only(&scene(from_ref(&image), half)).1.texels, [64, 115]);
     // Red of a JPEG, which has losses.
     let mut bytes = Vec::new();
     let reds = [[200, 0, 0]; 128].concat().into_iter().chain([[40, 0, 0]; 128].concat());
@@ -269,7 +270,7 @@ fn what_has_no_alpha_is_whole() {
     let mut jpeg = Vec::new();
     JpegEncoder::new(&mut jpeg).write_image(&[0; 12], 2, 2, Rgb8).unwrap();
     for image in [jpeg, png([2, 1], Rgb8, &[0; 6])] {
-        assert_whole(&scene(&[image.clone()], base("BLEND", json!({}))));
+        assert_whole(&scene(from_ref(&image), base("BLEND", json!({}))));
         assert_whole(&scene(&[image], base("MASK", json!({}))));
     }
 }
