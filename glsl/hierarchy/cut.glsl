@@ -40,9 +40,6 @@ bool stops(Cut cut, vec3 shares, float even)
     float sum = shares.x + shares.y + shares.z;
     vec2 place = (cut.a * shares.x + cut.b * shares.y + cut.c * shares.z) / sum;
     Texels t = texels_at(place, cut.size, cut.bits);
-    if ((cut.bits & LINEAR) == 0u) {
-        return stops(opacity_of(cut, t.low), cut.cutoff, cut.bits, even);
-    }
     vec4 found = vec4(opacity_of(cut, t.low), opacity_of(cut, ivec2(t.high.x, t.low.y)),
                       opacity_of(cut, ivec2(t.low.x, t.high.y)), opacity_of(cut, t.high));
     return stops(between(t, found), cut.cutoff, cut.bits, even);
