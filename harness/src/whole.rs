@@ -67,6 +67,7 @@ pub fn check(scene: &Scene) {
         assert!(instance.mesh < scene.meshes.len());
         assert!(instance.world_from_mesh.is_finite());
     }
+    check_opacity_maps(scene);
     scene.lights.iter().for_each(check_light);
     let cameras = scene.cameras.iter().map(|(_, camera)| *camera).chain(scene.camera);
     for camera in cameras.chain([Camera::framing(scene, 1.5)]) {
@@ -80,6 +81,23 @@ pub fn check(scene: &Scene) {
         }
         assert!(camera.clip_from_view(1.0).inverse().is_finite());
     }
+}
+
+/// Checks what a scene promises of opacity maps, texture coordinates and notes.
+fn check_opacity_maps(scene: &Scene) {
+    for map in &scene.opacity_maps {
+        let [width, height] = map.size.map(|side| side as usize);
+        assert!(width > 0 && height > 0 && map.texels.len() == width * height, "{:?}", map.size);
+        assert!(map.cutoff.is_none_or(|cutoff| cutoff > 0.0), "{:?}", map.cutoff);
+    }
+    for mesh in &scene.meshes {
+        let places = mesh.texture_coordinates.as_flattened();
+        let count = mesh.opacity_map.map_or(0, |_| 2 * mesh.positions.len());
+        assert!(places.len() == count && places.iter().all(|place| place.is_finite()));
+        assert!(mesh.opacity_map.is_none_or(|map| mesh.cut_out && map < scene.opacity_maps.len()));
+    }
+    assert!(scene.notes.len() <= 33);
+    scene.notes.iter().for_each(|note| check_sentence(note));
 }
 
 fn check_light(light: &AreaLight) {
