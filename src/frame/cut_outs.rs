@@ -128,13 +128,13 @@ impl CutOutRecord {
             u: row(0, texture.cutoff.unwrap_or(0.0)),
             v: row(1, texture.factor),
             first: (texture.coordinates_offset / 4) as u32,
-            bits: texture.coordinates_stride / 4
-                | wrap(0) << 16
-                | wrap(1) << 18
-                | flags[0] << 20
-                | flags[1] << 21,
+            bits: (texture.coordinates_stride / 4)
+                | (wrap(0) << 16)
+                | (wrap(1) << 18)
+                | (flags[0] << 20)
+                | (flags[1] << 21),
             texels: texels as u32,
-            extent: width | height << 16,
+            extent: width | (height << 16),
         }
     }
 }

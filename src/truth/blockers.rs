@@ -185,11 +185,11 @@ pub(super) struct Cut {
     pub(super) places: [DVec2; 3],
 }
 
-/// The corners of an instance's triangles in world space, and what cuts them out.
-fn triangle_corners(
-    scene: &Scene,
-    instance: &Instance,
-) -> Result<Vec<([DVec3; 3], Option<Cut>)>, Error> {
+/// A triangle's corners in world space, and what cuts it out.
+type Placed = ([DVec3; 3], Option<Cut>);
+
+/// An instance's triangles.
+fn triangle_corners(scene: &Scene, instance: &Instance) -> Result<Vec<Placed>, Error> {
     let refuse = |problem: String| Error::Scene(format!("{}: {problem}", instance.name));
     let mesh = scene.meshes.get(instance.mesh).ok_or_else(|| {
         refuse(format!("mesh {} does not exist (there are {})", instance.mesh, scene.meshes.len()))
