@@ -187,7 +187,7 @@ pub enum Work {
     /// [`CutOutRecord`](crate::frame::CutOutRecord)s.
     CutOuts,
     /// A compute dispatch for each opacity texture, or for each blocking mesh that one cuts out: set 1 is that of the mesh,
-    /// and an [`OpacityPush`](crate::stages::hierarchy::OpacityPush) is pushed.
+    /// and a [`CutOutPush`](crate::stages::hierarchy::CutOutPush) is pushed.
     EachCutOut {
         /// The compute shader.
         shader: Module,
