@@ -3,12 +3,16 @@
 use crate::example::root;
 use antumbra::scene::{Role, Scene, from_gltf, generate};
 use antumbra::truth::{
-    ErrorSummary, Exact, ExactLine, PolygonLight, Receiver, Sampling, Tracer,
+    ErrorSummary, Exact, ExactLine, PolygonLight, Receiver, Sampling, Traced, Tracer,
     visible_fraction_of_quad,
 };
 use antumbra::{RectangleLight, Technique};
 use antumbra_harness::{HeadlessDevice, Stage, View, technique_of};
 use glam::DVec3;
+use std::collections::HashMap;
+use std::fmt::{self, Write};
+use std::hash::{DefaultHasher, Hasher};
+use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
 
 /// Settings from the words of a command line: `"map=64 sides=one"`, or with a technique first:
 /// `"technique=pcss taps=32"`.
@@ -147,10 +151,40 @@ impl<'a> Setup<'a> {
             let visible = Exact::new(self.scene).unwrap().visible_fractions(&polygon, &receivers);
             return (visible.unwrap().iter().map(|&v| v as f32).collect(), 0.0);
         }
-        let tracer = Tracer::new(self.scene).unwrap();
+        let truth = truth(self.scene, &receivers, rays);
+        (truth.visible.clone(), truth.noise)
+    }
+}
+
+/// What the rays of the first light say of receivers. Tests of several techniques look at the same pixels: each truth is
+/// traced once a program.
+///
+/// # Panics
+/// If the scene cannot be traced.
+pub fn truth(scene: &Scene, receivers: &[Receiver], rays: u32) -> Arc<Traced> {
+    type Truths = HashMap<u64, Arc<OnceLock<Arc<Traced>>>>;
+    static TRUTHS: LazyLock<Mutex<Truths>> = LazyLock::new(Mutex::default);
+    let mut key = Words(DefaultHasher::new());
+    write!(key, "{scene:?} {receivers:?} {rays}").unwrap();
+    let mut truths = TRUTHS.lock().unwrap_or_else(PoisonError::into_inner);
+    let truth = Arc::clone(truths.entry(key.0.finish()).or_default());
+    drop(truths);
+    let traced = truth.get_or_init(|| {
+        let light = scene.light(None).unwrap().light;
         let sampling = Sampling::new(rays, 1).unwrap();
-        let traced = tracer.visible_fractions(whole, &receivers, &sampling).unwrap();
-        (traced.visible, traced.noise)
+        let tracer = Tracer::new(scene).unwrap();
+        Arc::new(tracer.visible_fractions(light, receivers, &sampling).unwrap())
+    });
+    Arc::clone(traced)
+}
+
+/// Hashes what is written.
+struct Words(DefaultHasher);
+
+impl Write for Words {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        self.0.write(text.as_bytes());
+        Ok(())
     }
 }
 
