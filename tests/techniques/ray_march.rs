@@ -38,7 +38,7 @@ fn classification_changes_nothing() {
     let tall_box = generate::tall_box(light(1.0));
     let foliage = generate::foliage(light(0.4), 300, 7);
     let setups = [
-        ("bunny", seen(&bunny)),
+        ("bunny", Setup { extent: [160, 120], ..seen(&bunny) }),
         ("spheres", Setup::ground(&spheres, 2.2, 96)),
         ("box", Setup::ground(&tall_box, 3.5, 96)),
         ("foliage", Setup::ground(&foliage, 2.2, 160)),
