@@ -160,7 +160,7 @@ fn real_models_are_within_two_and_a_half_percent() {
     let device = device();
     for name in ["bunny", "suzanne"] {
         let scene = model(name);
-        let extent = [640, 480];
+        let extent = [320, 240];
         let view = View::of(&scene.camera.unwrap(), extent);
         let setup = Setup { scene: &scene, view, extent, window: None, occluders_seen: true };
         let mut stage = setup.stage(&device, "map=256");
