@@ -51,6 +51,10 @@ struct Shape {
     side: u32,
     /// What the plan reuses, as [`reuse::Reuse::uses`] lists it.
     reuses: [bool; 5],
+    /// Whether textures cut out some of the frame's meshes.
+    cut_outs: bool,
+    /// What decides which of the hierarchy's passes are needed.
+    tree: (Option<u32>, bool),
 }
 
 impl Shape {
@@ -142,6 +146,7 @@ pub(crate) fn plan_into(
         (inputs.receivers, inputs.views.count() + inputs.occluders.len(), inputs.needs.bits());
     let side = inputs.occluders[0].map.side;
     let lit = inputs.needs.unshadowed().is_some();
+    let (cut_outs, of_tree) = (inputs.cut_outs > 0, inputs.tree.0.decides());
     let (own, served) = (inputs.views.count(), inputs.occluders.len());
     let through_views = inputs.needs.technique.is_yes() || served > 1;
     // Description, needs and views decide which passes there are; only then can the cache leave some of them out.
@@ -154,7 +159,8 @@ pub(crate) fn plan_into(
     let revisions =
         Revisions { scene: frame.revision, view: frame.view_revision, camera: camera_of_views };
     plan.reuse = reuse::apply(graph, camera, lit, (&frame.visibility, tree), revisions, cached);
-    let shape = Shape { needs, views, side, reuses: plan.reuse.uses() };
+    let reuses = plan.reuse.uses();
+    let shape = Shape { needs, views, side, reuses, cut_outs, tree: of_tree };
     plan.imports.clear();
     plan.imports.extend(imports(&ids, frame));
     fill_borders(borders, &plan.imports, ids.visibility, frame);

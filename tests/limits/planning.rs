@@ -8,12 +8,13 @@ use antumbra::lent::OpacityTexture;
 use antumbra::scene::{Role, Scene, generate};
 use antumbra::truth::{Exact, PolygonLight, Receiver};
 use antumbra::{
-    Description, Frame, FramePlans, Geometry, HostImage, Light, MeshBuffers, MeshInstance,
-    RectangleLight, Slot,
+    Description, Frame, FramePlan, FramePlans, Geometry, HostImage, Light, MeshBuffers,
+    MeshInstance, RectangleLight, Slot,
 };
 use antumbra_tests::measure::settings;
 use ash::vk::{self, Handle};
 use glam::{DMat4, DVec3};
+use std::collections::BTreeSet;
 
 /// Cubes over a ground, in a row.
 fn meshes(shift: f64) -> Vec<MeshInstance> {
@@ -105,6 +106,41 @@ fn planning_takes_no_memory_after_the_first_frame() {
                 assert!(nth > 0 || some > 0, "nothing is counted");
             }
         }
+    }
+}
+
+/// A plan in memory of earlier frames has the passes of one that is made alone, whatever came and went: so many meshes that
+/// the hierarchy has a level of boxes more, and textures that cut some of them out.
+#[test]
+fn a_plan_after_others_is_that_of_a_frame_alone() {
+    for (words, audit) in [("technique=traced", 0), ("technique=pcss", 64), ("technique=hard", 0)] {
+        let description = Description {
+            technique: settings(words),
+            audit,
+            cut_outs: CutOuts { meshes: 8, texels: 100 },
+            ..Description::new([64; 2])
+        };
+        let mut plans = FramePlans::new();
+        let mut seen = BTreeSet::new();
+        for (count, cut) in [(3, 0), (22, 0), (22, 2), (3, 1), (22, 1), (3, 0), (3, 1)] {
+            let mut meshes = meshes(0.0);
+            // The wall is the last of them, and stays.
+            meshes.drain(1..22 - (count - 2));
+            let texture =
+                OpacityTexture::new(vk::ImageView::from_raw(7), [8, 8], vk::Buffer::from_raw(5));
+            meshes.iter_mut().skip(1).take(cut).for_each(|mesh| mesh.opacity = Some(texture));
+            let [frame, ..] = frames(&meshes, 0, false, false);
+            let alone = plan(&description, Limits::default(), &frame).unwrap();
+            plan_all(&description, Limits::default(), &[frame], &mut plans).unwrap();
+            let names = |plan: &FramePlan| -> Vec<&str> {
+                let graph = &plan.plan().graph;
+                plan.plan().steps.iter().map(|step| graph.passes()[step.pass].name).collect()
+            };
+            let passes = names(&alone);
+            assert_eq!(names(&plans.all()[0]), passes, "{words}: {count} meshes, {cut} cut out");
+            seen.insert(passes);
+        }
+        assert!(seen.len() > 1, "{words}: all frames have the same passes");
     }
 }
 

@@ -180,6 +180,14 @@ impl Sizes {
     pub fn nodes(&self) -> u32 {
         (2 * self.leaves()).saturating_sub(1)
     }
+
+    /// What decides which of the hierarchy's passes a frame needs: how many levels of boxes there are above the leaves, or
+    /// that there are no triangles; and whether textures cut some of them out.
+    pub(crate) fn decides(&self) -> (Option<u32>, bool) {
+        let counts = std::iter::successors(Some(self.leaves()), |count| Some(count.div_ceil(WIDE)));
+        let levels = counts.take_while(|count| *count > 1).count() as u32;
+        ((self.triangles > 0).then_some(levels), self.cut_outs > 0)
+    }
 }
 
 /// A hierarchy as passes read it.
