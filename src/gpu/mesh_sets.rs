@@ -36,17 +36,7 @@ impl MeshSets {
             ty: vk::DescriptorType::STORAGE_BUFFER,
             descriptor_count: 2 * count,
         }];
-        let create = vk::DescriptorPoolCreateInfo::default().max_sets(count).pool_sizes(&sizes);
-        // SAFETY: the device is valid (Host::borrow).
-        let pool = unsafe { maker.host.device.create_descriptor_pool(&create, None) }
-            .map_err(Error::vulkan("creating the descriptor pool of the meshes"))?;
-        maker.keep(pool);
-        let layouts = vec![layout; count as usize];
-        let allocate =
-            vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(&layouts);
-        // SAFETY: the pool was sized for exactly these sets, and the layout is alive.
-        let sets = unsafe { maker.host.device.allocate_descriptor_sets(&allocate) }
-            .map_err(Error::vulkan("allocating the descriptor sets of the meshes"))?;
+        let sets = allocate(maker, layout, count, &sizes, "the meshes")?;
         Ok(Self { sets, a_place: a_place as usize })
     }
 
@@ -126,17 +116,7 @@ impl CutOutSets {
             size(vk::DescriptorType::STORAGE_BUFFER, 2 * count),
             size(vk::DescriptorType::SAMPLED_IMAGE, count),
         ];
-        let create = vk::DescriptorPoolCreateInfo::default().max_sets(count).pool_sizes(&sizes);
-        // SAFETY: the device is valid (Host::borrow).
-        let pool = unsafe { maker.host.device.create_descriptor_pool(&create, None) }
-            .map_err(Error::vulkan("creating the descriptor pool of cut-out meshes"))?;
-        maker.keep(pool);
-        let layouts = vec![layout; count as usize];
-        let allocate =
-            vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(&layouts);
-        // SAFETY: the pool was sized for exactly these sets, and the layout is alive.
-        let sets = unsafe { maker.host.device.allocate_descriptor_sets(&allocate) }
-            .map_err(Error::vulkan("allocating the descriptor sets of cut-out meshes"))?;
+        let sets = allocate(maker, layout, count, &sizes, "cut-out meshes")?;
         Ok(Self { sets, a_place: a_place as usize })
     }
 
@@ -177,4 +157,25 @@ impl CutOutSets {
         let at = number as usize;
         (at < self.a_place).then(|| self.sets.get(place * self.a_place + at).copied()).flatten()
     }
+}
+
+/// Allocates a number of sets of one layout from a pool of their own, which has these descriptors.
+fn allocate(
+    maker: &mut Maker,
+    layout: vk::DescriptorSetLayout,
+    count: u32,
+    sizes: &[vk::DescriptorPoolSize],
+    whose: &str,
+) -> Result<Vec<vk::DescriptorSet>, Error> {
+    let create = vk::DescriptorPoolCreateInfo::default().max_sets(count).pool_sizes(sizes);
+    // SAFETY: the device is valid (Host::borrow).
+    let pool = unsafe { maker.host.device.create_descriptor_pool(&create, None) }
+        .map_err(Error::vulkan(format!("creating the descriptor pool of {whose}")))?;
+    maker.keep(pool);
+    let layouts = vec![layout; count as usize];
+    let allocate =
+        vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(&layouts);
+    // SAFETY: the pool was sized for exactly these sets, and the layout is alive.
+    unsafe { maker.host.device.allocate_descriptor_sets(&allocate) }
+        .map_err(Error::vulkan(format!("allocating the descriptor sets of {whose}")))
 }

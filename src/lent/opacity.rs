@@ -7,12 +7,12 @@ use std::hash::{Hash, Hasher};
 /// How an image goes on beyond its edges (glTF 2.0 §5.26).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Wrap {
-    /// It begins anew.
+    /// The image begins anew.
     #[default]
     Repeat,
-    /// It begins anew, each time mirrored.
+    /// The image begins anew, each time mirrored.
     Mirror,
-    /// Its edge goes on.
+    /// The image's edge goes on.
     Clamp,
 }
 

@@ -1,6 +1,7 @@
 //! The largest that any host may ask for, against the least that every device of Vulkan 1.1 has ("Required Limits" and
 //! "Required Format Support" of its specification), without an optional feature.
 
+use crate::rows::modules;
 use antumbra::graph::{
     Access, COLOR_ATTACHMENTS, Graph, INVOCATIONS, Pass, STORAGE_BYTES, Shape, Work,
 };
@@ -106,21 +107,6 @@ fn of_resources(graph: &Graph, extent: [u32; 2]) -> Vec<String> {
     };
     let all = graph.resources().iter().filter(|r| too_large(r.shape));
     all.map(|r| format!("{}: {:?}", r.name, r.shape)).collect()
-}
-
-fn modules(pass: &Pass) -> Vec<antumbra::shaders::Module> {
-    match pass.work {
-        Work::Dispatch { shader, .. }
-        | Work::Indirect { shader, .. }
-        | Work::EachMesh { shader }
-        | Work::EachCutOut { shader, .. } => vec![shader],
-        Work::Constants { .. } | Work::FrameNumber | Work::CutOuts => Vec::new(),
-        Work::Raster { vertex, fragment, cut, .. } => {
-            // The pipelines for cut-out meshes are there where the pass reads these.
-            let cut = cut.filter(|_| pass.uses.iter().any(|u| u.binding == Some(15)));
-            std::iter::once(vertex).chain(fragment).chain(cut.into_iter().flatten()).collect()
-        }
-    }
 }
 
 /// What of a row not every device has.

@@ -105,7 +105,8 @@ fn graphs() -> Vec<(String, Graph)> {
     descriptions().into_iter().map(|(words, d)| (words, frame::full_graph(&d))).collect()
 }
 
-fn modules(pass: &Pass) -> Vec<Module> {
+/// The modules of a row.
+pub fn modules(pass: &Pass) -> Vec<Module> {
     match pass.work {
         Work::Dispatch { shader, .. }
         | Work::Indirect { shader, .. }
