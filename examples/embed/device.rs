@@ -2,9 +2,11 @@
 
 use crate::Outcome;
 use antumbra::frame::ImageBarrier;
+use antumbra::gpu::SharedLayouts;
 use ash::{Entry, ext, vk};
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use std::ffi::{CStr, c_void};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 const VALIDATION_LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
@@ -27,6 +29,8 @@ pub struct Gpu {
     pub queue_family: u32,
     /// The engine's pipelines and the node's.
     pub pipeline_cache: vk::PipelineCache,
+    /// What nodes share, so that the cache serves each of them.
+    pub layouts: Arc<SharedLayouts>,
     pub debug_utils: Option<ext::debug_utils::Device>,
     pub allocator: Allocator,
     messenger: Option<(ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
@@ -72,6 +76,7 @@ impl Gpu {
             queue,
             queue_family,
             pipeline_cache,
+            layouts: Arc::default(),
             debug_utils,
             allocator,
             messenger,
@@ -107,6 +112,7 @@ impl Gpu {
         drop(self.allocator);
         // SAFETY: the caller waited for the device and destroyed everything made from it.
         unsafe {
+            self.layouts.destroy(&self.device);
             self.device.destroy_pipeline_cache(self.pipeline_cache, None);
             self.device.destroy_device(None);
             if let Some((loader, messenger)) = &self.messenger {

@@ -14,6 +14,7 @@ use antumbra::{
     MeshBuffers, MeshInstance, ShadowNode, Slot, Technique, Visibility,
 };
 use ash::vk;
+use std::sync::Arc;
 
 /// The node, and what draws the engine's own meshes into its maps.
 pub struct Shadows {
@@ -40,7 +41,8 @@ impl Shadows {
             let (instance, device) = (gpu.instance.clone(), gpu.device.clone());
             Host::borrow(instance, gpu.physical_device, device, gpu.queue_family)
         }
-        .with_pipeline_cache(gpu.pipeline_cache);
+        .with_pipeline_cache(gpu.pipeline_cache)
+        .with_layouts(Arc::clone(&gpu.layouts));
         if let Some(debug_utils) = &gpu.debug_utils {
             host = host.with_debug_utils(debug_utils.clone());
         }

@@ -217,8 +217,13 @@ impl Engine {
         vertices
     }
 
-    /// Destroys everything; nothing may be left over, and the layer may have said nothing.
-    fn finish(mut self) {
+    /// Another engine on the device of this one, whose compiled pipelines it finds.
+    fn again(self, world: World, technique: &str) -> Self {
+        Self::on(self.close(), world, technique)
+    }
+
+    /// Destroys everything but the device; no memory may be left over.
+    fn close(mut self) -> Gpu {
         self.rest();
         self.shadows.destroy(&mut self.gpu);
         self.models.into_iter().for_each(|model| model.destroy(&mut self.gpu));
@@ -226,13 +231,20 @@ impl Engine {
         self.gbuffer.destroy(&mut self.gpu);
         self.pass.destroy(&self.gpu);
         self.posing.destroy(&self.gpu);
-        assert_eq!(self.gpu.destroy(), 0, "bytes that nobody gave back");
+        let bytes = self.gpu.allocator.generate_report().total_allocated_bytes;
+        assert_eq!(bytes, 0, "bytes that nobody gave back");
+        self.gpu
+    }
+
+    /// Destroys everything; the layer may have said nothing.
+    fn finish(self) {
+        self.close().destroy();
         assert_eq!(device::messages(), 0);
     }
 }
 
-/// The figure as the device poses it at some times: its vertices, and the box that the node is given.
-fn posed(stands: Option<Stands>, times: &[f64]) -> Vec<(Vec<[f32; 6]>, MeshBounds)> {
+/// The figure as an engine poses it at some times: its vertices, and the box that the node is given.
+fn posed(stands: Option<Stands>, times: &[f64]) -> (Engine, Vec<(Vec<[f32; 6]>, MeshBounds)>) {
     let world = stands.map_or_else(|| World::walk().unwrap(), walk_with);
     let mut engine = Engine::new(world, "hard");
     let posed = times
@@ -242,8 +254,7 @@ fn posed(stands: Option<Stands>, times: &[f64]) -> Vec<(Vec<[f32; 6]>, MeshBound
             (engine.vertices(), engine.models.last().unwrap().bounds)
         })
         .collect();
-    engine.finish();
-    posed
+    (engine, posed)
 }
 
 /// The walk's world with a figure of these vertices, which stay.
@@ -259,14 +270,18 @@ fn still_world(vertices: &[[f32; 6]]) -> World {
     world
 }
 
-/// The pixels that a new engine with a new node shows of these vertices, uploaded as they are and never posed.
-fn fresh((vertices, bounds): &(Vec<[f32; 6]>, MeshBounds), technique: &str) -> Shown {
-    let mut engine = Engine::new(still_world(vertices), technique);
+/// The pixels that a new engine with a new node, on the device of another, shows of these vertices, uploaded as they are and
+/// never posed.
+fn fresh(
+    engine: Engine,
+    (vertices, bounds): &(Vec<[f32; 6]>, MeshBounds),
+    technique: &str,
+) -> (Engine, Shown) {
+    let mut engine = engine.again(still_world(vertices), technique);
     // The same box: the node fits its maps to it.
     engine.models.last_mut().unwrap().bounds = *bounds;
     let shown = engine.one(0.0);
-    engine.finish();
-    shown
+    (engine, shown)
 }
 
 /// Frames at the walk's begin and end, within the halt and right behind it. Each takes a node more of each technique.
@@ -277,13 +292,15 @@ const LOOKED_AT: [usize; 4] = [1, 22, 25, 59];
 /// revision, and `traced` its hierarchy by the buffers.
 #[test]
 fn no_shadow_is_stale() {
-    let posed = posed(None, &LOOKED_AT.map(seconds));
+    let (mut engine, posed) = posed(None, &LOOKED_AT.map(seconds));
     for technique in ["soft-shadow-map", "pcss", "occlusion-textures", "ray-march", "traced"] {
-        let mut engine = Engine::new(World::walk().unwrap(), technique);
+        engine = engine.again(World::walk().unwrap(), technique);
         let shown = engine.frames((0..FRAMES).map(seconds));
         assert_eq!(shown.len(), FRAMES);
+        let passes = std::mem::take(&mut engine.passes);
         for (frame, posed) in LOOKED_AT.into_iter().zip(&posed) {
-            let fresh = fresh(posed, technique);
+            let fresh;
+            (engine, fresh) = self::fresh(engine, posed, technique);
             let differ = |a: &[f32], b: &[f32]| {
                 a.iter().zip(b).filter(|(a, b)| a.to_bits() != b.to_bits()).count()
             };
@@ -298,23 +315,23 @@ fn no_shadow_is_stale() {
             let same = shown[frame].visibility == shown[frame - 1].visibility;
             assert_eq!(same, halted, "{technique}, frame {frame}");
         }
-        let [moving, halted] = [&engine.passes[1..=20], &engine.passes[21..=24]];
+        let [moving, halted] = [&passes[1..=20], &passes[21..=24]];
         println!("{technique}: {moving:?} passes on the way, {halted:?} at the halt");
         assert!(halted.iter().max() < moving.iter().min(), "{technique}: nothing is reused");
-        engine.finish();
     }
+    engine.finish();
 }
 
 /// An engine whose revision stays the same though the figure walks on gets the shadow of an earlier pose, and the
 /// comparison notices.
 #[test]
 fn a_revision_that_stays_is_noticed() {
-    let posed = posed(None, &[seconds(12)]);
-    let mut engine = Engine::new(World::walk().unwrap(), "soft-shadow-map");
+    let (engine, posed) = posed(None, &[seconds(12)]);
+    let mut engine = engine.again(World::walk().unwrap(), "soft-shadow-map");
     engine.frame_as(seconds(0), |_| Some(1));
     engine.frame_as(seconds(12), |_| Some(1));
     let stale = engine.rest().pop().unwrap();
-    let fresh = fresh(&posed[0], "soft-shadow-map");
+    let (engine, fresh) = fresh(engine, &posed[0], "soft-shadow-map");
     assert!(stale.depth == fresh.depth, "the G-buffer is drawn in each frame");
     let differ = stale.visibility.iter().zip(&fresh.visibility).filter(|(a, b)| a != b).count();
     println!("{differ} pixels have the shadow of another pose");
