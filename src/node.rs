@@ -14,7 +14,7 @@ use crate::frame::{
 use crate::gpu::{
     Allocator, Host, HostDraw, NodeObjects, Object, Requirements, ResourceBytes, Retired,
 };
-use crate::graph::{Draw, Graph, Layer, Owner, Pass, Shape, Target, Work};
+use crate::graph::{Draw, Layer, Owner, Pass, Shape, Target, Work};
 use crate::lent::{LightIndex, Slot, TechniqueIndex};
 use crate::stages::depth_layers;
 use ash::vk;
@@ -61,13 +61,8 @@ impl ShadowNode {
         allocator: &mut dyn Allocator,
         description: Description,
     ) -> Result<Self, Error> {
-        let requirements = Requirements::of(&host);
-        requirements.met()?;
-        description.check()?;
-        requirements.allow(&description)?;
-        let limits =
-            Limits { subpixel_step: 0.5f32.powi(requirements.sub_pixel_bits.min(16) as i32) };
-        let graphs = graphs(&description, limits)?;
+        let limits = host.limits_for(&description)?;
+        let graphs = frame::all_graphs(&description, limits)?;
         let objects = NodeObjects::new(&host, allocator, &graphs, &description)?;
         let kinds = graphs.iter().flat_map(|graph| graph.kinds().map(|p| p.name)).collect();
         let cache = Mutex::new(Cache::new(description.lights, graphs.len()));
@@ -220,7 +215,7 @@ impl ShadowNode {
         let description = Description { extent, ..self.description.clone() };
         description.check()?;
         Requirements::of(&self.host).allow(&description)?;
-        let graphs = graphs(&description, self.limits)?;
+        let graphs = frame::all_graphs(&description, self.limits)?;
         if !self.objects.keeps_pipelines(&graphs) {
             return self.reconfigure(allocator, description);
         }
@@ -358,14 +353,6 @@ impl ShadowNode {
     pub fn destroy(self, allocator: &mut dyn Allocator) {
         Retired::new(self.host, self.objects.into_owner()).destroy(allocator);
     }
-}
-
-/// The graph of every pass that any frame may run, for each of the description's techniques.
-fn graphs(description: &Description, limits: Limits) -> Result<Vec<Graph>, Error> {
-    let of = |index| {
-        Ok(frame::all_passes(&*description.choosing(TechniqueIndex(index as u32))?, limits))
-    };
-    (0..description.all_techniques().count()).map(of).collect()
 }
 
 /// The description once for each of its techniques, with that technique alone.

@@ -15,6 +15,7 @@
 //! | what a technique is compared with | [`rays`], [`Forward`], [`ReadbackScheme`] |
 //! | what passes cost on this device | [`measure_costs`], [`probe`] |
 //! | the node's hierarchy of triangles, read back | [`DeviceTree`] |
+//! | descriptions with every pass | [`descriptions`] |
 //! | made scenes, and files read and pictures made | [`cases`], [`bumps`], [`ply`], [`shade`], [`levels`], [`whole`] |
 
 // Vulkan through ash is unsafe call by call; each unsafe block has its own SAFETY line.
@@ -26,6 +27,7 @@ pub mod cases;
 mod choose;
 mod compute;
 mod costs;
+pub mod descriptions;
 mod device;
 mod device_tree;
 mod forward;

@@ -39,7 +39,7 @@ pub(crate) use inputs::SituationCache;
 pub(crate) use inputs::situation;
 pub(crate) use make::{Memory, Workspace, plan_into};
 pub use make::{plan, plan_all};
-pub(crate) use passes::all_passes;
+pub(crate) use passes::{all_graphs, all_passes};
 pub use passes::{Limits, full_graph};
 pub use plan::FramePlan;
 pub(crate) use plan::Stamp;

@@ -1,11 +1,13 @@
 //! The passes of a description, with one frame's numbers in them.
 
 use super::{Description, Space};
+use crate::Error;
 use crate::RectangleLight;
 use crate::audit::passes::{self as audit, Audited};
 use crate::effects::{Effect, Verdicts};
 use crate::graph::{Graph, Need, Owner, ResourceId, Why};
 use crate::knob::MOST_VIEWS;
+use crate::lent::TechniqueIndex;
 use crate::stages::depth_layers::{self, Eye, HostMapView, LightLayers, MapView, Projection};
 use crate::stages::hierarchy::{self, Sizes};
 use crate::stages::views::inner::{self, Inner};
@@ -220,6 +222,12 @@ pub(crate) fn all_passes(description: &Description, limits: Limits) -> Graph {
     let mut graph = Graph::new();
     build(&mut graph, description, limits, &frame);
     graph
+}
+
+/// The graph of every pass that any frame may run, for each of the description's techniques.
+pub(crate) fn all_graphs(description: &Description, limits: Limits) -> Result<Vec<Graph>, Error> {
+    let of = |index| Ok(all_passes(&*description.choosing(TechniqueIndex(index as u32))?, limits));
+    (0..description.all_techniques().count()).map(of).collect()
 }
 
 /// The graph of every pass that any frame of this description may run, on a device with the least sub-pixel precision

@@ -34,8 +34,11 @@ impl GraphObjects {
     ) -> Result<Self, Error> {
         let objects = Objects::new(maker, graph, description.inspect)?;
         let strides = &description.position_strides;
-        let kinds =
-            graph.kinds().map(|pass| PassObjects::new(maker, graph, pass, &objects, strides));
+        let kinds = graph.kinds().map(|pass| {
+            let mut made = PassObjects::new(maker, graph, pass, strides)?;
+            made.attach(maker, graph, pass, &objects)?;
+            Ok(made)
+        });
         let kinds = kinds.collect::<Result<Vec<_>, _>>()?;
         let descriptors = Descriptors::new(maker, graph, &kinds, places)?;
         let mesh_sets = MeshSets::new(maker, graph, &kinds, description, places)?;

@@ -2,7 +2,7 @@
 
 use super::layouts::SharedLayouts;
 use crate::Error;
-use crate::frame::Description;
+use crate::frame::{Description, Limits};
 use crate::graph::{INVOCATIONS, PUSH_BYTES};
 use crate::stages::{depth_layers, visibility};
 use ash::{ext, vk};
@@ -17,6 +17,7 @@ pub struct Host {
     pub(crate) device: ash::Device,
     pub(crate) queue_family: u32,
     pub(crate) pipeline_cache: vk::PipelineCache,
+    pub(super) pipeline_flags: vk::PipelineCreateFlags,
     pub(crate) debug_utils: Option<ext::debug_utils::Device>,
     /// The layouts that are shared with other nodes; `None` where each node makes its own.
     pub(super) layouts: Option<Arc<SharedLayouts>>,
@@ -49,9 +50,20 @@ impl Host {
             device,
             queue_family,
             pipeline_cache: vk::PipelineCache::null(),
+            pipeline_flags: vk::PipelineCreateFlags::empty(),
             debug_utils: None,
             layouts: None,
         }
+    }
+
+    /// The limits of the device that plans for a description depend on; an error where it lacks what that needs.
+    pub(crate) fn limits_for(&self, description: &Description) -> Result<Limits, Error> {
+        let requirements = Requirements::of(self);
+        requirements.met()?;
+        description.check()?;
+        requirements.allow(description)?;
+        let bits = requirements.sub_pixel_bits.min(16) as i32;
+        Ok(Limits { subpixel_step: 0.5f32.powi(bits) })
     }
 
     /// Makes an allocator on the host's device, for hosts that have none of their own. The caller must drop it before
@@ -81,6 +93,14 @@ impl Host {
     #[must_use]
     pub fn with_pipeline_cache(mut self, cache: vk::PipelineCache) -> Self {
         self.pipeline_cache = cache;
+        self
+    }
+
+    /// Makes the node create each pipeline with these flags as well, such as CAPTURE_STATISTICS_KHR of
+    /// VK_KHR_pipeline_executable_properties, whose extension and feature the device must then have enabled.
+    #[must_use]
+    pub fn with_pipeline_flags(mut self, flags: vk::PipelineCreateFlags) -> Self {
+        self.pipeline_flags = flags;
         self
     }
 

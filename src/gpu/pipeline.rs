@@ -3,11 +3,11 @@
 use super::host::Host;
 use super::layouts::{LayoutsInfo, OfMesh, PassLayouts};
 use super::maker::Maker;
-use super::objects::{Object, Objects, name};
+use super::objects::{Objects, name};
 use super::owner::ObjectOwner;
 use crate::Error;
 use crate::frame::Faces;
-use crate::graph::{Draw, Graph, Pass, Shape, Target, Work};
+use crate::graph::{Draw, Graph, Pass, ResourceId, Shape, Target, Work};
 use crate::shaders::Module;
 use crate::stages::depth_layers::DepthPush;
 use crate::stages::hierarchy::{CutOutPush, MeshPush};
@@ -35,12 +35,11 @@ pub(crate) fn variant(stride: usize, faces: Faces) -> usize {
 }
 
 impl PassObjects {
-    /// Creates all objects for a kind of pass.
+    /// Creates all objects for a kind of pass but the framebuffer, which needs images: see [`Self::attach`].
     pub fn new(
         maker: &mut Maker,
         graph: &Graph,
         pass: &Pass,
-        objects: &Objects,
         strides: &[u32],
     ) -> Result<Self, Error> {
         let host = maker.host;
@@ -102,7 +101,7 @@ impl PassObjects {
                 made.pipelines.push(maker.keep(pipeline));
             }
             Work::Raster { target, .. } => {
-                made.attachments(maker, graph, pass, objects, target)?;
+                made.attachments(maker, graph, pass, target)?;
                 made.rasters(maker, pass, strides)?;
             }
         }
@@ -115,6 +114,7 @@ impl PassObjects {
     fn compute(&self, host: &Host, pass: &Pass, shader: Module) -> Result<vk::Pipeline, Error> {
         with_modules(host, &[(shader, vk::ShaderStageFlags::COMPUTE)], |stages| {
             let create = [vk::ComputePipelineCreateInfo::default()
+                .flags(host.pipeline_flags)
                 .stage(stages[0])
                 .layout(self.layouts.pipeline)];
             // SAFETY: the stage's module and the layout are alive for this call.
@@ -124,17 +124,16 @@ impl PassObjects {
         })
     }
 
+    /// Creates the render pass for the attachments of a pass.
     fn attachments(
         &mut self,
         maker: &mut Maker,
         graph: &Graph,
         pass: &Pass,
-        objects: &Objects,
         target: Target,
     ) -> Result<(), Error> {
         let device = &maker.host.device;
-        let doing = |what: &str| format!("creating the {what} of {}", pass.name);
-        let targets = attachments_of(graph, pass, objects)?;
+        let targets = attachments_of(graph, pass)?;
         let Some(&(_, _, extent)) = targets.first() else {
             return Err(Error::Frame(format!("{} has no image to draw into", pass.name)));
         };
@@ -172,18 +171,33 @@ impl PassObjects {
             vk::RenderPassCreateInfo::default().attachments(&attachments).subpasses(&subpasses);
         // SAFETY: one subpass, which uses every attachment; a test holds their number to four.
         let render_pass = unsafe { device.create_render_pass(&create, None) }
-            .map_err(Error::vulkan(doing("render pass")))?;
+            .map_err(Error::vulkan(format!("creating the render pass of {}", pass.name)))?;
         self.render_pass = maker.keep(render_pass);
-        let views: Vec<_> = targets.iter().map(|(view, ..)| *view).collect();
+        Ok(())
+    }
+
+    /// Creates the framebuffer of a pass that draws, from the images that it draws into.
+    pub fn attach(
+        &mut self,
+        maker: &mut Maker,
+        graph: &Graph,
+        pass: &Pass,
+        objects: &Objects,
+    ) -> Result<(), Error> {
+        if !matches!(pass.work, Work::Raster { .. }) {
+            return Ok(());
+        }
+        let targets = attachments_of(graph, pass)?;
+        let views: Vec<_> = targets.iter().map(|(id, ..)| objects.get(*id).image().1).collect();
         let create = vk::FramebufferCreateInfo::default()
             .render_pass(self.render_pass)
             .attachments(&views)
-            .width(extent.width)
-            .height(extent.height)
+            .width(self.extent.width)
+            .height(self.extent.height)
             .layers(1);
         // SAFETY: the views have the render pass's formats and, a test says, this size.
-        let framebuffer = unsafe { device.create_framebuffer(&create, None) }
-            .map_err(Error::vulkan(doing("framebuffer")))?;
+        let framebuffer = unsafe { maker.host.device.create_framebuffer(&create, None) }
+            .map_err(Error::vulkan(format!("creating the framebuffer of {}", pass.name)))?;
         self.framebuffer = maker.keep(framebuffer);
         Ok(())
     }
@@ -278,6 +292,7 @@ impl PassObjects {
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&add);
         let mut depth = vk::PipelineDepthStencilStateCreateInfo::default();
         let mut create = vk::GraphicsPipelineCreateInfo::default()
+            .flags(host.pipeline_flags)
             .stages(stages)
             .vertex_input_state(&input)
             .input_assembly_state(&assembly)
@@ -301,18 +316,17 @@ impl PassObjects {
     }
 }
 
-/// The attachments of a pass in the order of its uses: views, formats and sizes.
+/// The attachments of a pass in the order of its uses: resources, formats and sizes.
 fn attachments_of(
     graph: &Graph,
     pass: &Pass,
-    objects: &Objects,
-) -> Result<Vec<(vk::ImageView, vk::Format, vk::Extent2D)>, Error> {
+) -> Result<Vec<(ResourceId, vk::Format, vk::Extent2D)>, Error> {
     pass.writes()
-        .map(|id| match (objects.get(id), graph.resource(id).shape) {
-            (Object::Image { view, .. }, Shape::Image { format, width, height, .. }) => {
-                Ok((view, format, vk::Extent2D { width, height }))
+        .map(|id| match graph.resource(id).shape {
+            Shape::Image { format, width, height, .. } => {
+                Ok((id, format, vk::Extent2D { width, height }))
             }
-            _ => Err(Error::Frame(format!("{} draws into what is no image", pass.name))),
+            Shape::Buffer { .. } => Err(Error::Frame(format!("{} draws into what is no image", pass.name))),
         })
         .collect()
 }
