@@ -66,6 +66,8 @@ pub struct FramePass {
     pub read: u64,
     /// Bytes of what it writes.
     pub written: u64,
+    /// The words that an invocation reads where all work is one workgroup's, shared evenly: those of the worst step.
+    pub serial_words: Option<u64>,
 }
 
 /// The passes of a default frame of a technique over a scene, whose meshes block and receive.
@@ -74,7 +76,8 @@ pub struct FramePass {
 /// What planning refuses.
 pub fn frame_of(name: &str, scene: &Scene) -> Result<Vec<FramePass>, antumbra::Error> {
     let technique: Technique = name.parse()?;
-    let capacity = antumbra::frame::Capacity { triangles: 1 << 17, ..Default::default() };
+    let triangles = scene.triangles() as u32;
+    let capacity = antumbra::frame::Capacity { triangles, ..Default::default() };
     let description = Description { technique, capacity, ..Description::new(EXTENT) };
     let planned = planned(&description, scene)?;
     let graph = &planned.plan().graph;
@@ -83,20 +86,28 @@ pub fn frame_of(name: &str, scene: &Scene) -> Result<Vec<FramePass>, antumbra::E
         let pass = &graph.passes()[step.pass];
         let launch = launch_of(pass);
         let again = passes.iter_mut().find(|known| known.name == pass.name);
+        let read = bytes(graph, pass, again.is_none(), Access::reads);
+        let written = bytes(graph, pass, again.is_none(), Access::writes);
+        let serial_words = match launch {
+            Launch::Waves { invocations, groups: 1, .. } => Some(read / 4 / invocations),
+            _ => None,
+        };
         match again {
             Some(known) => {
                 known.times += 1;
                 known.launch = with(&known.launch, &launch);
-                known.read += bytes(graph, pass, false, Access::reads);
-                known.written += bytes(graph, pass, false, Access::writes);
+                known.read += read;
+                known.written += written;
+                known.serial_words = known.serial_words.max(serial_words);
             }
             None => passes.push(FramePass {
                 name: pass.name,
                 shader: pass.work.compute_shader().map(|module| module.path),
                 times: 1,
                 launch,
-                read: bytes(graph, pass, true, Access::reads),
-                written: bytes(graph, pass, true, Access::writes),
+                read,
+                written,
+                serial_words,
             }),
         }
     }

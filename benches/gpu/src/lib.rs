@@ -10,5 +10,8 @@
 pub mod compile;
 pub mod compiled;
 mod device;
-pub mod frame;
 pub mod families;
+pub mod frame;
+pub mod gate;
+pub mod page;
+pub mod table;
