@@ -5,9 +5,9 @@
 #include "soft_shadow_map/node.glsl"
 
 // Writes the occluder map as w and how it slopes, in blocks of 8x8 texels that lie together, with each block's moments.
-// One invocation handles one block; z is the side: 0 the front layer, 1 the back layer.
+// A workgroup handles one block, an invocation a texel; z is the side: 0 the front layer, 1 the back layer.
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0) uniform texture2D front_depth;
 layout(set = 0, binding = 1) uniform texture2D back_depth;
@@ -80,87 +80,99 @@ float steepness(ivec2 p, uint side)
     return max(slope.x, slope.y);
 }
 
+// What the workgroup's invocations tell each other, by texel of the block.
+shared float w_of_texel[BLOCK_TEXELS];
+shared vec4 moments[BLOCK_TEXELS];      // (1, d, d^2, d^3) where there is an occluder
+shared vec3 slope_moments[BLOCK_TEXELS];
+shared vec4 row_moments[BLOCK_TEXELS];  // prefix sums along a row
+shared vec3 row_slope_moments[BLOCK_TEXELS];
+
 void main()
 {
-    ivec2 block = ivec2(gl_GlobalInvocationID.xy);
-    if (block.x >= push.row || block.y >= push.row) {
-        return;
-    }
-    uint side = gl_GlobalInvocationID.z;
+    ivec2 block = ivec2(gl_WorkGroupID.xy);
+    uint side = gl_WorkGroupID.z;
     int index = (int(side) * push.row + block.y) * push.row + block.x;
+    int all_blocks = int(gl_NumWorkGroups.z) * push.row * push.row;
+    uint texel = gl_LocalInvocationIndex;
+    uint x = texel % uint(BLOCK);
+    uint y = texel / uint(BLOCK);
+    ivec2 p = block * BLOCK + ivec2(x, y);
 
+    float w = w_at(p, side);
+    if (push.faces == MEAN && side == 1u && w > 0.0 &&
+        steepness(p, 1u) > FLATTER * steepness(p, 0u) + ROUNDING * w) {
+        w = 0.0;
+    }
+    texels[index * BLOCK_TEXELS + int(texel)] = floatBitsToUint(w);
+    w_of_texel[texel] = w;
+    barrier();
+
+    // Every invocation adds all texels in the same order, and so all of them have the same mean.
     float count = 0.0;
     float sum = 0.0;
     float w_min = 3.0e38;
     float w_max = 0.0;
     uvec2 mask = uvec2(0u);
-    float w[BLOCK_TEXELS];
-    for (int i = 0; i < BLOCK_TEXELS; ++i) {
-        ivec2 p = block * BLOCK + ivec2(i % BLOCK, i / BLOCK);
-        w[i] = w_at(p, side);
-        if (push.faces == MEAN && side == 1u && w[i] > 0.0 &&
-            steepness(p, 1u) > FLATTER * steepness(p, 0u) + ROUNDING * w[i]) {
-            w[i] = 0.0;
-        }
-        texels[index * BLOCK_TEXELS + i] = floatBitsToUint(w[i]);
-        if (w[i] > 0.0) {
+    for (uint i = 0u; i < uint(BLOCK_TEXELS); ++i) {
+        float of_texel = w_of_texel[i];
+        if (of_texel > 0.0) {
             count += 1.0;
-            sum += w[i];
-            w_min = min(w_min, w[i]);
-            w_max = max(w_max, w[i]);
-            mask[i / 32] |= 1u << (i % 32);
+            sum += of_texel;
+            w_min = min(w_min, of_texel);
+            w_max = max(w_max, of_texel);
+            uint bit = 1u << (i & 31u);
+            mask |= i < 32u ? uvec2(bit, 0u) : uvec2(0u, bit);
         }
     }
-    int all_blocks = int(gl_NumWorkGroups.z) * push.row * push.row;
-    if (count == 0.0) {
-        blocks[2 * index] = uvec4(0u);
-        blocks[2 * index + 1] = uvec4(0u);
-        blocks[2 * all_blocks + index] = uvec4(0u);
-        return;
-    }
-    float mean = sum / count;
+    bool empty = count == 0.0;
+    float mean = empty ? 0.0 : sum / count;
     // A sum of 64 is off by several roundings, and near a receiver each counts as often as w is larger than its
     // distance in w to it. Subtracting the sum of what rounding left leaves one rounding.
     float rest = 0.0;
-    for (int i = 0; i < BLOCK_TEXELS; ++i) {
-        rest += w[i] > 0.0 ? w[i] - mean : 0.0;
+    for (uint i = 0u; i < uint(BLOCK_TEXELS); ++i) {
+        float of_texel = w_of_texel[i];
+        rest += of_texel > 0.0 ? of_texel - mean : 0.0;
     }
-    mean += rest / count;
-    // Prefix sums over the texels above and to the left, which give the sums over any rectangle.
-    vec4 columns[BLOCK];
-    vec3 slopes[BLOCK];
-    for (int x = 0; x < BLOCK; ++x) {
-        columns[x] = vec4(0.0);
-        slopes[x] = vec3(0.0);
-    }
+    mean += empty ? 0.0 : rest / count;
+
     // A storage buffer of more than 128 MB is not guaranteed. With both sides, patches of maps of more than 2880 texels are in
     // part parallel to the light, and maps of more than 1408 texels have more blocks than there is room for their sums.
-    bool sloped = push.slopes + (index + 1) * BLOCK_TEXELS <= texels.length();
-    bool room = push.sums + 2 * (index + 1) * BLOCK_TEXELS <= nodes.length();
-    for (int y = 0; y < BLOCK; ++y) {
-        vec4 row = vec4(0.0);
-        vec3 slope_row = vec3(0.0);
-        for (int x = 0; x < BLOCK; ++x) {
-            int i = y * BLOCK + x;
-            float d = w[i] - mean;
-            row += w[i] > 0.0 ? vec4(1.0, d, d * d, d * d * d) : vec4(0.0);
-            columns[x] += row;
-            uint stored = sloped && w[i] > 0.0 ? packed_slope(slope_at(block * BLOCK + ivec2(x, y), side)) : 0u;
-            if (sloped) {
-                texels[push.slopes + index * BLOCK_TEXELS + i] = stored;
-            }
-            vec2 slope = unpacked_slope(stored);
-            slope_row += vec3(dot(vec2(x, y) + 0.5, slope), slope);
-            slopes[x] += slope_row;
-            if (room) {
-                int at = push.sums + 2 * (index * BLOCK_TEXELS + i);
-                nodes[at] = floatBitsToUint(columns[x]);
-                nodes[at + 1] = floatBitsToUint(vec4(slopes[x], 0.0));
-            }
-        }
+    bool sloped = !empty && push.slopes + (index + 1) * BLOCK_TEXELS <= texels.length();
+    bool room = !empty && push.sums + 2 * (index + 1) * BLOCK_TEXELS <= nodes.length();
+    uint stored = sloped && w > 0.0 ? packed_slope(slope_at(p, side)) : 0u;
+    if (sloped) {
+        texels[push.slopes + index * BLOCK_TEXELS + int(texel)] = stored;
     }
-    vec4 total = columns[BLOCK - 1];
-    blocks[2 * index] = floatBitsToUint(vec4(count, mean, w_min, w_max));
-    blocks[2 * index + 1] = uvec4(floatBitsToUint(total.zw), mask);
-    blocks[2 * all_blocks + index] = floatBitsToUint(vec4(slopes[BLOCK - 1], 0.0));
+    float d = w - mean;
+    moments[texel] = w > 0.0 ? vec4(1.0, d, d * d, d * d * d) : vec4(0.0);
+    vec2 slope = unpacked_slope(stored);
+    slope_moments[texel] = vec3(dot(vec2(x, y) + 0.5, slope), slope);
+    barrier();
+
+    // Prefix sums over the texels above and to the left, which give the sums over any rectangle: along the rows first.
+    vec4 row = vec4(0.0);
+    vec3 slope_row = vec3(0.0);
+    for (uint i = texel - x; i <= texel; ++i) {
+        row += moments[i];
+        slope_row += slope_moments[i];
+    }
+    row_moments[texel] = row;
+    row_slope_moments[texel] = slope_row;
+    barrier();
+    vec4 total = vec4(0.0);
+    vec3 slopes = vec3(0.0);
+    for (uint i = x; i <= texel; i += uint(BLOCK)) {
+        total += row_moments[i];
+        slopes += row_slope_moments[i];
+    }
+    if (room) {
+        int at = push.sums + 2 * (index * BLOCK_TEXELS + int(texel));
+        nodes[at] = floatBitsToUint(total);
+        nodes[at + 1] = floatBitsToUint(vec4(slopes, 0.0));
+    }
+    if (texel == uint(BLOCK_TEXELS - 1)) {
+        blocks[2 * index] = empty ? uvec4(0u) : floatBitsToUint(vec4(count, mean, w_min, w_max));
+        blocks[2 * index + 1] = empty ? uvec4(0u) : uvec4(floatBitsToUint(total.zw), mask);
+        blocks[2 * all_blocks + index] = empty ? uvec4(0u) : floatBitsToUint(vec4(slopes, 0.0));
+    }
 }

@@ -7,7 +7,7 @@
 // The including shader declares the buffers `texels` and `nodes`, and the test against the receivers' own
 // planes:
 //     struct Receivers { vec4 t_x; vec4 t_y; vec4 w; ... };
-//     bvec4 is_above(vec2 lo, float w_o, Receivers r)
+//     bvec4 is_above(vec2 lo, vec4 w_o, Receivers r)
 //     int plane_side(Node node, vec2 lo, float side, Receivers r)
 
 #ifndef SOFT_SHADOW_MAP_GATHER_GLSL
@@ -58,11 +58,12 @@ vec2 slope_of(int texel, Map map)
 #endif
 }
 
-// The occlusion of one occluder texel, whose w changes by `slope` a texel.
-vec4 texel_occlusion(vec2 lo, float w_o, vec2 slope, Receivers r, vec2 scale)
+// The occlusion of one occluder texel by the face at w_o, whose w changes by (slope_x, slope_y) a texel; a receiver may see
+// another face of the texel than the others.
+vec4 texel_occlusion(vec2 lo, vec4 w_o, vec4 slope_x, vec4 slope_y, Receivers r, vec2 scale)
 {
     // Receivers in front of the texel, and missing ones, get a magnification of 0.
-    vec4 k = mix(vec4(0.0), 1.0 / (w_o - r.w), greaterThan(vec4(w_o), r.w));
+    vec4 k = mix(vec4(0.0), 1.0 / (w_o - r.w), greaterThan(w_o, r.w));
     vec4 m_x = scale.x * k;
     vec4 m_y = scale.y * k;
     vec4 a_x = (lo.x - r.t_x) * m_x + 0.5;
@@ -76,7 +77,7 @@ vec4 texel_occlusion(vec2 lo, float w_o, vec2 slope, Receivers r, vec2 scale)
     vec4 area = x * y;
 #ifdef SLOPED
     // A step of (u, v) on the patch changes k, too: the determinant of its projection is k^2 (1 - k (c - t).g).
-    area *= 1.0 - k * ((lo.x + 0.5 - r.t_x) * slope.x + (lo.y + 0.5 - r.t_y) * slope.y);
+    area *= 1.0 - k * ((lo.x + 0.5 - r.t_x) * slope_x + (lo.y + 0.5 - r.t_y) * slope_y);
 #endif
     return mix(vec4(0.0), area, is_above(lo, w_o, r));
 }
@@ -109,6 +110,12 @@ vec4 core_occlusion(vec4 s, vec4 m, float mean, vec2 lo, Receivers r)
     return sum;
 }
 
+// The place of a texel in its block, in texels.
+vec2 place_in_block(int texel)
+{
+    return vec2(uvec2(texel) >> uvec2(0u, 3u) & 7u);
+}
+
 // Removes the first texel from a mask that has one, and returns its index. The caller tests whether there is one:
 // tested here, with `?:`, in code that stands there eight times, SwiftShader's compiler needs over 24 GB.
 int take_texel(inout uvec2 todo)
@@ -130,7 +137,8 @@ vec4 next_texel(inout uvec2 todo, int block, vec2 lo, Receivers r, Map map)
     int n = take_texel(todo);
     int index = block * BLOCK_TEXELS + n;
     float w_o = uintBitsToFloat(texels[index]);
-    return texel_occlusion(lo + vec2(n % BLOCK, n / BLOCK), w_o, slope_of(index, map), r, map.scale);
+    vec2 slope = slope_of(index, map);
+    return texel_occlusion(lo + place_in_block(n), vec4(w_o), vec4(slope.x), vec4(slope.y), r, map.scale);
 }
 
 // The occlusion by the first texel of a mask, which is removed from it: by its back face, or by its front face where
@@ -141,14 +149,17 @@ vec4 next_pair(inout uvec2 todo, int block, int backs, vec2 lo, Receivers r, Map
         return vec4(0.0);
     }
     int n = take_texel(todo);
-    vec2 at = lo + vec2(n % BLOCK, n / BLOCK);
+    vec2 at = lo + place_in_block(n);
     int index = block * BLOCK_TEXELS + n;
     float w_f = uintBitsToFloat(texels[index]);
-    vec4 front = texel_occlusion(at, w_f, slope_of(index, map), r, map.scale);
+    vec2 slope_f = slope_of(index, map);
     float w_b = uintBitsToFloat(texels[index + backs]);
-    vec4 back = texel_occlusion(at, w_b, slope_of(index + backs, map), r, map.scale);
-    vec4 before = mix(vec4(0.0), vec4(greaterThan(vec4(w_b), r.w)), is_above(at, w_b, r));
-    return w_b > 0.0 ? mix(front, back, before) : front;
+    vec2 slope_b = slope_of(index + backs, map);
+    // A texel without a back face has one of 0, which lies before no receiver.
+    bvec4 above = is_above(at, vec4(w_b), r);
+    bvec4 before = greaterThan(mix(vec4(0.0), vec4(w_b), above), r.w);
+    return texel_occlusion(at, mix(vec4(w_f), vec4(w_b), before), mix(vec4(slope_f.x), vec4(slope_b.x), before),
+                           mix(vec4(slope_f.y), vec4(slope_b.y), before), r, map.scale);
 }
 
 // Which faces are gathered: 0 the front layer, 1 the back layer, or each texel's back face where it lies

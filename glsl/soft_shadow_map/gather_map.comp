@@ -36,7 +36,7 @@ struct Receivers {
 #include "soft_shadow_map/node.glsl"
 
 // Receivers are no occluders here, so every texel in front counts.
-bvec4 is_above(vec2 lo, float w_o, Receivers r)
+bvec4 is_above(vec2 lo, vec4 w_o, Receivers r)
 {
     return bvec4(true);
 }

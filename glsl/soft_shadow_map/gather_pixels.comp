@@ -36,7 +36,7 @@ struct Receivers {
     vec4 bias; // the largest error of that height
 };
 
-bvec4 is_above(vec2 lo, float w_o, Receivers r)
+bvec4 is_above(vec2 lo, vec4 w_o, Receivers r)
 {
     vec4 above = (lo.x + 0.5) * r.n_x + (lo.y + 0.5) * r.n_y + r.n_0 - r.c * w_o;
     return greaterThan(above, r.bias);

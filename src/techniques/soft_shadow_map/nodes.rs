@@ -109,7 +109,7 @@ pub(super) fn declare_nodes(
     graph.push(Pass::compute(
         "soft_shadow_map.blocks",
         module!("soft_shadow_map/blocks.comp"),
-        [block_row.div_ceil(8), block_row.div_ceil(8), sides],
+        [block_row, block_row, sides],
         Push::new(&Blocks {
             map: inputs.occluders.side as i32,
             row: block_row as i32,
