@@ -176,17 +176,22 @@ int before(Node node, vec2 lo, float extent, Tile tile, Receivers r)
     return plane > 0 && node.w_min <= tile.w.y ? 0 : plane;
 }
 
+// Sums that change once a row of superblocks lie in shared memory: registers are what limits the number of waves.
+shared vec4 sums_of_map[64];
+shared vec4 sums_of_row[64];
+
 // The occlusion by one side of the map, or by both sides in pairs.
 vec4 gather(Map map, int side, Receivers r)
 {
     Tile tile = tile_of(r);
-    vec4 sum = vec4(0.0);
+    uint own = gl_LocalInvocationIndex;
+    sums_of_map[own] = vec4(0.0);
+    sums_of_row[own] = vec4(0.0);
     // Sums are kept for a superblock, for a row of superblocks and for the whole map: thousands of equal numbers that
     // are added to one float round the same way each time (docs/rounding.md).
-    vec4 sum_of_row = vec4(0.0);
     vec4 sum_of_superblock = vec4(0.0);
     if (tile.w.x >= map.w_max) {
-        return sum;
+        return vec4(0.0);
     }
     float cell = map.scale.x * map.scale.y;
     // The widest window of occluder texels in which one could hide light.
@@ -244,13 +249,13 @@ vec4 gather(Map map, int side, Receivers r)
             block = (from_side * map.row * FAN + blocks_at.y) * map.row * FAN + blocks_at.x;
             if (children == 0u) {
                 // The sum of its last block, where that must still be opened, is added with the next superblock's.
-                sum_of_row += sum_of_superblock;
+                sums_of_row[own] += sum_of_superblock;
                 sum_of_superblock = vec4(0.0);
                 at.x += 1;
                 if (at.x > to.x) {
                     at = ivec2(from.x, at.y + 1);
-                    sum += sum_of_row;
-                    sum_of_row = vec4(0.0);
+                    sums_of_map[own] += sums_of_row[own];
+                    sums_of_row[own] = vec4(0.0);
                 }
             }
         }
@@ -304,7 +309,7 @@ vec4 gather(Map map, int side, Receivers r)
         }
         sum_of_superblock += part;
     }
-    return sum + (sum_of_row + sum_of_superblock);
+    return sums_of_map[own] + (sums_of_row[own] + sum_of_superblock);
 }
 
 #endif

@@ -84,8 +84,12 @@ pub fn every_row() -> Vec<(String, Description)> {
     for words in ["technique=hard", "technique=pcss taps=8"] {
         let plain = Description::new([641, 479]);
         let mask_format = Some(vk::Format::R8_UNORM);
-        let description =
-            Description { technique: technique_of(words).expect("settings that are in order"), mask_format, audit: 1000, ..plain };
+        let description = Description {
+            technique: technique_of(words).expect("settings that are in order"),
+            mask_format,
+            audit: 1000,
+            ..plain
+        };
         let cut_outs = CutOuts { meshes: 3, texels: 1000 };
         all.push((
             format!("{words}, audited, cut-outs"),

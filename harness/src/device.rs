@@ -24,6 +24,9 @@ pub struct HeadlessOptions {
     pub driver: Option<String>,
     /// Whether to enable pipeline statistics where the device has them, for [`HeadlessDevice::count`]; off by default.
     pub statistics: bool,
+    /// Whether nodes take the device for a processor ([`Host::as_processor`]); `None`, the default, leaves it to the
+    /// device's type.
+    pub processor: Option<bool>,
     /// Other tables of Vulkan functions to call through; none by default.
     pub tables: Option<Tables>,
 }
@@ -55,6 +58,7 @@ struct Shared {
     device: Device,
     physical_device: vk::PhysicalDevice,
     properties: vk::PhysicalDeviceProperties,
+    processor: Option<bool>,
     statistics: bool,
     name: String,
     queue: vk::Queue,
@@ -165,6 +169,7 @@ impl HeadlessDevice {
             physical_device,
             properties,
             statistics,
+            processor: options.processor,
             name,
             queue,
             queue_family,
@@ -222,6 +227,9 @@ impl HeadlessDevice {
             Host::borrow(instance.raw.clone(), *physical_device, device.0.clone(), *queue_family)
         };
         host = host.with_pipeline_cache(device.1).with_layouts(Arc::clone(&device.2));
+        if let Some(processor) = self.0.processor {
+            host = host.as_processor(processor);
+        }
         match self.debug_utils() {
             Some(debug_utils) => host.with_debug_utils(debug_utils.clone()),
             None => host,

@@ -24,12 +24,15 @@ use smallvec::SmallVec;
 pub struct Limits {
     /// The step of the grid that the rasterizer rounds vertices to, in texels: 2^−(sub-pixel bits), above 0.
     pub subpixel_step: f32,
+    /// Whether the device is a processor, on which a few invocations with much work each are faster than many that wait for
+    /// each other: some passes have a shader for either, and both write the same.
+    pub processor: bool,
 }
 
 impl Default for Limits {
-    /// The least that Vulkan guarantees: 4 sub-pixel bits.
+    /// A GPU with the least that Vulkan guarantees: 4 sub-pixel bits.
     fn default() -> Self {
-        Self { subpixel_step: 1.0 / 16.0 }
+        Self { subpixel_step: 1.0 / 16.0, processor: false }
     }
 }
 
@@ -230,10 +233,15 @@ pub(crate) fn all_graphs(description: &Description, limits: Limits) -> Result<Ve
     (0..description.all_techniques().count()).map(of).collect()
 }
 
-/// The graph of every pass that any frame of this description may run, on a device with the least sub-pixel precision
-/// that Vulkan guarantees. The numbers in its push constants are placeholders.
+/// The graph of every pass that any frame of this description may run, on a GPU with the least sub-pixel precision that
+/// Vulkan guarantees. The numbers in its push constants are placeholders.
 pub fn full_graph(description: &Description) -> Graph {
     all_passes(description, Limits::default())
+}
+
+/// [`full_graph`] for a device of these limits.
+pub fn full_graph_on(description: &Description, limits: Limits) -> Graph {
+    all_passes(description, limits)
 }
 
 /// Adds the passes of a frame to an empty graph.
@@ -303,6 +311,7 @@ pub(super) fn build(
         light_texture,
         color,
         snap: limits.subpixel_step,
+        processor: limits.processor,
         depth_error: frame.host_maps.map_or(0.0, |m| m.error),
         need,
         filter,

@@ -18,6 +18,8 @@ pub struct Host {
     pub(crate) queue_family: u32,
     pub(crate) pipeline_cache: vk::PipelineCache,
     pub(super) pipeline_flags: vk::PipelineCreateFlags,
+    /// Whether the device counts as a processor; `None` where it says that itself.
+    processor: Option<bool>,
     pub(crate) debug_utils: Option<ext::debug_utils::Device>,
     /// The layouts that are shared with other nodes; `None` where each node makes its own.
     pub(super) layouts: Option<Arc<SharedLayouts>>,
@@ -51,6 +53,7 @@ impl Host {
             queue_family,
             pipeline_cache: vk::PipelineCache::null(),
             pipeline_flags: vk::PipelineCreateFlags::empty(),
+            processor: None,
             debug_utils: None,
             layouts: None,
         }
@@ -63,7 +66,8 @@ impl Host {
         description.check()?;
         requirements.allow(description)?;
         let bits = requirements.sub_pixel_bits.min(16) as i32;
-        Ok(Limits { subpixel_step: 0.5f32.powi(bits) })
+        let processor = self.processor.unwrap_or(requirements.processor);
+        Ok(Limits { subpixel_step: 0.5f32.powi(bits), processor })
     }
 
     /// Makes an allocator on the host's device, for hosts that have none of their own. The caller must drop it before
@@ -104,6 +108,14 @@ impl Host {
         self
     }
 
+    /// Makes the node take the device for a processor, or for a GPU, whatever it says of itself. Some passes have a shader for
+    /// either, which write the same; by default the device's type chooses ([`Requirements::processor`]).
+    #[must_use]
+    pub fn as_processor(mut self, processor: bool) -> Self {
+        self.processor = Some(processor);
+        self
+    }
+
     /// Makes the node name its objects and label its passes, as `antumbra.<room>.<pass>`.
     #[must_use]
     pub fn with_debug_utils(mut self, debug_utils: ext::debug_utils::Device) -> Self {
@@ -136,6 +148,8 @@ pub struct Requirements {
     pub sub_pixel_bits: u32,
     /// Whether passes can be timed on the queue family.
     pub timestamps: bool,
+    /// Whether the device is a processor (`VK_PHYSICAL_DEVICE_TYPE_CPU`).
+    pub processor: bool,
 }
 
 impl Requirements {
@@ -220,6 +234,7 @@ impl Requirements {
             sub_pixel_bits: limits.sub_pixel_precision_bits,
             timestamps: limits.timestamp_period > 0.0
                 && chosen.is_some_and(|f| f.timestamp_valid_bits > 0),
+            processor: properties.device_type == vk::PhysicalDeviceType::CPU,
         }
     }
 

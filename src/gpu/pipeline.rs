@@ -326,7 +326,9 @@ fn attachments_of(
             Shape::Image { format, width, height, .. } => {
                 Ok((id, format, vk::Extent2D { width, height }))
             }
-            Shape::Buffer { .. } => Err(Error::Frame(format!("{} draws into what is no image", pass.name))),
+            Shape::Buffer { .. } => {
+                Err(Error::Frame(format!("{} draws into what is no image", pass.name)))
+            }
         })
         .collect()
 }

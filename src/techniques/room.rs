@@ -256,6 +256,8 @@ pub struct PassInputs<'a> {
     pub color: bool,
     /// 2^−(sub-pixel bits): how far the device's rasters move a vertex, in texels.
     pub snap: f32,
+    /// Whether the device is a processor: see [`Limits`](crate::frame::Limits).
+    pub processor: bool,
     /// The error of an occluder's w beyond its rounding, 1/m.
     pub depth_error: f64,
     /// Whether anything can be shadowed.

@@ -6,7 +6,8 @@ use std::collections::BTreeSet;
 use std::process::Command;
 
 /// The packages with tests or benches of their own.
-const PACKAGES: [&str; 5] = ["antumbra", "antumbra-bench", "antumbra-gpu", "antumbra-harness", "antumbra-tests"];
+const PACKAGES: [&str; 5] =
+    ["antumbra", "antumbra-bench", "antumbra-gpu", "antumbra-harness", "antumbra-tests"];
 
 /// A line for each dependency: name, version, features.
 fn dependencies(choice: &[&str]) -> String {

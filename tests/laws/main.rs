@@ -3,6 +3,7 @@
 // A test says what went wrong by panicking.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
+mod device_kinds;
 mod frames;
 mod kept;
 mod line_truth;

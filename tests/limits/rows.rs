@@ -1,10 +1,10 @@
 //! Every row of every graph against its SPIR-V: bindings, push constants, workgroups.
 
+use antumbra::frame::{self, Limits};
 use antumbra::graph::{Draw, Graph, INVOCATIONS, PUSH_BYTES, Pass, Work};
 use antumbra::shaders::Module;
 use antumbra::stages::depth_layers::DepthPush;
 use antumbra::stages::hierarchy::{CutOutPush, MeshPush};
-use antumbra::frame;
 use antumbra_harness::descriptions::every_row;
 use antumbra_tests::example::root;
 use antumbra_tests::headers;
@@ -15,7 +15,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Mutex;
 
 fn graphs() -> Vec<(String, Graph)> {
-    every_row().into_iter().map(|(words, d)| (words, frame::full_graph(&d))).collect()
+    let gpu = Limits::default();
+    let devices = [("", gpu), (", on a processor", Limits { processor: true, ..gpu })];
+    let of_device = |(name, limits): (&str, Limits)| {
+        let graph = |(words, d)| (format!("{words}{name}"), frame::full_graph_on(&d, limits));
+        every_row().into_iter().map(graph).collect::<Vec<_>>()
+    };
+    devices.into_iter().flat_map(of_device).collect()
 }
 
 /// The modules of a row.

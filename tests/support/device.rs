@@ -66,6 +66,20 @@ impl TestDevice {
         Self::with(&HeadlessOptions { validation, ..Default::default() })
     }
 
+    /// A test's own, on which nodes run the shaders of a GPU, or those of a processor; with the validation layer as for
+    /// [`device`].
+    ///
+    /// # Panics
+    /// As [`device`].
+    pub fn taken_for(processor: bool) -> Self {
+        let validation = validating();
+        Self::with(&HeadlessOptions {
+            validation,
+            processor: Some(processor),
+            ..Default::default()
+        })
+    }
+
     /// A test's own, under the validation layer, whose calls go through tables.
     ///
     /// # Panics

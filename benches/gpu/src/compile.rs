@@ -22,8 +22,7 @@ pub fn everything() -> Result<Compiled, String> {
     let host = device.host.clone().with_pipeline_cache(cache).with_layouts(layouts);
     let mut shaders: BTreeMap<_, Vec<String>> = BTreeMap::new();
     for (words, description) in every_row() {
-        let pipelines =
-            Pipelines::new(&host, &description).map_err(|e| format!("{words}: {e}"))?;
+        let pipelines = Pipelines::new(&host, &description).map_err(|e| format!("{words}: {e}"))?;
         for made in pipelines.each() {
             let told = device.told(made.pipeline).map_err(|e| format!("{}: {e}", made.pass))?;
             for (stage, figures) in told {

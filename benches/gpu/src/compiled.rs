@@ -75,7 +75,8 @@ pub fn compile_for(program: &Path, family: &Family) -> Result<Compiled, String> 
         .output()
         .map_err(|e| format!("{}: {e}", program.display()))?;
     let said = String::from_utf8_lossy(&output.stderr);
-    let last = said.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("nothing was said");
+    let last =
+        said.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("nothing was said");
     if !output.status.success() {
         return Err(format!("RADV compiles nothing for {}: {last}", family.name));
     }

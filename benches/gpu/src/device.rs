@@ -88,9 +88,8 @@ impl NullDevice {
         let shaders = unsafe { self.statistics.get_pipeline_executable_properties(&info) };
         let shaders = shaders.map_err(doing())?;
         let of = |(index, shader): (u32, vk::PipelineExecutablePropertiesKHR)| {
-            let info = vk::PipelineExecutableInfoKHR::default()
-                .pipeline(pipeline)
-                .executable_index(index);
+            let info =
+                vk::PipelineExecutableInfoKHR::default().pipeline(pipeline).executable_index(index);
             // SAFETY: as above; there are as many shaders as were listed.
             let figures = unsafe { self.statistics.get_pipeline_executable_statistics(&info) };
             let figures = figures.map_err(doing())?.into_iter().map(|f| {

@@ -61,9 +61,8 @@ pub fn broken(family: &Family, compiled: &Compiled, exceptions: &Exceptions) -> 
         if spilled + scratch > 0 {
             broken.push(tell(format!("{spilled} registers spilled, {scratch} bytes of scratch")));
         }
-        let allowed = |rule: &str| {
-            exceptions.get(&(rule.to_owned(), module.to_owned())).map(|e| e.number)
-        };
+        let allowed =
+            |rule: &str| exceptions.get(&(rule.to_owned(), module.to_owned())).map(|e| e.number);
         if family.architecture != "RDNA2" {
             continue;
         }

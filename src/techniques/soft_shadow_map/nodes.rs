@@ -106,10 +106,14 @@ pub(super) fn declare_nodes(
         block_row,
         superblock_row,
     };
+    let (shader, groups) = match inputs.processor {
+        true => (module!("soft_shadow_map/blocks_serial.comp"), block_row.div_ceil(BLOCK)),
+        false => (module!("soft_shadow_map/blocks.comp"), block_row),
+    };
     graph.push(Pass::compute(
         "soft_shadow_map.blocks",
-        module!("soft_shadow_map/blocks.comp"),
-        [block_row, block_row, sides],
+        shader,
+        [groups, groups, sides],
         Push::new(&Blocks {
             map: inputs.occluders.side as i32,
             row: block_row as i32,
