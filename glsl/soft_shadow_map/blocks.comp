@@ -14,7 +14,7 @@ layout(local_size_x = 64) in;
 shared float w_of_texel[BLOCK_TEXELS];
 shared vec4 moments[BLOCK_TEXELS];      // (1, d, d^2, d^3) where there is an occluder
 shared vec3 slope_moments[BLOCK_TEXELS];
-shared vec4 row_moments[BLOCK_TEXELS];  // prefix sums along a row
+shared vec4 row_moments[BLOCK_TEXELS];  // prefix sums along a row of texels
 shared vec3 row_slope_moments[BLOCK_TEXELS];
 shared vec4 node;                       // count, mean, least and largest w of the block's texels
 shared uvec2 occupied;                  // a bit for each texel with an occluder

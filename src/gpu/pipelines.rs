@@ -14,8 +14,8 @@ use ash::vk;
 /// The pipelines that nodes of one description have, made on a device without memory.
 ///
 /// Made on another thread with [`Host::with_pipeline_cache`] and [`Host::with_layouts`], they leave the compiled code in the
-/// cache, and the node that is created afterwards compiles nothing. With [`Host::with_pipeline_flags`] the driver can be asked
-/// what it made of them.
+/// cache, and the node that is created afterwards compiles nothing. With [`Host::with_pipeline_flags`] the driver tells what
+/// it made of them.
 #[must_use = "destroy it: dropping it leaks its pipelines"]
 pub struct Pipelines {
     host: Host,

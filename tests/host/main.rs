@@ -11,5 +11,6 @@ mod hosts;
 mod lies;
 mod memory_faults;
 mod mistakes;
+mod pipelines;
 mod poorer_devices;
 mod render_cli;
