@@ -1,5 +1,6 @@
 //! The node: the host's whole view of the crate.
 
+mod parts;
 mod shown;
 
 pub use shown::{Inspected, LayerPass, PassTime, PlanObject, VisibilityImage};
@@ -153,22 +154,7 @@ impl ShadowNode {
         plan: &FramePlan,
         draw: &mut dyn FnMut(&HostDraw),
     ) -> Result<(), Error> {
-        if plan.stamp != self.stamp {
-            return Err(Error::StalePlan("was made by another node, or before a resize"));
-        }
-        if cmd == vk::CommandBuffer::null() {
-            return Err(Error::Frame("the command buffer to record into is a null handle".into()));
-        }
-        let mut cache = self.cache();
-        if !cache.agrees(plan.cache_key(), &plan.reuse) {
-            cache.forget_planned();
-            let why = "counts on maps or pixels that a frame recorded since has replaced";
-            return Err(Error::StalePlan(why));
-        }
-        cache.recorded(plan.cache_key(), &plan.reuse);
-        drop(cache);
-        self.objects.record(&self.host, cmd, plan, draw);
-        Ok(())
+        self.record_parts(cmd, plan, None, draw)
     }
 
     /// The render pass and raster state that a host's own pipeline needs to draw into a layer of a technique; `None`

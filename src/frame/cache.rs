@@ -12,7 +12,7 @@
 
 use super::reuse::{self, Cached, Reuse};
 use super::triangles::TreeKey;
-use crate::lent::{LightIndex, TechniqueIndex};
+use crate::lent::{LightIndex, Slot, TechniqueIndex};
 
 /// Where a frame's results lie in the cache: the light picks the layer, the technique the maps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,6 +43,8 @@ struct Maps {
     planned_tree: Option<TreeKey>,
     /// A bit for each light with such a plan.
     tree_planned: u64,
+    /// The light and the slot of a plan of which the first part is recorded and the second is not.
+    begun: Option<(LightIndex, Slot)>,
 }
 
 /// What a node still holds from recorded frames.
@@ -124,6 +126,24 @@ impl Cache {
         reuse.agrees(&self.get(key))
     }
 
+    /// Notes that the first part of a plan is recorded, which draws over what it makes.
+    pub fn begun(&mut self, key: CacheKey, slot: Slot, reuse: &Reuse) {
+        let Some(maps) = self.maps.get_mut(key.technique.0 as usize) else { return };
+        maps.begun = Some((key.light, slot));
+        if reuse.makes_maps.is_some() {
+            maps.drawn = None;
+        }
+        if reuse.makes_tree.is_some() {
+            maps.tree = None;
+        }
+    }
+
+    /// Whether the first part of a light's plan for a slot is the last that was recorded of the technique.
+    pub fn has_begun(&self, key: CacheKey, slot: Slot) -> bool {
+        let maps = self.maps.get(key.technique.0 as usize);
+        maps.is_some_and(|maps| maps.begun == Some((key.light, slot)))
+    }
+
     /// Notes that a plan is recorded, and what it leaves.
     pub fn recorded(&mut self, key: CacheKey, reuse: &Reuse) {
         let cached = reuse.cached_after(&self.get(key));
@@ -138,6 +158,7 @@ impl Cache {
         }
         if let Some(maps) = self.maps.get_mut(key.technique.0 as usize) {
             maps.tree = cached.tree;
+            maps.begun = None;
             if reuse.makes_maps.is_some() {
                 maps.drawn = cached.maps.map(|made| (key.light, made));
             }

@@ -18,6 +18,16 @@ use ash::vk;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Stamp(pub u64);
 
+/// A part of a plan, for hosts that record it into two command buffers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// The passes before the first that uses an image of the host: they draw and prefilter the maps of the light, and need
+    /// nothing of the G-buffer. The node's own draws read the host's vertex buffers here.
+    Light,
+    /// The other passes, which use the host's images.
+    Pixels,
+}
+
 /// The plan of one frame of one light: which passes run behind which barriers, and why; with which images and meshes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FramePlan {
@@ -84,6 +94,15 @@ impl FramePlan {
     /// The passes that do not run, and why not.
     pub fn skipped(&self) -> impl Iterator<Item = (&'static str, String)> + '_ {
         self.plan.reasons().map(|(pass, why)| (pass.name, why.to_string()))
+    }
+
+    /// How many steps of [`graph::Plan::steps`] are [`Part::Light`]'s; the others are [`Part::Pixels`]'s. Where several views
+    /// share the maps, it is the first view's; where the host lends occluder maps, there may be none.
+    pub fn light_steps(&self) -> usize {
+        let graph = &self.plan.graph;
+        let of_host = |u: &graph::Use| graph.resource(u.resource).owner.is_shared();
+        let uses_host = |s: &graph::Step| graph.passes()[s.pass].uses.iter().any(of_host);
+        self.plan.steps.iter().position(uses_host).unwrap_or(self.plan.steps.len())
     }
 
     /// Which effects are simulated, which are left out, and what each decision follows from.

@@ -12,7 +12,7 @@ use super::result::ResultImage;
 use super::timing::Timing;
 use crate::Error;
 use crate::audit::MeasuredError;
-use crate::frame::{Description, FramePlan};
+use crate::frame::{Description, FramePlan, Part};
 use crate::graph::{Graph, ResourceId};
 use crate::lent::{LightIndex, Slot, TechniqueIndex};
 use ash::vk;
@@ -106,12 +106,12 @@ impl NodeObjects {
         self.result.as_ref().map_or(Default::default(), |result| result.layer(light.0).image().1)
     }
 
-    /// Records a plan for whose passes these objects were made.
+    /// Records a plan for whose passes these objects were made, or a part of it.
     pub fn record(
         &self,
         host: &Host,
         cmd: vk::CommandBuffer,
-        plan: &FramePlan,
+        (plan, part): (&FramePlan, Option<Part>),
         draw: &mut dyn FnMut(&HostDraw),
     ) {
         let index = plan.technique_index().0 as usize;
@@ -133,7 +133,7 @@ impl NodeObjects {
             draw,
             cmd,
         }
-        .record(plan);
+        .record(plan, part);
     }
 
     /// The render pass of a kind of pass of one of the techniques, and the size of its attachments; `None` for a kind

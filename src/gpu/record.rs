@@ -10,7 +10,7 @@ use super::objects::{Object, Objects, layers, whole};
 use super::pipeline::PassObjects;
 use super::result::ResultImage;
 use super::timing::Timing;
-use crate::frame::{Faces, FramePlan};
+use crate::frame::{Faces, FramePlan, Part};
 use crate::graph::{
     self, COLOR_ATTACHMENTS, Draw, Layer, Owner, Pass, ResourceBarrier, ResourceId, Shape, Step,
     Target, Use, Work,
@@ -70,25 +70,28 @@ pub(crate) struct Recorder<'a> {
 }
 
 impl Recorder<'_> {
-    /// Records every step of a plan, and the barriers after the last.
-    pub fn record(&mut self, frame: &FramePlan) {
+    /// Records every step of a plan, and the barriers after the last; or those of one of its parts.
+    pub fn record(&mut self, frame: &FramePlan, part: Option<Part>) {
         let plan = &frame.plan;
-        if let Some(timing) = self.timing {
-            match plan.steps.is_empty() {
-                true => timing.nothing(self.place),
-                false => timing.begin(self.host, self.cmd, self.place),
-            }
+        let split = frame.light_steps();
+        if part != Some(Part::Pixels) {
+            self.begin(frame);
         }
-        if let Some(measured) = self.measured {
+        let steps = match part {
+            None => 0..plan.steps.len(),
+            Some(Part::Light) => 0..split,
+            Some(Part::Pixels) => split..plan.steps.len(),
+        };
+        if let (Some(Part::Pixels), Some(timing), false) = (part, self.timing, steps.is_empty()) {
+            timing.resume(self.host, self.cmd, self.place, split);
+        }
+        // The audit's passes are behind those of the pixels.
+        if let Some(measured) = self.measured.filter(|_| part != Some(Part::Light)) {
             let runs = |s: &Step| matches!(plan.graph.passes()[s.pass].work, Work::FrameNumber);
             let audited = plan.steps.iter().any(runs);
             self.number = measured.begin(self.place, frame.light_index(), audited);
         }
-        if !frame.triangles.meshes.is_empty() {
-            self.mesh_sets.write(self.host, &frame.triangles, self.place);
-        }
-        self.cut_out_sets.write(self.host, &frame.cut_outs, self.place);
-        for (nth, step) in plan.steps.iter().enumerate() {
+        for (nth, step) in plan.steps.iter().enumerate().take(steps.end).skip(steps.start) {
             let pass = &plan.graph.passes()[step.pass];
             let kind = plan.graph.kind_of(step.pass);
             self.label(kind);
@@ -100,7 +103,23 @@ impl Recorder<'_> {
                 timing.end_pass(self.host, self.cmd, self.place, (nth, kind));
             }
         }
-        self.barriers(frame, &plan.handover);
+        if part != Some(Part::Light) {
+            self.barriers(frame, &plan.handover);
+        }
+    }
+
+    /// Begins a frame: resets its timestamps, and writes the sets of its meshes.
+    fn begin(&mut self, frame: &FramePlan) {
+        if let Some(timing) = self.timing {
+            match frame.plan.steps.is_empty() {
+                true => timing.nothing(self.place),
+                false => timing.begin(self.host, self.cmd, self.place),
+            }
+        }
+        if !frame.triangles.meshes.is_empty() {
+            self.mesh_sets.write(self.host, &frame.triangles, self.place);
+        }
+        self.cut_out_sets.write(self.host, &frame.cut_outs, self.place);
     }
 
     fn pass(&mut self, frame: &FramePlan, kind: usize, pass: &Pass, first: bool) {

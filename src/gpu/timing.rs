@@ -6,7 +6,8 @@ use crate::Error;
 use ash::vk;
 use std::sync::atomic::{AtomicU16, AtomicU32, Ordering};
 
-/// A pool of timestamps for each place, which is a light of a frame slot: one before the first pass and one after each.
+/// A pool of timestamps for each place, which is a light of a frame slot: one before the first pass, one after each, and one
+/// before the first pass of a second part that is recorded apart.
 pub(crate) struct Timing {
     pools: Vec<vk::QueryPool>,
     /// The nanoseconds of a tick.
@@ -24,8 +25,13 @@ pub(crate) struct Timing {
 /// The number of recorded passes, and the kind of each.
 struct Recorded {
     count: AtomicU32,
+    /// The number of the first pass of the second part; [`WHOLE`] where there was one part.
+    resumed: AtomicU32,
     kinds: Vec<AtomicU16>,
 }
+
+/// No pass has this number.
+const WHOLE: u32 = u32::MAX;
 
 impl Timing {
     /// Creates pools for up to `passes` passes of `kinds` kinds in a frame; no pools where the queue family has no
@@ -46,7 +52,7 @@ impl Timing {
         if bits == 0 || limits.timestamp_period <= 0.0 {
             return Ok(None);
         }
-        let queries = passes as u32 + 1;
+        let queries = passes as u32 + 2;
         let create = vk::QueryPoolCreateInfo::default()
             .query_type(vk::QueryType::TIMESTAMP)
             .query_count(queries);
@@ -64,6 +70,7 @@ impl Timing {
             recorded: (0..places)
                 .map(|_| Recorded {
                     count: AtomicU32::new(0),
+                    resumed: AtomicU32::new(WHOLE),
                     kinds: (0..passes).map(|_| AtomicU16::new(0)).collect(),
                 })
                 .collect(),
@@ -75,12 +82,24 @@ impl Timing {
     pub fn begin(&self, host: &Host, cmd: vk::CommandBuffer, place: usize) {
         let pool = self.pools[place];
         self.recorded[place].count.store(0, Ordering::Relaxed);
+        self.recorded[place].resumed.store(WHOLE, Ordering::Relaxed);
         // SAFETY: Host::borrow's promise: cmd is recording outside a render pass, and the slot's
         // earlier commands are done.
         unsafe { host.device.cmd_reset_query_pool(cmd, pool, 0, self.queries) };
         // SAFETY: as above; query 0 was just reset.
         unsafe {
             host.device.cmd_write_timestamp(cmd, vk::PipelineStageFlags::BOTTOM_OF_PIPE, pool, 0);
+        };
+    }
+
+    /// Writes the timestamp before pass number `nth` of the frame, which begins its second part.
+    pub fn resume(&self, host: &Host, cmd: vk::CommandBuffer, place: usize, nth: usize) {
+        self.recorded[place].resumed.store(nth as u32, Ordering::Relaxed);
+        let (pool, query) = (self.pools[place], self.queries - 1);
+        // SAFETY: as in `begin`; the last query is for this alone, and the first part has reset it.
+        unsafe {
+            let bottom = vk::PipelineStageFlags::BOTTOM_OF_PIPE;
+            host.device.cmd_write_timestamp(cmd, bottom, pool, query);
         };
     }
 
@@ -117,28 +136,31 @@ impl Timing {
             return None;
         }
         let mut ticks = vec![0u64; count + 1];
-        // SAFETY: the pool holds as many queries as were recorded; without WAIT the call returns
-        // NOT_READY instead of blocking.
-        unsafe {
-            host.device.get_query_pool_results(
-                self.pools[place],
-                0,
-                &mut ticks,
-                vk::QueryResultFlags::TYPE_64,
-            )
+        let results = |first, ticks: &mut [u64]| {
+            let (pool, flags) = (self.pools[place], vk::QueryResultFlags::TYPE_64);
+            // SAFETY: the pool holds as many queries as were recorded; without WAIT the call returns
+            // NOT_READY instead of blocking.
+            unsafe { host.device.get_query_pool_results(pool, first, ticks, flags) }.ok()
+        };
+        results(0, &mut ticks)?;
+        let resumed = recorded.resumed.load(Ordering::Relaxed);
+        let mut begin = [0u64];
+        if resumed != WHOLE {
+            results(self.queries - 1, &mut begin)?;
         }
-        .ok()?;
         let ms =
-            |pair: &[u64]| (pair[1].wrapping_sub(pair[0]) & self.mask) as f64 * self.period * 1e-6;
+            |from: u64, to: u64| (to.wrapping_sub(from) & self.mask) as f64 * self.period * 1e-6;
         let mut of_kind = vec![None; self.kinds];
         let mut sums: Vec<(usize, f64)> = Vec::new();
-        for (kind, pair) in recorded.kinds.iter().zip(ticks.windows(2)) {
+        for (nth, (kind, pair)) in (0..).zip(recorded.kinds.iter().zip(ticks.windows(2))) {
+            // Between the parts the host may have done anything.
+            let from = if nth == resumed { begin[0] } else { pair[0] };
             let kind = usize::from(kind.load(Ordering::Relaxed));
             let at = *of_kind.get_mut(kind)?.get_or_insert_with(|| {
                 sums.push((kind, 0.0));
                 sums.len() - 1
             });
-            sums[at].1 += ms(pair);
+            sums[at].1 += ms(from, pair[1]);
         }
         Some(sums)
     }

@@ -11,6 +11,7 @@ mod hosts;
 mod lies;
 mod memory_faults;
 mod mistakes;
+mod parts;
 mod pipelines;
 mod poorer_devices;
 mod render_cli;

@@ -124,6 +124,14 @@ impl Bench {
     /// # Panics
     /// If the frame fails.
     pub fn plan(&self, node: &ShadowNode) -> Option<FramePlan> {
+        self.plan_as(node, |_| {})
+    }
+
+    /// As [`Self::plan`], of a frame that `change` has changed.
+    ///
+    /// # Panics
+    /// If the frame fails.
+    pub fn plan_as(&self, node: &ShadowNode, change: impl FnOnce(&mut Frame)) -> Option<FramePlan> {
         if node.description().light_texture.is_some() {
             return None;
         }
@@ -135,7 +143,8 @@ impl Bench {
         let (before, after) = (Scope::COPIED_FROM, Scope::COPIED_FROM);
         let visibility = Visibility::Own { before, after };
         let mask = Some(gbuffer.mask_for_node());
-        let frame = Frame { background: Some(0.0), mask, visibility, ..own };
+        let mut frame = Frame { background: Some(0.0), mask, visibility, ..own };
+        change(&mut frame);
         Some(node.plan(&frame).unwrap())
     }
 
