@@ -67,7 +67,9 @@ bool has_middle() { return (push.flags & 1 << 30) != 0; }
 bool is_disc() { return (push.flags & 1 << 28) != 0; }
 #ifdef FORWARD
 bool is_polygon() { return false; }
+bool is_textured() { return false; }
 #else
+bool is_textured() { return (push.flags & 1 << 27) != 0; }
 bool is_polygon() { return (push.flags & 1 << 29) != 0; }
 #endif
 int sampling() { return push.flags >> 23 & 3; }
@@ -77,12 +79,10 @@ int sampling() { return push.flags >> 23 & 3; }
 bool is_linear() { return false; }
 bool looks_from_eye() { return false; }
 int level_kind() { return N_BUFFER; }
-bool is_textured() { return false; }
 #else
 bool is_linear() { return (push.flags & 1 << 18) != 0; }
 bool looks_from_eye() { return (push.flags & 1 << 20) != 0; }
 int level_kind() { return push.flags >> 25 & 3; }
-bool is_textured() { return (push.flags & 1 << 27) != 0; }
 #endif
 
 Levels levels()
