@@ -67,12 +67,18 @@ bool has_middle() { return (push.flags & 1 << 30) != 0; }
 bool is_disc() { return (push.flags & 1 << 28) != 0; }
 #ifdef FORWARD
 bool is_polygon() { return false; }
-bool is_textured() { return false; }
 #else
-bool is_textured() { return (push.flags & 1 << 27) != 0; }
 bool is_polygon() { return (push.flags & 1 << 29) != 0; }
 #endif
 int sampling() { return push.flags >> 23 & 3; }
+
+// Whether rays are weighed by a texture, which classify.comp asks: its variant for the usual settings without color is for
+// lights without one.
+#if defined(USUAL) && !defined(COLOR)
+bool is_textured() { return false; }
+#else
+bool is_textured() { return (push.flags & 1 << 27) != 0; }
+#endif
 
 // `#define USUAL` leaves out what only unusual settings need: the rays then take 0.4 of the time.
 #ifdef USUAL

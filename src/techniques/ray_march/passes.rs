@@ -31,11 +31,11 @@ fn shaders_of(settings: &Settings, inputs: &PassInputs) -> Shaders {
     let usual = settings.levels == nbuffer::Kind::NBuffer
         && settings.search == Search::Hierarchical
         && settings.layers != Layers::Eye;
-    let classify = match (inputs.color, usual) {
-        (true, true) => module!("ray_march/classify_color.comp"),
-        (true, false) => module!("ray_march/classify_color_any.comp"),
-        (false, true) => module!("ray_march/classify.comp"),
-        (false, false) => module!("ray_march/classify_any.comp"),
+    let classify = match (inputs.light_texture, inputs.color, usual) {
+        (_, true, true) => module!("ray_march/classify_color.comp"),
+        (_, true, false) => module!("ray_march/classify_color_any.comp"),
+        (None, false, true) => module!("ray_march/classify.comp"),
+        _ => module!("ray_march/classify_any.comp"),
     };
     let trace = match (inputs.light_texture, inputs.color, usual) {
         (Some(_), true, true) => module!("ray_march/trace_color.comp"),
