@@ -2,12 +2,15 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-#include "occlusion_textures/tile.glsl"
+#include "occlusion_textures/scan.glsl"
 
-// Summed-area tables, first half: adds to every texel those before it in its row of texels. One invocation handles one
-// row of a tile's texels.
+// Summed-area tables, first half: adds to every texel those before it in its row of texels.
 
+#ifdef PARTED
+layout(local_size_x = 128) in;
+#else
 layout(local_size_x = 64) in;
+#endif
 
 layout(set = 0, binding = 0) uniform utexture2D mask;
 layout(set = 0, binding = 1, rgba32ui) writeonly uniform uimage2D sums;
@@ -19,16 +22,25 @@ layout(push_constant) uniform Push {
 
 void main()
 {
-    int y = int(gl_GlobalInvocationID.x);
-    int tile = int(gl_GlobalInvocationID.y);
+    int at = int(gl_LocalInvocationIndex);
+    int y = LINES * int(gl_WorkGroupID.x) + at % LINES;
+    int tile = int(gl_WorkGroupID.y);
+    int first = (tile * push.map + y) * push.map;
+    Sums sum = Sums(uvec4(0u), 0u);
+#ifdef PARTED
+    ivec2 range = y < push.map ? texels_of(at / LINES, push.map) : ivec2(0);
+    for (int x = range.x; x < range.y; ++x) {
+        sum = plus(sum, tile_sums(texelFetch(mask, ivec2(x, y), 0).x, tile, push.correlated != 0));
+    }
+    sum = sums_before(at, sum);
+#else
     if (y >= push.map) {
         return;
     }
-    int first = (tile * push.map + y) * push.map;
-    Sums sum = Sums(uvec4(0u), 0u);
-    for (int x = 0; x < push.map; ++x) {
-        Sums more = tile_sums(texelFetch(mask, ivec2(x, y), 0).x, tile, push.correlated != 0);
-        sum = Sums(sum.four + more.four, sum.fifth + more.fifth);
+    ivec2 range = ivec2(0, push.map);
+#endif
+    for (int x = range.x; x < range.y; ++x) {
+        sum = plus(sum, tile_sums(texelFetch(mask, ivec2(x, y), 0).x, tile, push.correlated != 0));
         imageStore(sums, place_in_image(first + x), packed(sum));
     }
 }

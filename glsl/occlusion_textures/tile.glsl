@@ -1,4 +1,4 @@
-// Entered from sum_rows.comp, sum_columns.comp, first_level.comp, visibility.comp and tiles.comp.
+// Entered from scan.glsl, first_level.comp, visibility.comp and tiles.comp.
 //
 // The numbers that are prefiltered: tiles of values that are 0 or 1 at a texel, made from the mask.
 //
@@ -98,6 +98,19 @@ uvec3 inside(uvec3 upper_left, uvec3 upper_right, uvec3 lower_left, uvec3 lower_
     return lower_right - lower_left - upper_right + upper_left;
 }
 
+// What lies above a row of corners in a rectangle's first column of texels (bits 0 to 15) and in its last, from the sums at
+// these columns' sides: 4096 at most, and never less for a lower row, so that such pairs are subtracted as one number.
+uvec3 ends(uvec3 first, uvec3 second, uvec3 last_but_one, uvec3 last)
+{
+    return second - first + (last - last_but_one << 16u);
+}
+
+// The weighed sum of what lies in the first column and in the last.
+vec3 both_ends(uvec3 pair, float first, float last)
+{
+    return first * vec3(pair & 0xffffu) + last * vec3(pair >> 16u);
+}
+
 // Whether no slice blocks in any texel that the rectangle from `lo` to `hi` touches.
 bool is_empty(vec2 lo, vec2 hi)
 {
@@ -138,31 +151,26 @@ vec3 mean_of(int slice, vec2 lo, vec2 hi)
     if (all_of_it.x == 0u || all_of_it.x == uint(texels.x * texels.y)) {
         return vec3(all_of_it.x == 0u ? 0.0 : 1.0);
     }
-    uvec3 s10 = sum_at(slice, ivec2(a.x + 1, a.y));
-    uvec3 s20 = sum_at(slice, ivec2(b.x, a.y));
-    uvec3 s01 = sum_at(slice, ivec2(a.x, a.y + 1));
-    uvec3 s11 = sum_at(slice, a + 1);
-    uvec3 s21 = sum_at(slice, ivec2(b.x, a.y + 1));
-    uvec3 s31 = sum_at(slice, ivec2(b.x + 1, a.y + 1));
-    uvec3 s02 = sum_at(slice, ivec2(a.x, b.y));
-    uvec3 s12 = sum_at(slice, ivec2(a.x + 1, b.y));
-    uvec3 s22 = sum_at(slice, b);
-    uvec3 s32 = sum_at(slice, ivec2(b.x + 1, b.y));
-    uvec3 s13 = sum_at(slice, ivec2(a.x + 1, b.y + 1));
-    uvec3 s23 = sum_at(slice, ivec2(b.x, b.y + 1));
     // The shares of the first and last row and column of texels that lie outside the rectangle.
     vec2 before = lo - vec2(a);
     vec2 after = vec2(b + 1) - hi;
-    vec3 left = vec3(inside(s00, s10, s03, s13));
-    vec3 right = vec3(inside(s20, s30, s23, s33));
-    vec3 upper = vec3(inside(s00, s30, s01, s31));
-    vec3 lower = vec3(inside(s02, s32, s03, s33));
-    vec3 corners = before.y * (before.x * vec3(inside(s00, s10, s01, s11)) +
-                               after.x * vec3(inside(s20, s30, s21, s31))) +
-                   after.y * (before.x * vec3(inside(s02, s12, s03, s13)) +
-                              after.x * vec3(inside(s22, s32, s23, s33)));
-    vec3 sum = vec3(all_of_it) - before.x * left - after.x * right - before.y * upper - after.y * lower +
-               corners;
+    // Of every row of corners: what lies above it in all columns from the first to the last, and in the first and the last.
+    uvec3 all_0 = s30 - s00;
+    uvec3 all_3 = s33 - s03;
+    uvec3 ends_0 = ends(s00, sum_at(slice, ivec2(a.x + 1, a.y)), sum_at(slice, ivec2(b.x, a.y)), s30);
+    uvec3 ends_3 = ends(s03, sum_at(slice, ivec2(a.x + 1, b.y + 1)), sum_at(slice, ivec2(b.x, b.y + 1)), s33);
+    uvec3 whole = ends_3 - ends_0;
+    vec3 sum = vec3(all_of_it) - before.x * vec3(whole & 0xffffu) - after.x * vec3(whole >> 16u);
+    uvec3 s01 = sum_at(slice, ivec2(a.x, a.y + 1));
+    uvec3 s31 = sum_at(slice, ivec2(b.x + 1, a.y + 1));
+    uvec3 ends_1 = ends(s01, sum_at(slice, a + 1), sum_at(slice, ivec2(b.x, a.y + 1)), s31);
+    sum -= before.y * vec3(s31 - s01 - all_0);
+    vec3 corners = before.y * both_ends(ends_1 - ends_0, before.x, after.x);
+    uvec3 s02 = sum_at(slice, ivec2(a.x, b.y));
+    uvec3 s32 = sum_at(slice, ivec2(b.x + 1, b.y));
+    uvec3 ends_2 = ends(s02, sum_at(slice, ivec2(a.x + 1, b.y)), sum_at(slice, b), s32);
+    sum -= after.y * vec3(all_3 - (s32 - s02));
+    sum += corners + after.y * both_ends(ends_3 - ends_2, before.x, after.x);
     vec2 size = hi - lo;
     vec3 mean = clamp(sum / (size.x * size.y), 0.0, 1.0);
     // The share blocked above the next slice: this slice and those above it, with their overlap counted once.

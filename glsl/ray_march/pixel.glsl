@@ -72,17 +72,23 @@ bool is_polygon() { return (push.flags & 1 << 29) != 0; }
 #endif
 int sampling() { return push.flags >> 23 & 3; }
 
+// Whether rays are weighed by a texture, which classify.comp asks: its variant for the usual settings without color is for
+// lights without one.
+#if defined(USUAL) && !defined(COLOR)
+bool is_textured() { return false; }
+#else
+bool is_textured() { return (push.flags & 1 << 27) != 0; }
+#endif
+
 // `#define USUAL` leaves out what only unusual settings need: the rays then take 0.4 of the time.
 #ifdef USUAL
 bool is_linear() { return false; }
 bool looks_from_eye() { return false; }
 int level_kind() { return N_BUFFER; }
-bool is_textured() { return false; }
 #else
 bool is_linear() { return (push.flags & 1 << 18) != 0; }
 bool looks_from_eye() { return (push.flags & 1 << 20) != 0; }
 int level_kind() { return push.flags >> 25 & 3; }
-bool is_textured() { return (push.flags & 1 << 27) != 0; }
 #endif
 
 Levels levels()

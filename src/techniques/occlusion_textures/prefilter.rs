@@ -10,6 +10,9 @@ use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use smallvec::smallvec;
 
+/// The rows or columns of texels that a workgroup sums up (`scan.glsl`): 64, and 8 for the `parted` variants of its shaders.
+const LINES: u32 = 64;
+
 /// The push constants of `sum_rows.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -39,7 +42,7 @@ pub(super) fn declare_sums(
     let (values, format) = (tiles * side * side, vk::Format::R32G32B32A32_UINT);
     let extent = [IMAGE_WIDTH.min(values), values.div_ceil(IMAGE_WIDTH)];
     let sums = graph.image("occlusion_textures.filtered", format, extent, Owner::Transient);
-    let groups = [side.div_ceil(64), tiles, 1];
+    let groups = [side.div_ceil(LINES), tiles, 1];
     let mut sum = |name, shader: Module, push, uses| {
         graph.push(Pass::compute(name, shader, groups, push, uses, inputs.need));
     };

@@ -31,33 +31,26 @@ fn shaders_of(settings: &Settings, inputs: &PassInputs) -> Shaders {
     let usual = settings.levels == nbuffer::Kind::NBuffer
         && settings.search == Search::Hierarchical
         && settings.layers != Layers::Eye;
-    let (rows, columns) =
-        (module!("ray_march/filter_rows.comp"), module!("ray_march/filter_columns.comp"));
-    match (inputs.light_texture, inputs.color) {
-        (Some(_), true) => Shaders {
-            classify: module!("ray_march/classify_color.comp"),
-            trace: module!("ray_march/trace_color.comp"),
-            rows: module!("ray_march/filter_rows_color.comp"),
-            columns: module!("ray_march/filter_columns_color.comp"),
-        },
-        (Some(_), false) => {
-            let (classify, trace) =
-                (module!("ray_march/classify_any.comp"), module!("ray_march/trace_textured.comp"));
-            Shaders { classify, trace, rows, columns }
-        }
-        _ if usual => Shaders {
-            classify: module!("ray_march/classify.comp"),
-            trace: shaders::TRACE,
-            rows,
-            columns,
-        },
-        _ => Shaders {
-            classify: module!("ray_march/classify_any.comp"),
-            trace: module!("ray_march/trace_any.comp"),
-            rows,
-            columns,
-        },
-    }
+    let classify = match (inputs.light_texture, inputs.color, usual) {
+        (_, true, true) => module!("ray_march/classify_color.comp"),
+        (_, true, false) => module!("ray_march/classify_color_any.comp"),
+        (None, false, true) => module!("ray_march/classify.comp"),
+        _ => module!("ray_march/classify_any.comp"),
+    };
+    let trace = match (inputs.light_texture, inputs.color, usual) {
+        (Some(_), true, true) => module!("ray_march/trace_color.comp"),
+        (Some(_), true, false) => module!("ray_march/trace_color_any.comp"),
+        (Some(_), false, true) => module!("ray_march/trace_textured.comp"),
+        (Some(_), false, false) => module!("ray_march/trace_textured_any.comp"),
+        (None, _, true) => shaders::TRACE,
+        (None, _, false) => module!("ray_march/trace_any.comp"),
+    };
+    let (rows, columns) = if inputs.color {
+        (module!("ray_march/filter_rows_color.comp"), module!("ray_march/filter_columns_color.comp"))
+    } else {
+        (module!("ray_march/filter_rows.comp"), module!("ray_march/filter_columns.comp"))
+    };
+    Shaders { classify, trace, rows, columns }
 }
 
 /// The push constants of `start.comp`.
