@@ -6,14 +6,17 @@ use antumbra_tests::device::TestDevice;
 use antumbra_tests::measure::{Setup, model};
 
 /// The settings that reach each pass that has two shaders, with what belongs to its edges: maps whose side is no multiple of a
-/// block, and each way of combining sides.
-const SETTINGS: [&str; 6] = [
+/// block or of a part of a row, and each way of combining sides.
+const SETTINGS: [&str; 9] = [
     "technique=soft-shadow-map",
     "technique=soft-shadow-map map=100 sides=two",
     "technique=soft-shadow-map map=77 sides=mean",
     "technique=soft-shadow-map map=256 sides=bottom",
     "technique=soft-shadow-map receivers=map sides=two map=90",
     "technique=soft-shadow-map receivers=map accumulate=blend-fp16 map=64 receiver_map=64",
+    "technique=occlusion-textures",
+    "technique=occlusion-textures map=100 combine=product",
+    "technique=occlusion-textures map=33 slices=5 placement=uniform",
 ];
 
 #[test]

@@ -190,7 +190,7 @@ fn a_wrong_row_is_noticed() {
     assert_eq!(disagreements(&graph, &wrong).len(), 1);
 }
 
-/// Every committed module is some pass's. The `parted` variants are for GPUs, and no row chooses by its device.
+/// Every committed module is some pass's.
 #[test]
 fn every_module_has_a_row() {
     let used: BTreeSet<&str> = graphs()
@@ -198,8 +198,8 @@ fn every_module_has_a_row() {
         .flat_map(|(_, g)| g.passes().iter().flat_map(modules).map(|m| m.path).collect::<Vec<_>>())
         .collect();
     let committed: BTreeSet<String> = antumbra_tests::compile::committed().into_keys().collect();
-    let apart = |name: &String| name.starts_with("headless/") || name.ends_with("_parted.comp");
-    let listed: BTreeSet<String> = committed.into_iter().filter(|name| !apart(name)).collect();
+    let headless = |name: &String| name.starts_with("headless/");
+    let listed: BTreeSet<String> = committed.into_iter().filter(|name| !headless(name)).collect();
     assert_eq!(listed, used.iter().map(ToString::to_string).collect());
 }
 

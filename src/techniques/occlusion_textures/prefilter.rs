@@ -10,8 +10,11 @@ use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use smallvec::smallvec;
 
-/// The rows or columns of texels that a workgroup sums up (`scan.glsl`): 64, and 8 for the `parted` variants of its shaders.
+/// The rows or columns of texels that a workgroup sums up (`scan.glsl`).
 const LINES: u32 = 64;
+
+/// As many in the variants whose workgroups cut each of them into parts.
+const LINES_PARTED: u32 = 8;
 
 /// The push constants of `sum_rows.comp`.
 #[repr(C)]
@@ -42,13 +45,27 @@ pub(super) fn declare_sums(
     let (values, format) = (tiles * side * side, vk::Format::R32G32B32A32_UINT);
     let extent = [IMAGE_WIDTH.min(values), values.div_ceil(IMAGE_WIDTH)];
     let sums = graph.image("occlusion_textures.filtered", format, extent, Owner::Transient);
-    let groups = [side.div_ceil(LINES), tiles, 1];
+    // A GPU has room for more invocations than there are rows or columns of texels: its shaders cut each of them into parts.
+    // A processor has not, and would read every texel twice for nothing.
+    let (rows, columns, lines) = match inputs.processor {
+        true => (
+            module!("occlusion_textures/sum_rows.comp"),
+            module!("occlusion_textures/sum_columns.comp"),
+            LINES,
+        ),
+        false => (
+            module!("occlusion_textures/sum_rows_parted.comp"),
+            module!("occlusion_textures/sum_columns_parted.comp"),
+            LINES_PARTED,
+        ),
+    };
+    let groups = [side.div_ceil(lines), tiles, 1];
     let mut sum = |name, shader: Module, push, uses| {
         graph.push(Pass::compute(name, shader, groups, push, uses, inputs.need));
     };
     sum(
         "occlusion_textures.sum_rows",
-        module!("occlusion_textures/sum_rows.comp"),
+        rows,
         Push::new(&SumRows { map: side as i32, correlated: i32::from(settings.is_correlated()) }),
         smallvec![
             Use::bound(0, mask, Access::SampledCompute),
@@ -57,7 +74,7 @@ pub(super) fn declare_sums(
     );
     sum(
         "occlusion_textures.sum_columns",
-        module!("occlusion_textures/sum_columns.comp"),
+        columns,
         Push::new(&SumColumns { map: side as i32 }),
         smallvec![Use::bound(0, sums, Access::ImageUpdate)],
     );

@@ -46,7 +46,10 @@ fn shaders_of(settings: &Settings, inputs: &PassInputs) -> Shaders {
         (None, _, false) => module!("ray_march/trace_any.comp"),
     };
     let (rows, columns) = if inputs.color {
-        (module!("ray_march/filter_rows_color.comp"), module!("ray_march/filter_columns_color.comp"))
+        (
+            module!("ray_march/filter_rows_color.comp"),
+            module!("ray_march/filter_columns_color.comp"),
+        )
     } else {
         (module!("ray_march/filter_rows.comp"), module!("ray_march/filter_columns.comp"))
     };
