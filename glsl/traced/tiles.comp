@@ -45,7 +45,7 @@ uint leaves_in(Shaft shaft, uint slot, inout int turns)
     return at < frame.nodes ? frame.most + 1u : found;
 }
 
-// How far the tile's receivers are off their surfaces, a row for each pixel: a word tells a position with the depth that is
+// How far the tile's receivers are off their surfaces, pixel by pixel: a word tells a position with the depth that is
 // read again, where three would leave room for few workgroups, and sixteen positions for few waves.
 shared float offs[TILE_PIXELS * gl_WorkGroupSize.x * gl_WorkGroupSize.y];
 
