@@ -91,6 +91,15 @@ Figure figure_of(Receiver r)
     return f;
 }
 
+// The receiver itself: `turns`, which a walk counts down, is never so few. A compiler cannot know that, and so it makes a
+// figure of this receiver anew instead of holding one in registers throughout the walk.
+Receiver still(Receiver r, int turns)
+{
+    r.position = turns > -64 ? r.position : vec3(0.0);
+    r.in_light = turns > -64 ? r.in_light : vec3(0.0);
+    return r;
+}
+
 vec2 corner_at(uint nth)
 {
     vec2 share = vec2(push.corners[nth] & 0xffffu, push.corners[nth] >> 16) / 65535.0;

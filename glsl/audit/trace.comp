@@ -119,6 +119,7 @@ uint row_stopped(Cut cut, Figure f, uint triangle, mat3 planes, vec3 middle, uin
     }
     return stopped;
 }
+#endif
 
 // The jth row of cells.
 uint row_of(Cells cells, int j)
@@ -127,7 +128,6 @@ uint row_of(Cells cells, int j)
     uvec2 two = mix(four.xy, four.zw, bvec2((j & 2) != 0));
     return mix(two.x, two.y, (j & 1) != 0);
 }
-#endif
 
 // The cells that a triangle hides, with those that are hidden already.
 Cells with_hidden(Cells hidden, Figure f, vec3 tip, vec3 middle, uint triangle)
@@ -161,29 +161,30 @@ Cells with_hidden(Cells hidden, Figure f, vec3 tip, vec3 middle, uint triangle)
     l.least_step = vec4(none ? 0.0 : e0.least.y, e1.least.y, e2.least.y, own.least.y);
     l.most = vec4(e0.most.x, e1.most.x, e2.most.x, own.most.x);
     l.most_step = vec4(e0.most.y, e1.most.y, e2.most.y, own.most.y);
-    Cells more = Cells(rows_within(l, 0.0), rows_within(l, 4.0), rows_within(l, 8.0), rows_within(l, 12.0));
 #ifdef CUT
-    if (corner.w > CUT_FROM && !none) {
+    bool is_cut = corner.w > CUT_FROM && !none;
+    if (is_cut) {
         Cut cut = cut_of(triangle);
         mat3 planes = mat3(bc, ca, ab);
-        Cells covered = more;
-        more = Cells(uvec4(0u), uvec4(0u), uvec4(0u), uvec4(0u));
         // In a loop: some drivers compile each call anew, and for long.
         for (int j = 0; j < ROWS; ++j) {
-            uint open = row_of(covered, j) & ~row_of(hidden, j);
+            uint open = row_within(l, float(j)) & ~row_of(hidden, j);
             uint row = row_stopped(cut, f, triangle, planes, middle, open, j);
             uvec4 stopped = mix(uvec4(0u), uvec4(row), equal(ivec4(0, 1, 2, 3), ivec4(j & 3)));
-            more.a |= j / 4 == 0 ? stopped : uvec4(0u);
-            more.b |= j / 4 == 1 ? stopped : uvec4(0u);
-            more.c |= j / 4 == 2 ? stopped : uvec4(0u);
-            more.d |= j / 4 == 3 ? stopped : uvec4(0u);
+            hidden.a |= j < 4 ? stopped : uvec4(0u);
+            hidden.b |= j >= 4 && j < 8 ? stopped : uvec4(0u);
+            hidden.c |= j >= 8 && j < 12 ? stopped : uvec4(0u);
+            hidden.d |= j >= 12 ? stopped : uvec4(0u);
         }
     }
+    // That is all that it hides.
+    l.least.x = is_cut ? FAR : l.least.x;
+    l.least_step.x = is_cut ? 0.0 : l.least_step.x;
 #endif
-    hidden.a |= more.a;
-    hidden.b |= more.b;
-    hidden.c |= more.c;
-    hidden.d |= more.d;
+    hidden.a |= rows_within(l, 0.0);
+    hidden.b |= rows_within(l, 4.0);
+    hidden.c |= rows_within(l, 8.0);
+    hidden.d |= rows_within(l, 12.0);
     return hidden;
 }
 
@@ -206,11 +207,13 @@ uint count_of(uvec4 cells)
     return uint(counts.x + counts.y + counts.z + counts.w);
 }
 
-// Four rows of cells whose samples are of the figure.
-uvec4 rows_of(Figure f, vec2 mirror, int j)
+// The figure, as the pixel's mirror image of the grid lies on it.
+Figure mirrored_figure(Receiver r, vec2 mirror)
 {
-    return uvec4(cells_of(f, mirror, j), cells_of(f, mirror, j + 1), cells_of(f, mirror, j + 2),
-                 cells_of(f, mirror, j + 3));
+    Figure f = figure_of(r);
+    f.u *= mirror.x;
+    f.v *= mirror.y;
+    return f;
 }
 
 void main()
@@ -222,13 +225,8 @@ void main()
     uvec4 candidate = listed[nth + 1u];
     face_light(vec3(0.0));
     Receiver r = receiver_of(ivec2(candidate.x & 0xffffu, candidate.x >> 16));
-    Figure f = figure_of(r);
-    Pyramid p = pyramid_of(r.position, f, root_low(), root_step());
     // Each pixel has one of four mirror images of the grid: what the grid gets wrong is not the same in all of them.
     vec2 mirror = vec2((candidate.w & 1u) != 0u ? -1.0 : 1.0, (candidate.w & 2u) != 0u ? -1.0 : 1.0);
-    f.u *= mirror.x;
-    f.v *= mirror.y;
-    vec3 middle = f.base - r.position;
     const uvec4 ALL = uvec4(0xffffffffu);
     const uvec4 NONE = uvec4(0u);
     Cells hidden = Cells(NONE, NONE, NONE, NONE);
@@ -236,6 +234,8 @@ void main()
     int turns = MOST_TURNS;
     bool open = true;
     while (at < frame.nodes && open && turns > 0) {
+        // The pyramid is made again each time: it is not kept in registers while triangles are tested.
+        Pyramid p = pyramid_of(r.position, figure_of(r), root_low(), root_step());
         // As in hierarchy/segment.glsl, leaves are collected before their triangles are tested.
         uvec4 leaves = uvec4(0u);
         int count = 0;
@@ -248,30 +248,27 @@ void main()
             at = inside || node.leaf ? at + 1u : node.link;
             --turns;
         }
+        Figure f = mirrored_figure(still(r, turns), mirror);
         for (int i = 0; i < count * int(LEAF); ++i) {
-            hidden = with_hidden(hidden, f, p.tip, middle, leaves.x * LEAF + uint(i) % LEAF);
+            hidden = with_hidden(hidden, f, r.position, f.base - r.position, leaves.x * LEAF + uint(i) % LEAF);
             leaves = uint(i) % LEAF == LEAF - 1u ? leaves.yzww : leaves;
             --turns;
         }
         open = (hidden.a & hidden.b & hidden.c & hidden.d) != ALL;
     }
+    Figure f = figure_of(still(r, turns));
     uint all = uint(COLUMNS * ROWS);
+    uint blocked = count_of(hidden.a) + count_of(hidden.b) + count_of(hidden.c) + count_of(hidden.d);
     if (push.kind == POLYGON || f.stadium.y > 0.0) {
         all = 0u;
-        uvec4 cells = rows_of(f, mirror, 0);
-        hidden.a &= cells;
-        all += count_of(cells);
-        cells = rows_of(f, mirror, 4);
-        hidden.b &= cells;
-        all += count_of(cells);
-        cells = rows_of(f, mirror, 8);
-        hidden.c &= cells;
-        all += count_of(cells);
-        cells = rows_of(f, mirror, 12);
-        hidden.d &= cells;
-        all += count_of(cells);
+        blocked = 0u;
+        // In a loop: a polygon's corners make much of a row's code.
+        for (int j = 0; j < ROWS; ++j) {
+            uint cells = cells_of(f, mirror, j);
+            all += uint(bitCount(int(cells)));
+            blocked += uint(bitCount(int(cells & row_of(hidden, j))));
+        }
     }
-    uint blocked = count_of(hidden.a) + count_of(hidden.b) + count_of(hidden.c) + count_of(hidden.d);
     // A walk that was cut off says nothing.
     parts[nth] = turns > 0 ? blocked | all << 16 : CUT_OFF;
 }

@@ -22,7 +22,6 @@ struct Segment {
     float ends;    // 1 for a segment, which ends at from + along; 0 for a ray
     vec3 in_steps; // `from` in steps of the root's box
     vec3 inverse;  // 1 over `along` in steps
-    vec3 size;     // the size of the positions, for their rounding
 };
 
 Segment segment_of(vec3 from, vec3 along, bool ends)
@@ -31,7 +30,7 @@ Segment segment_of(vec3 from, vec3 along, bool ends)
     vec3 d = along / step;
     // Along a plane of boxes it leaves none of them through that plane.
     d = mix(d, vec3(1.0e-30), lessThan(abs(d), vec3(1.0e-30)));
-    return Segment(from, along, ends ? 1.0 : 0.0, (from - root_low()) / step, 1.0 / d, abs(from));
+    return Segment(from, along, ends ? 1.0 : 0.0, (from - root_low()) / step, 1.0 / d);
 }
 
 bool meets(Segment s, Node node)
@@ -65,7 +64,7 @@ bool crosses(Segment s, uint triangle)
     vec3 edges = vec3(edge_side(a, b, s.along), edge_side(b, c, s.along), edge_side(c, a, s.along)) * side;
     float inside = min(min(edges.x, edges.y), edges.z);
     float reach = dot(normal, s.along) * side;
-    vec3 size = max(max(abs(a), abs(b)), abs(c)) + s.size;
+    vec3 size = max(max(abs(a), abs(b)), abs(c)) + abs(s.from);
     float sharp = 0.5 * ROUNDING * length(normal) * (size.x + size.y + size.z);
     bool hit = corner.w > 0.0 && inside >= 0.0 && reach * s.ends >= abs(volume) * s.ends && abs(volume) > sharp;
 #ifdef CUT

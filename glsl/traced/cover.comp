@@ -139,33 +139,32 @@ Mask with_stopped(Mask hidden, Mask covered, uint nth, Triangle t, vec3 q, vec3 
 }
 #endif
 
-// What all samples count for.
-SUM whole_light()
-{
-#ifdef TEXTURED
-    SUM whole = SUM(0.0);
-    for (int nth = 0; nth < SIDE * SIDE; ++nth) {
-        whole += weight_of(nth, SIDE);
-    }
-    return whole;
-#else
-    return WEIGHED ? frame.weight : float(SIDE * SIDE);
-#endif
-}
+// What samples count for: those that either receiver sees, and all.
+struct Sums {
+    SUM seen0;
+    SUM seen1;
+    SUM all;
+};
 
-// What the samples count for that a mask of words from `first` on does not hide.
-SUM seen_of(Mask hidden, int first)
+// The sums with those of the samples of two masks, of words from `first` on.
+Sums with_masks(Sums sums, Mask hidden0, Mask hidden1, int first)
 {
-    SUM seen = SUM(0.0);
-    int count = 0;
+    Sums more = Sums(SUM(0.0), SUM(0.0), SUM(0.0));
+    ivec2 counts = ivec2(0);
     for (int i = 0; i < MASK_WORDS; ++i) {
-        uint word = ~word_of(hidden, i);
-        count += bitCount(int(word));
+        uvec2 words = ~uvec2(word_of(hidden0, i), word_of(hidden1, i));
+        counts += bitCount(ivec2(words));
+        // Both receivers and the sum of all share a sample's texels.
         for (int bit = 0; bit < (WEIGHED ? 32 : 0); ++bit) {
-            seen += (word >> bit & 1u) != 0u ? weight_of((first + i) * 32 + bit, SIDE) : SUM(0.0);
+            SUM weight = weight_of((first + i) * 32 + bit, SIDE);
+            more.seen0 += (words.x >> bit & 1u) != 0u ? weight : SUM(0.0);
+            more.seen1 += (words.y >> bit & 1u) != 0u ? weight : SUM(0.0);
+            sums.all += weight;
         }
     }
-    return WEIGHED ? seen : SUM(count);
+    sums.seen0 += WEIGHED ? more.seen0 : SUM(counts.x);
+    sums.seen1 += WEIGHED ? more.seen1 : SUM(counts.y);
+    return sums;
 }
 
 void main()
@@ -193,8 +192,7 @@ void main()
     vec3 first0 = is_sun() ? sample0 : sample0 - q0;
     vec3 first1 = is_sun() ? sample0 : sample0 - q1;
     bool crossing = entry.crossing != 0u;
-    SUM seen0 = SUM(0.0);
-    SUM seen1 = SUM(0.0);
+    Sums sums = Sums(SUM(0.0), SUM(0.0), SUM(0.0));
     for (int m = 0; m < MASKS; ++m) {
         float word = float(m * MASK_WORDS);
         Mask hidden0 = whole_mask(mine0 ? 0u : 0xffffffffu);
@@ -231,14 +229,15 @@ void main()
             }
         }
 #endif
-        seen0 += seen_of(hidden0, m * MASK_WORDS);
-        seen1 += seen_of(hidden1, m * MASK_WORDS);
+        sums = with_masks(sums, hidden0, hidden1, m * MASK_WORDS);
     }
-    SUM whole = whole_light();
+#ifndef TEXTURED
+    sums.all = WEIGHED ? frame.weight : float(SIDE * SIDE);
+#endif
     if (mine0) {
-        imageStore(visibility, pixel0, fraction_of(seen0, whole));
+        imageStore(visibility, pixel0, fraction_of(sums.seen0, sums.all));
     }
     if (mine1) {
-        imageStore(visibility, pixel1, fraction_of(seen1, whole));
+        imageStore(visibility, pixel1, fraction_of(sums.seen1, sums.all));
     }
 }

@@ -104,6 +104,7 @@ uint slots_in(ivec2 extent)
 struct Receiver {
     bool receives;
     bool blocks;   // its own surface blocks light
+    float off;     // how far it is moved towards the viewer, off the surface that the depth tells
     vec3 position; // the hierarchy's space
     vec3 in_light; // light space
 };
@@ -200,11 +201,33 @@ float slope_along(ivec2 pixel, float depth, ivec2 axis)
     return more < 4.0 * less ? more : less;
 }
 
+// The place of a depth in a pixel, in homogeneous coordinates from the viewer.
+vec4 place_of(ivec2 pixel, float depth)
+{
+    vec2 ndc = (vec2(pixel) + 0.5) * 2.0 / vec2(frame.extent) - 1.0;
+    vec4 at_zero = frame.eye_from_ndc * vec4(ndc, 0.0, 1.0);
+    return at_zero + frame.eye_from_ndc[2] * depth;
+}
+
+// The direction from a place, from the viewer, towards the viewer.
+vec3 towards_viewer(vec3 from_eye)
+{
+    return frame.towards.w > 0.0 ? -normalize(from_eye) : frame.towards.xyz;
+}
+
+// The position of a pixel's receiver that is moved so far off its surface.
+vec3 position_of(ivec2 pixel, float off)
+{
+    vec4 p = place_of(pixel, texelFetch(gbuffer_depth, pixel, 0).x);
+    vec3 from_eye = p.xyz / p.w;
+    return frame.eye.xyz + from_eye + towards_viewer(from_eye) * off;
+}
+
 // The receiver of a pixel, moved towards the viewer by as much as its depth and its position may be off: so it lies on
 // the viewer's side of its own surface.
 Receiver receiver_of(ivec2 pixel)
 {
-    Receiver r = Receiver(false, false, vec3(0.0), vec3(0.0));
+    Receiver r = Receiver(false, false, 0.0, vec3(0.0), vec3(0.0));
     if (any(greaterThanEqual(pixel, frame.extent))) {
         return r;
     }
@@ -213,14 +236,11 @@ Receiver receiver_of(ivec2 pixel)
     if (depth == frame.background || role <= 0.25) {
         return r;
     }
-    vec2 ndc = (vec2(pixel) + 0.5) * 2.0 / vec2(frame.extent) - 1.0;
-    vec4 at_zero = frame.eye_from_ndc * vec4(ndc, 0.0, 1.0);
-    vec4 p = at_zero + frame.eye_from_ndc[2] * depth;
+    vec4 p = place_of(pixel, depth);
     vec3 from_eye = p.xyz / p.w;
     float step = frame.depth_step > 0.0 ? frame.depth_step * depth : -frame.depth_step;
     vec4 q = p + frame.eye_from_ndc[2] * (frame.background == 0.0 ? step : -step);
     vec3 moved = from_eye - q.xyz / q.w;
-    vec3 towards = frame.towards.w > 0.0 ? -normalize(from_eye) : frame.towards.xyz;
     vec3 size = abs(frame.eye.xyz) + abs(from_eye);
     // A raster that moves vertices, by half a step of its grid at most, moves the surface: by as much as the depth changes
     // over that, but no more than it does on a surface whose distance changes by STEEP pixels a pixel.
@@ -234,7 +254,8 @@ Receiver receiver_of(ivec2 pixel)
     float grazing = length(vec2(1.0, rise / max(footprint, 1.0e-30)));
     float off = snapped + 2.0 * length(moved) + 8.0 * ROUNDING * max(max(size.x, size.y), size.z) * grazing;
     r.blocks = role > 0.75;
-    r.position = frame.eye.xyz + from_eye + towards * off;
+    r.off = off;
+    r.position = frame.eye.xyz + from_eye + towards_viewer(from_eye) * off;
     r.in_light = in_light_space(r.position);
     // At the plane of a lamp and behind it there is nothing to hide, nor within a round light.
     r.receives = is_sun() || (frame.kind == ROUND ? !in_light(r.position) : r.in_light.z > 2.0 * off + light_end);
@@ -245,7 +266,7 @@ Receiver receiver_of(ivec2 pixel)
 void face_light(uint pixels, ivec2 corner)
 {
     int first = findLSB(int(pixels));
-    Receiver r = Receiver(false, false, vec3(0.0), vec3(0.0));
+    Receiver r = Receiver(false, false, 0.0, vec3(0.0), vec3(0.0));
     if (frame.kind == ROUND && first >= 0) {
         r = receiver_of(corner + ivec2(first % TILE_SIDE, first / TILE_SIDE));
     }

@@ -45,8 +45,20 @@ uint leaves_in(Shaft shaft, uint slot, inout int turns)
     return at < frame.nodes ? frame.most + 1u : found;
 }
 
-// The tile's receivers, in the hierarchy's space.
-vec3 receivers[TILE_PIXELS];
+// How far the tile's receivers are off their surfaces, pixel by pixel: a word tells a position with the depth that is
+// read again, where three would leave room for few workgroups, and sixteen positions for few waves.
+shared float offs[TILE_PIXELS * gl_WorkGroupSize.x * gl_WorkGroupSize.y];
+
+uint off_at(int pixel)
+{
+    return uint(pixel) * (gl_WorkGroupSize.x * gl_WorkGroupSize.y) + gl_LocalInvocationIndex;
+}
+
+// The position of one of the tile's receivers.
+vec3 receiver_at(ivec2 corner, int pixel)
+{
+    return position_of(corner + ivec2(pixel % TILE_SIDE, pixel / TILE_SIDE), offs[off_at(pixel)]);
+}
 
 // Axes of a box around receivers, as the columns of a rotation: `across` and `down` are how their places change along the
 // pixels' rows and columns.
@@ -91,9 +103,9 @@ bool is_turned_away(vec3 middle, mat3 axes, vec3 half_size, vec3 units)
 
 // The shaft from some of the tile's receivers, a bit each, to the light, which faces them; `blocking` has a bit for each
 // pixel whose surface blocks.
-Made shaft_of(uint pixels, uint blocking)
+Made shaft_of(ivec2 corner, uint pixels, uint blocking)
 {
-    vec3 first = receivers[max(findLSB(int(pixels)), 0)];
+    vec3 first = receiver_at(corner, max(findLSB(int(pixels)), 0));
     face_light(first);
     enter_turned_grid(int(frame.side));
     first = in_light_space(first);
@@ -105,7 +117,7 @@ Made shaft_of(uint pixels, uint blocking)
     vec3 weights = vec3(0.0);
     for (int i = 0; i < TILE_PIXELS; ++i) {
         if ((pixels >> i & 1u) != 0u) {
-            vec3 p = in_light_space(receivers[i]);
+            vec3 p = in_light_space(receiver_at(corner, i));
             shaft = with_receiver(shaft, p, uint(i));
             vec2 at = vec2(i % TILE_SIDE, i / TILE_SIDE);
             p = (p - first) * units;
@@ -120,10 +132,11 @@ Made shaft_of(uint pixels, uint blocking)
     vec3 low = vec3(0.0);
     vec3 high = vec3(0.0);
     for (int i = 0; i < TILE_PIXELS; ++i) {
-        vec3 p = ((in_light_space(receivers[i]) - first) * units) * axes;
-        bool mine = (pixels >> i & 1u) != 0u;
-        low = mine ? min(low, p) : low;
-        high = mine ? max(high, p) : high;
+        if ((pixels >> i & 1u) != 0u) {
+            vec3 p = ((in_light_space(receiver_at(corner, i)) - first) * units) * axes;
+            low = min(low, p);
+            high = max(high, p);
+        }
     }
     mat3 sizes = mat3(abs(axes[0]), abs(axes[1]), abs(axes[2]));
     vec3 half_size = 0.5 * (high - low) + 2.0 * ROUNDING * ((offsets + abs(first)) * units * sizes + high - low);
@@ -140,7 +153,7 @@ const float TEAR = 1.0 / 32.0;
 
 // The receivers, a bit each, on the nearer side of the middle of a torn tile's longest side: one whose two groups together
 // are much shorter than the whole. None of a tile that is not torn.
-uint nearer_group(uint pixels, vec3 low, vec3 high)
+uint nearer_group(ivec2 corner, uint pixels, vec3 low, vec3 high)
 {
     vec3 size = high - low;
     int axis = size.x >= max(size.y, size.z) ? 0 : size.y >= size.z ? 1 : 2;
@@ -151,7 +164,7 @@ uint nearer_group(uint pixels, vec3 low, vec3 high)
     vec2 far = near;
     uint group = 0u;
     for (int i = 0; i < (may_be_torn ? TILE_PIXELS : 0); ++i) {
-        float x = receivers[i][axis];
+        float x = receiver_at(corner, i)[axis];
         bool mine = (pixels >> i & 1u) != 0u;
         if (mine && x < middle) {
             group |= 1u << i;
@@ -181,7 +194,7 @@ void main()
     for (int i = 0; i < TILE_PIXELS; ++i) {
         ivec2 pixel = corner + ivec2(i % TILE_SIDE, i / TILE_SIDE);
         Receiver r = receiver_of(pixel);
-        receivers[i] = r.position;
+        offs[off_at(i)] = r.off;
         if (r.receives) {
             low = min(low, r.position);
             high = max(high, r.position);
@@ -192,15 +205,17 @@ void main()
         }
     }
     uint slot = SHAFTS_A_TILE * uint(tile.y * count.x + tile.x);
-    uint nearer = nearer_group(pixels, low, high);
+    uint nearer = nearer_group(corner, pixels, low, high);
     slots[slot + 1u].shaft.count = 0u;
     int turns = MOST_TURNS;
     for (uint group = 0u; group < (nearer != 0u ? 2u : 1u); ++group) {
-        Made made = shaft_of(group == 0u ? pixels & ~nearer : nearer, blocking);
+        Made made = shaft_of(corner, group == 0u ? pixels & ~nearer : nearer, blocking);
         Shaft shaft = made.shaft;
         bool needed = shaft.pixels != 0u && !made.turned_away;
-        shaft.count = needed ? 1u + leaves_in(shaft, slot + group, turns) : 0u;
         slots[slot + group].shaft = shaft;
+        if (needed) {
+            slots[slot + group].shaft.count = 1u + leaves_in(shaft, slot + group, turns);
+        }
         for (int i = 0; i < (made.turned_away ? TILE_PIXELS : 0); ++i) {
             if ((shaft.pixels >> i & 1u) != 0u) {
                 imageStore(visibility, corner + ivec2(i % TILE_SIDE, i / TILE_SIDE), vec4(vec3(0.0), 1.0));
