@@ -17,6 +17,14 @@ uint nth_group(uvec2 id)
     return id.y * GROUPS_A_ROW + id.x;
 }
 
+// Even numbers first, then odd ones, of `count`. A processor's driver hands each thread one half of the workgroups: where
+// shadows lie in one half of the picture, a thread would be done early and wait.
+uint alternating(uint nth, uint count)
+{
+    uint evens = (count + 1u) / 2u;
+    return nth < evens ? 2u * nth : 2u * (nth - evens) + 1u;
+}
+
 // The size in x and y of the smallest grid of workgroups that holds the nth.
 uvec2 groups_as_far_as(uint nth)
 {
@@ -62,10 +70,12 @@ int nth_tile(uint word, ivec2 extent)
     return tile.y * tiles_a_row(extent) + tile.x;
 }
 
-// The list index of the nth tile of a workgroup.
-uint tile_in_list(uvec2 group, uint nth)
+// The list index of the nth tile of a workgroup, in a list of `count` tiles.
+uint tile_in_list(uvec2 group, uint nth, uint count)
 {
-    return nth_group(group) * TILES_A_GROUP + nth;
+    uint groups = (count + TILES_A_GROUP - 1u) / TILES_A_GROUP;
+    uint at = nth_group(group);
+    return (at < groups ? alternating(at, groups) : at) * TILES_A_GROUP + nth;
 }
 
 // The size in x and y of the smallest grid of workgroups that reaches the list index `at`.

@@ -128,7 +128,7 @@ bool may_be_shadowed(Tile tile)
 
 void main()
 {
-    ivec2 tile = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 tile = tile_of_invocation();
     classify_tile(tile);
     if (all(lessThan(tile * TILE, gbuffer.extent))) {
         met[tile.y * tiles_a_row(gbuffer.extent) + tile.x] = met_here;

@@ -179,7 +179,7 @@ float hidden_at(Receiver r, uint left)
 void main()
 {
 #ifdef LISTED
-    uint at = tile_in_list(gl_WorkGroupID.xy, 0u);
+    uint at = tile_in_list(gl_WorkGroupID.xy, 0u, count);
     if (at >= count) {
         return;
     }

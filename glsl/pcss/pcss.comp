@@ -67,7 +67,7 @@ float blocker_distance(MapPlane m, vec2 reach, float turn)
 void main()
 {
 #ifdef LISTED
-    uint at = tile_in_list(gl_WorkGroupID.xy, 0u);
+    uint at = tile_in_list(gl_WorkGroupID.xy, 0u, count);
     if (at >= count) {
         return;
     }

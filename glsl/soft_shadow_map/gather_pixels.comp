@@ -69,7 +69,7 @@ void main()
     uvec2 within = uvec2((l & 1u) | ((l >> 1) & 2u) | ((l >> 2) & 4u),
                          ((l >> 1) & 1u) | ((l >> 2) & 2u) | ((l >> 3) & 4u));
 #ifdef LISTED
-    uint at = tile_in_list(gl_WorkGroupID.xy, l * TILES_A_GROUP / 64u);
+    uint at = tile_in_list(gl_WorkGroupID.xy, l * TILES_A_GROUP / 64u, count);
     if (at >= count) {
         return;
     }

@@ -74,5 +74,5 @@ bool may_be_shadowed(Tile tile)
 
 void main()
 {
-    classify_tile(ivec2(gl_GlobalInvocationID.xy));
+    classify_tile(tile_of_invocation());
 }

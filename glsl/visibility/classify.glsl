@@ -12,6 +12,13 @@
 
 #include "common/lists.glsl"
 
+// The tile of an invocation; rows of workgroups alternate (`alternating`).
+ivec2 tile_of_invocation()
+{
+    uint row = alternating(gl_WorkGroupID.y, gl_NumWorkGroups.y);
+    return ivec2(gl_GlobalInvocationID.x, row * gl_WorkGroupSize.y + gl_LocalInvocationID.y);
+}
+
 void classify_tile(ivec2 tile)
 {
     ivec2 first = tile * TILE;
