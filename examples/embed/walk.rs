@@ -243,8 +243,11 @@ impl Engine {
     }
 }
 
+/// Vertices, position and normal, and the box that the node is given.
+type Posed = (Vec<[f32; 6]>, MeshBounds);
+
 /// The figure as an engine poses it at some times: its vertices, and the box that the node is given.
-fn posed(stands: Option<Stands>, times: &[f64]) -> (Engine, Vec<(Vec<[f32; 6]>, MeshBounds)>) {
+fn posed(stands: Option<Stands>, times: &[f64]) -> (Engine, Vec<Posed>) {
     let world = stands.map_or_else(|| World::walk().unwrap(), walk_with);
     let mut engine = Engine::new(world, "hard");
     let posed = times
@@ -272,11 +275,7 @@ fn still_world(vertices: &[[f32; 6]]) -> World {
 
 /// The pixels that a new engine with a new node, on the device of another, shows of these vertices, uploaded as they are and
 /// never posed.
-fn fresh(
-    engine: Engine,
-    (vertices, bounds): &(Vec<[f32; 6]>, MeshBounds),
-    technique: &str,
-) -> (Engine, Shown) {
+fn fresh(engine: Engine, (vertices, bounds): &Posed, technique: &str) -> (Engine, Shown) {
     let mut engine = engine.again(still_world(vertices), technique);
     // The same box: the node fits its maps to it.
     engine.models.last_mut().unwrap().bounds = *bounds;

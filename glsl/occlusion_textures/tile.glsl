@@ -154,7 +154,7 @@ vec3 mean_of(int slice, vec2 lo, vec2 hi)
     // The shares of the first and last row and column of texels that lie outside the rectangle.
     vec2 before = lo - vec2(a);
     vec2 after = vec2(b + 1) - hi;
-    // Of every row of corners: what lies above it in all columns from the first to the last, and in the first and the last.
+    // The counts above a row of corners: those of all columns from the first to the last, and of the first and the last.
     uvec3 all_0 = s30 - s00;
     uvec3 all_3 = s33 - s03;
     uvec3 ends_0 = ends(s00, sum_at(slice, ivec2(a.x + 1, a.y)), sum_at(slice, ivec2(b.x, a.y)), s30);

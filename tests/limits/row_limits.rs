@@ -209,7 +209,7 @@ fn what_is_too_much_is_noticed() {
     assert!(of_row(&graph, &wide).is_empty());
     let Work::Dispatch { groups, .. } = &mut wide.work else { unreachable!() };
     groups[0] = GROUPS + 1;
-    assert_eq!(of_row(&graph, &wide), ["soft_shadow_map.blocks: [65536, 64, 2] workgroups"]);
+    assert_eq!(of_row(&graph, &wide), ["soft_shadow_map.blocks: [65536, 512, 2] workgroups"]);
     let mut blended = pass("soft_shadow_map.blend_front");
     let depth = graph.passes().iter().flat_map(|p| &p.uses);
     let depth =

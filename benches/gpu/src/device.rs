@@ -7,6 +7,9 @@ use std::ffi::CStr;
 
 const STATISTICS: &CStr = khr::pipeline_executable_properties::NAME;
 
+/// What the driver tells about a shader: its name, and figures by their names.
+pub type Told = (String, Vec<(String, u64)>);
+
 /// A device that tells what it made of each pipeline.
 pub struct NullDevice {
     /// The device.
@@ -77,11 +80,11 @@ impl NullDevice {
         Ok(Self { raw: device, host, statistics, name, driver, _entry: entry })
     }
 
-    /// What the driver tells about each of a pipeline's shaders: the shader's name, and figures by their names.
+    /// What the driver tells about each of a pipeline's shaders.
     ///
     /// # Errors
     /// What the driver returns, and the pipelines' own: see [`antumbra::gpu::Pipelines::new`].
-    pub fn told(&self, pipeline: vk::Pipeline) -> Result<Vec<(String, Vec<(String, u64)>)>, Error> {
+    pub fn told(&self, pipeline: vk::Pipeline) -> Result<Vec<Told>, Error> {
         let doing = || Error::vulkan("asking for a pipeline's statistics");
         let info = vk::PipelineInfoKHR::default().pipeline(pipeline);
         // SAFETY: the pipeline is alive and was made to keep its statistics, here and below.
