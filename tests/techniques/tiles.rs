@@ -262,6 +262,16 @@ fn nodes_of_a_searched_part_of_the_map() {
         .check(&device());
 }
 
+/// The place of a workgroup of a list: every other one first. A workgroup behind the list keeps its number.
+fn alternating(group: u32, groups: u32) -> u32 {
+    let evens = groups.div_ceil(2);
+    match group {
+        _ if group >= groups => group,
+        _ if group < evens => 2 * group,
+        _ => 2 * (group - evens) + 1,
+    }
+}
+
 /// A word says where a tile is, and as many workgroups as are dispatched reach every place in the list.
 #[test]
 fn the_list_holds_every_tile_of_the_largest_image() {
@@ -283,21 +293,28 @@ fn the_list_holds_every_tile_of_the_largest_image() {
         .check(&device);
     assert_eq!(listed_tile(3 | 5 << 15 | 1 << 30), ([24, 40], true));
     assert_eq!(listed_tile(3 | 5 << 15), ([24, 40], false));
-    // The place of each of a group's tiles, and that the group is dispatched.
-    let glue = "uvec3 reached(uint at) { uvec2 n = groups_with(at); uint group = at / TILES_A_GROUP; \
+    // The place of each of a group's tiles in a list of `count`, and that the group is dispatched.
+    let glue = "uvec3 reached(uint at, uint count) { uvec2 n = groups_with(at); uint group = at / TILES_A_GROUP; \
                 uvec2 id = uvec2(group % GROUPS_A_ROW, group / GROUPS_A_ROW); \
-                return uvec3(tile_in_list(id, at % TILES_A_GROUP), n); }";
+                return uvec3(tile_in_list(id, at % TILES_A_GROUP, count), n); }";
     let largest = 4096 * 4096_u32;
-    Function::new("common/lists.glsl", "uvec3 reached(uint at)")
+    Function::new("common/lists.glsl", "uvec3 reached(uint at, uint count)")
         .glue(glue)
-        .case(0_u32)
-        .case(largest - 1)
-        .random(2_000, (0..largest).prop_map(|at| at))
+        .case((0_u32, 1_u32))
+        .case((largest - 1, largest))
+        .random(2_000, (0..largest, 0..=largest))
         .bits(|x| {
             let group = x[0] / 4;
-            vec![x[0], (group + 1).min(16384), group / 16384 + 1]
+            let place = 4 * alternating(group, x[1].div_ceil(4)) + x[0] % 4;
+            vec![place, (group + 1).min(16384), group / 16384 + 1]
         })
         .check(&device);
+    // Each group of a list has a place of its own in it.
+    for groups in [1, 2, 3, 64, 4097_u32] {
+        let mut places: Vec<u32> = (0..groups).map(|group| alternating(group, groups)).collect();
+        places.sort_unstable();
+        assert_eq!(places, (0..groups).collect::<Vec<_>>());
+    }
     // Both stay under what every device dispatches.
     assert!(largest / 4 / 16384 < 65535);
 }
