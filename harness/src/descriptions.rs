@@ -11,7 +11,7 @@ use ash::vk;
 /// # Panics
 /// If a technique refuses the settings, which the tests would show.
 #[allow(clippy::expect_used, reason = "the words are fixed")]
-pub fn every_row() -> Vec<(String, Description)> {
+pub fn with_every_pass() -> Vec<(String, Description)> {
     let mut all = Vec::new();
     for words in [
         "receivers=pixels sides=one",

@@ -5,7 +5,7 @@ use antumbra::graph::{Draw, Graph, INVOCATIONS, PUSH_BYTES, Pass, Work};
 use antumbra::shaders::Module;
 use antumbra::stages::depth_layers::DepthPush;
 use antumbra::stages::hierarchy::{CutOutPush, MeshPush};
-use antumbra_harness::descriptions::every_row;
+use antumbra_harness::descriptions::with_every_pass;
 use antumbra_tests::example::root;
 use antumbra_tests::headers;
 use antumbra_tests::permutations;
@@ -19,7 +19,7 @@ fn graphs() -> Vec<(String, Graph)> {
     let devices = [("", gpu), (", on a processor", Limits { processor: true, ..gpu })];
     let of_device = |(name, limits): (&str, Limits)| {
         let graph = |(words, d)| (format!("{words}{name}"), frame::full_graph_on(&d, limits));
-        every_row().into_iter().map(graph).collect::<Vec<_>>()
+        with_every_pass().into_iter().map(graph).collect::<Vec<_>>()
     };
     devices.into_iter().flat_map(of_device).collect()
 }
@@ -158,7 +158,7 @@ fn disagreements(graph: &Graph, pass: &Pass) -> Vec<String> {
 }
 
 #[test]
-fn every_row_is_what_its_shaders_say() {
+fn with_every_pass_is_what_its_shaders_say() {
     let mut problems = Vec::new();
     let mut rows = BTreeSet::new();
     for (words, graph) in graphs() {

@@ -3,12 +3,12 @@
 use crate::compiled::{Compiled, Shader};
 use crate::device::NullDevice;
 use antumbra::gpu::{Pipelines, SharedLayouts};
-use antumbra_harness::descriptions::every_row;
+use antumbra_harness::descriptions::with_every_pass;
 use ash::vk;
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// Compiles the pipelines of [`every_row`], with the layouts and formats of nodes.
+/// Compiles the pipelines of [`with_every_pass`], with the layouts and formats of nodes.
 ///
 /// # Errors
 /// A sentence where the device cannot be opened or a pipeline cannot be made.
@@ -20,27 +20,17 @@ pub fn everything() -> Result<Compiled, String> {
         .map_err(|e| format!("creating the pipeline cache: {e}"))?;
     let layouts = Arc::<SharedLayouts>::default();
     let host = device.host.clone().with_pipeline_cache(cache).with_layouts(layouts);
-    let mut shaders: BTreeMap<_, Vec<String>> = BTreeMap::new();
-    for (words, description) in every_row() {
+    let mut shaders = BTreeSet::new();
+    for (words, description) in with_every_pass() {
         let pipelines = Pipelines::new(&host, &description).map_err(|e| format!("{words}: {e}"))?;
         for made in pipelines.each() {
             let told = device.told(made.pipeline).map_err(|e| format!("{}: {e}", made.pass))?;
             for (stage, figures) in told {
-                let figures: BTreeMap<String, u64> = figures.into_iter().collect();
-                let modules: Vec<String> = made.modules.iter().map(ToString::to_string).collect();
-                let passes = shaders.entry((modules, stage, figures)).or_default();
-                if !passes.iter().any(|pass| pass == made.pass) {
-                    passes.push(made.pass.to_owned());
-                }
+                let modules = made.modules.iter().map(ToString::to_string).collect();
+                shaders.insert(Shader { modules, stage, figures: figures.into_iter().collect() });
             }
         }
         pipelines.destroy();
     }
-    let shaders = shaders.into_iter().map(|((modules, stage, figures), passes)| Shader {
-        passes,
-        modules,
-        stage,
-        figures,
-    });
-    Ok(Compiled { device: device.name, driver: device.driver, shaders: shaders.collect() })
+    Ok(Compiled { driver: device.driver, shaders: shaders.into_iter().collect() })
 }

@@ -7,10 +7,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// A shader as the compiler left it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Shader {
-    /// The passes that run it.
-    pub passes: Vec<String>,
     /// The modules of its pipeline, by their paths under `spirv/`.
     pub modules: Vec<String>,
     /// The driver's name of its stage, such as "Compute Shader".
@@ -25,9 +23,24 @@ impl Shader {
         self.figures.get(name).copied().unwrap_or(0)
     }
 
-    /// Waves that a SIMD holds of it at once.
+    /// Waves of 64 that a SIMD holds of it at once.
     pub fn waves(&self) -> u64 {
-        self.figure("Subgroups per SIMD")
+        self.figure(WAVES)
+    }
+
+    /// Vector registers that went to memory.
+    pub fn spilled(&self) -> u64 {
+        self.figure("Spilled VGPRs")
+    }
+
+    /// Bytes of code.
+    pub fn code(&self) -> u64 {
+        self.figure("Code size")
+    }
+
+    /// Cycles of one wave by the compiler's model.
+    pub fn latency(&self) -> u64 {
+        self.figure("Latency")
     }
 
     /// The module of this stage.
@@ -42,11 +55,12 @@ impl Shader {
     }
 }
 
+/// RADV's name of the figure.
+const WAVES: &str = "Subgroups per SIMD";
+
 /// What came of all pipelines for a family.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Compiled {
-    /// The device's name, as the driver says it.
-    pub device: String,
     /// The driver and its version.
     pub driver: String,
     /// The shaders, one for each that differs in module or figures.
@@ -80,8 +94,14 @@ pub fn compile_for(program: &Path, family: &Family) -> Result<Compiled, String> 
     if !output.status.success() {
         return Err(format!("RADV compiles nothing for {}: {last}", family.name));
     }
-    serde_json::from_slice(&output.stdout)
-        .map_err(|e| format!("what was compiled for {} cannot be read: {e}", family.name))
+    let mut compiled: Compiled = serde_json::from_slice(&output.stdout)
+        .map_err(|e| format!("what was compiled for {} cannot be read: {e}", family.name))?;
+    // RADV of Mesa 22.3 counts the waves of RDNA for two SIMDs. The smallest shaders have as many as a SIMD holds.
+    let most = compiled.shaders.iter().map(Shader::waves).max().unwrap_or(0);
+    for waves in compiled.shaders.iter_mut().filter_map(|s| s.figures.get_mut(WAVES)) {
+        *waves = *waves * family.waves / most.max(1);
+    }
+    Ok(compiled)
 }
 
 /// RADV's description for the Vulkan loader; `None` where it is not installed.

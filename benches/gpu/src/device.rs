@@ -18,8 +18,6 @@ pub struct NullDevice {
     pub host: Host,
     /// The statistics of pipelines.
     pub statistics: khr::pipeline_executable_properties::Device,
-    /// The device's name.
-    pub name: String,
     /// The driver's name and version.
     pub driver: String,
     _entry: Entry,
@@ -55,7 +53,6 @@ impl NullDevice {
         let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut driver);
         // SAFETY: as above; a device of Vulkan 1.2 has the driver's properties, and others leave them empty.
         unsafe { instance.get_physical_device_properties2(physical, &mut properties) };
-        let name = text(properties.properties.device_name_as_c_str());
         let driver = format!(
             "{}, {}",
             text(driver.driver_name_as_c_str()),
@@ -77,7 +74,7 @@ impl NullDevice {
         // SAFETY: the handles belong together and live until the process ends.
         let host = unsafe { Host::borrow(instance, physical, device.clone(), 0) }
             .with_pipeline_flags(vk::PipelineCreateFlags::CAPTURE_STATISTICS_KHR);
-        Ok(Self { raw: device, host, statistics, name, driver, _entry: entry })
+        Ok(Self { raw: device, host, statistics, driver, _entry: entry })
     }
 
     /// What the driver tells about each of a pipeline's shaders.

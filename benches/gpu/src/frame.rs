@@ -36,10 +36,6 @@ pub enum Launch {
         least: u64,
         /// The most.
         most: u64,
-        /// Invocations of a workgroup.
-        invocations: u64,
-        /// The fewest workgroups of a step.
-        groups: u64,
     },
     /// As many as a list holds, which the device fills.
     Listed,
@@ -88,8 +84,8 @@ pub fn frame_of(name: &str, scene: &Scene) -> Result<Vec<FramePass>, antumbra::E
         let again = passes.iter_mut().find(|known| known.name == pass.name);
         let read = bytes(graph, pass, again.is_none(), Access::reads);
         let written = bytes(graph, pass, again.is_none(), Access::writes);
-        let serial_words = match launch {
-            Launch::Waves { invocations, groups: 1, .. } => Some(read / 4 / invocations),
+        let serial_words = match pass.work {
+            Work::Dispatch { shader, groups: [1, 1, 1] } => Some(read / 4 / invocations(shader)),
             _ => None,
         };
         match again {
@@ -151,10 +147,9 @@ fn planned(description: &Description, scene: &Scene) -> Result<FramePlan, antumb
 fn launch_of(pass: &Pass) -> Launch {
     match pass.work {
         Work::Dispatch { shader, groups } => {
-            let invocations = invocations(shader);
             let groups = groups.iter().map(|&n| u64::from(n)).product::<u64>();
-            let waves = groups * invocations.div_ceil(64);
-            Launch::Waves { least: waves, most: waves, invocations, groups }
+            let waves = groups * invocations(shader).div_ceil(64);
+            Launch::Waves { least: waves, most: waves }
         }
         Work::Indirect { .. } => Launch::Listed,
         Work::EachMesh { .. } | Work::EachCutOut { .. } => Launch::Meshes,
@@ -163,17 +158,12 @@ fn launch_of(pass: &Pass) -> Launch {
     }
 }
 
+/// What two steps of a kind launch.
 fn with(a: &Launch, b: &Launch) -> Launch {
     match (a, b) {
-        (
-            &Launch::Waves { least, most, invocations, groups },
-            &Launch::Waves { least: l, most: m, groups: g, .. },
-        ) => Launch::Waves {
-            least: least.min(l),
-            most: most.max(m),
-            invocations,
-            groups: groups.min(g),
-        },
+        (&Launch::Waves { least, most }, &Launch::Waves { least: l, most: m }) => {
+            Launch::Waves { least: least.min(l), most: most.max(m) }
+        }
         _ => a.clone(),
     }
 }

@@ -1,6 +1,6 @@
 //! What no shader and no pass may be: the rules, and the exceptions that `benches/gpu/exceptions.txt` gives reasons for.
 
-use crate::compiled::{Compiled, Shader};
+use crate::compiled::Compiled;
 use crate::families::Family;
 use crate::frame::FramePass;
 use crate::table::by_module;
@@ -12,7 +12,8 @@ pub const WAVES: u64 = 8;
 /// The most bytes of code, RDNA's instruction cache.
 pub const CODE: u64 = 32 << 10;
 
-/// The most words that an invocation of a pass of one workgroup may have to read.
+/// The most words that an invocation of a pass of one workgroup may have to read: a quarter of a thousand items of one word,
+/// some 80,000 cycles where each waits for memory by itself.
 pub const WORDS: u64 = 250;
 
 /// An exception to a rule, with its reason.
@@ -66,7 +67,7 @@ pub fn broken(family: &Family, compiled: &Compiled, exceptions: &Exceptions) -> 
         if family.architecture != "RDNA2" {
             continue;
         }
-        let waves = shader.waves_of(family);
+        let waves = shader.waves();
         let least = allowed("waves").unwrap_or(WAVES);
         if waves < least {
             broken.push(tell(format!("{waves} waves, where {least} must fit")));
@@ -84,37 +85,22 @@ pub fn broken(family: &Family, compiled: &Compiled, exceptions: &Exceptions) -> 
     broken
 }
 
-/// The passes of a frame that one workgroup works at for long: more than [`WORDS`] words of what it reads an invocation.
+/// The passes of a frame that one workgroup works at for long: each of its invocations has more than [`WORDS`] words of what
+/// the pass reads. An exception that a pass does not need breaks the rule as well.
 pub fn serial(passes: &[FramePass], exceptions: &Exceptions) -> Vec<String> {
     let of = |pass: &FramePass| {
         let words = pass.serial_words?;
         let allowed = exceptions.get(&("words".to_owned(), pass.name.to_owned()));
         let most = allowed.map_or(WORDS, |e| e.number);
+        if words <= WORDS && allowed.is_some() {
+            return Some(format!(
+                "{}: its exception to the rule of words is not needed",
+                pass.name
+            ));
+        }
         (words > most).then(|| {
             format!("{}: an invocation of its one workgroup reads up to {words} words, more than {most}", pass.name)
         })
     };
     passes.iter().filter_map(of).collect()
-}
-
-impl Shader {
-    /// Waves of 64 that a SIMD of a family holds at once. RADV of Mesa 22.3 counts those of RDNA for two SIMDs.
-    pub fn waves_of(&self, family: &Family) -> u64 {
-        self.waves() / if family.waves == 16 { 2 } else { 1 }
-    }
-
-    /// Vector registers that went to memory.
-    pub fn spilled(&self) -> u64 {
-        self.figure("Spilled VGPRs")
-    }
-
-    /// Bytes of code.
-    pub fn code(&self) -> u64 {
-        self.figure("Code size")
-    }
-
-    /// Cycles of one wave by the compiler's model.
-    pub fn latency(&self) -> u64 {
-        self.figure("Latency")
-    }
 }

@@ -25,8 +25,8 @@ pub fn by_module(compiled: &Compiled) -> BTreeMap<&str, &Shader> {
 }
 
 /// What keeps a SIMD from more waves' work: its own units, or the wait for memory that the waves it holds do not fill.
-fn bound(shader: &Shader, family: &Family) -> &'static str {
-    let waves = shader.waves_of(family) as f64;
+fn bound(shader: &Shader) -> &'static str {
+    let waves = shader.waves() as f64;
     match shader.figure("Inverse Throughput") as f64 * waves > 1.05 * shader.latency() as f64 {
         true => "units",
         false => "waiting",
@@ -36,9 +36,7 @@ fn bound(shader: &Shader, family: &Family) -> &'static str {
 /// A line for each shader: waves of every family, then the first family's registers, shared memory, code and cycles.
 pub fn shaders(compiled: &[(Family, Compiled)]) -> String {
     let families: Vec<_> = compiled.iter().map(|(_, all)| by_module(all)).collect();
-    let Some(((first, _), modules)) = compiled.first().zip(families.first()) else {
-        return String::new();
-    };
+    let Some(modules) = families.first() else { return String::new() };
     let names: Vec<_> = compiled.iter().map(|(f, _)| f.architecture).collect();
     let mut text = format!(
         "| shader | waves: {} | registers | spilled | shared, bytes | code, bytes | cycles | bound by |\n|---|{}---|---|---|---|---|---|\n",
@@ -46,11 +44,10 @@ pub fn shaders(compiled: &[(Family, Compiled)]) -> String {
         "---|".repeat(names.len())
     );
     for (module, shader) in modules {
-        let waves: Vec<String> = compiled
+        let waves: Vec<String> = families
             .iter()
-            .zip(&families)
-            .map(|((family, _), modules)| match modules.get(module) {
-                Some(shader) => shader.waves_of(family).to_string(),
+            .map(|modules| match modules.get(module) {
+                Some(shader) => shader.waves().to_string(),
                 None => "–".into(),
             })
             .collect();
@@ -69,7 +66,7 @@ pub fn shaders(compiled: &[(Family, Compiled)]) -> String {
             shader.figure("LDS size"),
             shader.code(),
             shader.latency(),
-            bound(shader, first),
+            bound(shader),
         );
     }
     text
@@ -85,11 +82,11 @@ pub fn frame(technique: &str, passes: &[FramePass], family: &Family, all: &Compi
     let (mut read, mut written) = (0, 0);
     for pass in passes {
         let held = pass.shader.and_then(|module| modules.get(module)).map(|shader| {
-            let held = shader.waves_of(family) * family.simds;
+            let held = shader.waves() * family.simds;
             move |waves: u64| format!("{:.3}", waves as f64 / held as f64)
         });
         let (waves, part) = match pass.launch {
-            Launch::Waves { least, most, .. } => {
+            Launch::Waves { least, most } => {
                 let range = |a: String, b: String| if a == b { a } else { format!("{a} to {b}") };
                 let part = held.map_or("–".into(), |held| range(held(least), held(most)));
                 (range(least.to_string(), most.to_string()), part)
