@@ -4,6 +4,7 @@ use antumbra::scene::generate;
 use antumbra_harness::View;
 use antumbra_tests::device::TestDevice;
 use antumbra_tests::measure::{Setup, model};
+use antumbra_tests::room;
 
 /// The settings that reach each pass that has two shaders, with what belongs to its edges: maps whose side is no multiple of a
 /// block or of a part of a row, and each way of combining sides.
@@ -30,21 +31,26 @@ fn a_gpus_shaders_write_what_a_processors_do() {
         ("bunny", Setup { scene: &bunny, view, extent, window: None, occluders_seen: true }),
         ("cards", Setup::ground(&cards, 2.2, 128)),
     ];
-    for (name, setup) in &setups {
-        for words in SETTINGS {
-            let image = |device| {
-                let mut stage = setup.stage(device, words);
-                let image = setup.visibility(&mut stage);
-                let plan = stage.plan(setup.light(), None).unwrap();
-                let graph = &plan.plan().graph;
-                let shaders = graph.passes().iter().filter_map(|pass| pass.work.compute_shader());
-                (image, shaders.map(|shader| shader.path).collect::<Vec<_>>())
-            };
-            let ((a, of_gpu), (b, of_processor)) = (image(&gpu), image(&processor));
-            assert_ne!(of_gpu, of_processor, "{words}: both run the same shaders");
-            let differ = a.iter().zip(&b).filter(|(a, b)| a.to_bits() != b.to_bits()).count();
-            assert_eq!(differ, 0, "{name}, {words}");
-            assert!(a.iter().any(|v| *v < 0.5), "{name}, {words}: no shadow");
-        }
+    // A room, which several views share, for one of the settings of each technique.
+    let (room, extent) = (room::room(), [96, 72]);
+    let view = View::of(&room::camera(), extent);
+    let room = Setup { scene: &room, view, extent, window: None, occluders_seen: true };
+    let all = setups.iter().flat_map(|setup| SETTINGS.map(|words| (setup, words)));
+    let room = &("room", room);
+    let in_room = ["technique=soft-shadow-map", "technique=occlusion-textures"];
+    for ((name, setup), words) in all.chain(in_room.map(|words| (room, words))) {
+        let image = |device| {
+            let mut stage = setup.stage(device, words);
+            let image = setup.visibility(&mut stage);
+            let plan = stage.plan(setup.light(), None).unwrap();
+            let graph = &plan.plan().graph;
+            let shaders = graph.passes().iter().filter_map(|pass| pass.work.compute_shader());
+            (image, shaders.map(|shader| shader.path).collect::<Vec<_>>())
+        };
+        let ((a, of_gpu), (b, of_processor)) = (image(&gpu), image(&processor));
+        assert_ne!(of_gpu, of_processor, "{words}: both run the same shaders");
+        let differ = a.iter().zip(&b).filter(|(a, b)| a.to_bits() != b.to_bits()).count();
+        assert_eq!(differ, 0, "{name}, {words}");
+        assert!(a.iter().any(|v| *v < 0.5), "{name}, {words}: no shadow");
     }
 }
